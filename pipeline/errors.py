@@ -1,0 +1,101 @@
+"""What can go wrong, as one tree: whoever catches `KinetreeError` catches everything kinetree raises on purpose.
+
+    KinetreeError
+    ├── InputError                the user's input is wrong; exit code 2, never a traceback
+    │   ├── ConfigError           a key, a value or a path in a configuration
+    │   ├── SourceError           the sequence cannot be found or listed
+    │   ├── MeshError             one mesh cannot be read or used
+    │   │   └── DisconnectedMeshError   a distance between two components was asked for
+    │   ├── StoreError            the folder is not a store, or cannot be read or written
+    │   │   └── StoreFullError    no space is left on the device
+    │   ├── ClusterError          nobody answers at the scheduler's address
+    │   └── UnknownNodeError      no such task, node, run or artifact
+    ├── GraphError                the declarations do not make a graph; raised at import
+    │   ├── TwoWritersError       two tasks return the same artifact
+    │   ├── MissingWriterError    an argument's type is returned by no task
+    │   └── CycleError            a task waits for itself
+    ├── ArtifactError             a value breaks its schema
+    ├── DamagedArtifactError      a stored artifact lost or changed bytes; it is computed again
+    ├── StaleWorkerError          a worker runs other code than the one that planned
+    └── NodesFailedError          the run ended and some nodes failed; exit code 1
+"""
+
+
+class KinetreeError(Exception):
+    """Root of everything kinetree raises on purpose."""
+
+
+class InputError(KinetreeError):
+    """The user's input is wrong; the message says where, what was found, what was expected and what to do."""
+
+
+class ConfigError(InputError):
+    """A key, a value or a path in a configuration."""
+
+
+class SourceError(InputError):
+    """The sequence cannot be found or listed."""
+
+
+class MeshError(InputError):
+    """One mesh cannot be read or used."""
+
+
+class DisconnectedMeshError(MeshError):
+    """A distance between two components was asked for."""
+
+
+class StoreError(InputError):
+    """The folder is not a store, or it cannot be read or written."""
+
+
+class StoreFullError(StoreError):
+    """No space is left where the store lies."""
+
+
+class ClusterError(InputError):
+    """Nobody answers at the scheduler's address, or the workers are gone."""
+
+
+class UnknownNodeError(InputError):
+    """No such task, node, run or artifact."""
+
+
+class GraphError(KinetreeError):
+    """The declarations do not make a graph; raised at import."""
+
+
+class TwoWritersError(GraphError):
+    """Two tasks return the same artifact."""
+
+
+class MissingWriterError(GraphError):
+    """An argument's type is returned by no task."""
+
+
+class CycleError(GraphError):
+    """A task waits for itself."""
+
+
+class ArtifactError(KinetreeError):
+    """A value breaks its schema."""
+
+
+class DamagedArtifactError(KinetreeError):
+    """A stored artifact lost or changed bytes."""
+
+    def __init__(self, digest: str, what: str) -> None:
+        super().__init__(f"artifact {digest[:12]}: {what}; it will be computed again")
+        self.digest = digest
+        self.what = what
+
+    def __reduce__(self) -> tuple[type, tuple[str, str]]:
+        return type(self), (self.digest, self.what)
+
+
+class StaleWorkerError(KinetreeError):
+    """A worker runs other code than the one that planned."""
+
+
+class NodesFailedError(KinetreeError):
+    """The run ended and some nodes failed."""
