@@ -1,0 +1,375 @@
+"""Cleaning of one mesh: welded, without waste, oriented outwards, only the body left, and the way back to the input.
+
+The papers assume a clean closed surface (2014, Sec. 3); captured and exported meshes have seams, debris, shells inside
+and faces turned inside out. Thresholds are relative to the mesh's own size, so that none knows a unit.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from kinetree.pipeline.errors import MeshError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+_NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
+_FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
+_INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
+_PROBES = 32  # vertices of a shell that must all be inside; the box, tested first, catches most that stick out
+
+
+@dataclass(frozen=True)
+class Cleaned:
+    """A clean mesh, what was done to get it, and where every input vertex went.
+
+    Input vertices = merged + unreferenced + left_out_vertices + len(V);
+    input faces = degenerate + duplicate + left_out_faces + len(F).
+
+    V, F          : (vertex, xyz) mesh unit · (face, corner); survivors in the input's order
+    vertex_map    : (input_vertex,) its vertex in V, −1 if dropped: labels come back as `labels[vertex_map]`
+    face_origin   : (face,) which input face it was
+    merged        : vertices welded to an earlier one
+    unreferenced  : vertices, after welding, in no face
+    degenerate    : faces dropped because two corners are one vertex after welding
+    duplicate     : faces dropped because an earlier one has the same three corners, turned either way
+    needles       : faces without height, kept because taking one out would open the surface
+    flipped       : faces of F turned the other way round
+    shares        : (component,) share of the surface's area, in the order of the components' first faces
+    kept          : (component,) True where it is in F
+    nested        : components dropped only because they lie wholly inside another
+    left_out_vertices, left_out_faces  : those of the dropped components
+    boundary_edges, non_manifold_edges : edges of F with one face, with more than two
+    disagreeing_edges : edges of F whose two faces cannot be made to agree (a Möbius strip has some)
+    euler         : vertices − edges + faces; 2 for a sphere, 0 for a torus, 1 for a disc
+    area, volume  : mesh unit², mesh unit³; volume is NaN unless every edge has two faces that agree
+    """
+
+    V: Floats
+    F: Ints
+    vertex_map: Ints
+    face_origin: Ints
+    merged: int
+    unreferenced: int
+    degenerate: int
+    duplicate: int
+    needles: int
+    flipped: int
+    shares: Floats
+    kept: Flags
+    nested: int
+    left_out_vertices: int
+    left_out_faces: int
+    boundary_edges: int
+    non_manifold_edges: int
+    disagreeing_edges: int
+    euler: int
+    area: float
+    volume: float
+
+
+def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0.05, name: str = "mesh") -> Cleaned:
+    """Weld, drop what is no surface, orient outwards and keep the body; cleaning twice changes nothing more.
+
+    Components are what shared edges connect. Kept are the largest, and those of at least `component_share` of the area
+    that do not lie wholly inside a kept one. An arm has about 0.08 of a body's area and must stay; what floats by
+    itself with less than 0.05 is debris, or a hand that no distance over the surface can tie to the body.
+
+    V               : (vertex, xyz) finite, mesh unit
+    F               : (face, corner) indices into V
+    merge           : vertices closer than this share of the bounding box's diagonal are one; at 0 only equal ones
+    component_share : of the whole area, 0 to 1
+    name            : what messages call the mesh
+    raises          : MeshError if no face or no area is left
+    """
+    if not len(F):
+        raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
+    corners = V[F.ravel()]
+    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    # the box of the faces alone: one stray vertex far away must not widen what counts as close
+    X = (V - corners.min(axis=0)) / (diagonal or 1.0)
+    first = welded(X, merge)
+    G = first[F]
+    whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
+    origin = whole[_first_of_equal(G[whole], len(V))]
+    G = G[origin]
+    area = np.linalg.norm(_area_vectors(X, G), axis=1)
+    if not area.sum() > 0:
+        raise MeshError(f"{name}: its {len(F)} faces have no area; the corners of each lie in one point or on one line")
+    turned, component = oriented(X, G)
+    G = np.where(turned[:, None], G[:, [0, 2, 1]], G)
+    shares = np.bincount(component, weights=area) / area.sum()
+    inside, keep_component = _body(X, G, component, shares, component_share)
+    keep = keep_component[component]
+    V_new, F_new, vertex_map = _compacted(V, G[keep], first)
+    edges = _edge_counts(F_new, len(V_new))
+    referenced = int((np.bincount(G.ravel()) > 0).sum())
+    stays = first == np.arange(len(V))
+    return Cleaned(
+        V=V_new,
+        F=F_new,
+        vertex_map=vertex_map,
+        face_origin=origin[keep].astype(np.int32),
+        merged=int((~stays).sum()),
+        unreferenced=int(stays.sum()) - referenced,
+        degenerate=len(F) - len(whole),
+        duplicate=len(whole) - len(origin),
+        needles=int(_needles(X, G[keep], area[keep])),
+        flipped=int(turned[keep].sum()),
+        shares=shares,
+        kept=keep_component,
+        nested=int(inside.sum()),
+        left_out_vertices=referenced - len(V_new),
+        left_out_faces=len(G) - len(F_new),
+        boundary_edges=edges[0],
+        non_manifold_edges=edges[1],
+        disagreeing_edges=edges[2],
+        euler=len(V_new) - edges[3] + len(F_new),
+        area=float(area[keep].sum() * diagonal**2),
+        volume=float("nan") if any(edges[:3]) else _volume(X, G[keep]) * diagonal**3,
+    )
+
+
+def welded(X: Floats, tolerance: float) -> Ints:
+    """For every vertex the first vertex at its place.
+
+    Closeness is carried along chains, so that the vertices that stay are further apart than `tolerance`.
+
+    X         : (vertex, xyz)
+    tolerance : in the unit of X; 0 welds equal coordinates only
+    returns   : (vertex,) the first vertex of the cluster, itself if alone
+    """
+    order = np.lexsort(X.T)
+    new = np.r_[True, (np.diff(X[order], axis=0) != 0).any(axis=1)]
+    cluster = np.empty(len(X), dtype=np.int64)
+    cluster[order] = np.cumsum(new) - 1
+    # equal vertices are one before any pair is listed: ten thousand at one place would be fifty million pairs
+    place = X[order[new]]
+    if tolerance > 0:
+        tree = cKDTree(place, balanced_tree=False)
+        i, j = tree.query_pairs(tolerance, output_type="ndarray").T
+        near = coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(place), len(place)))
+        cluster = connected_components(near, directed=False)[1][cluster]
+    first = np.full(int(cluster.max()) + 1, len(X), dtype=np.int32)
+    np.minimum.at(first, cluster, np.arange(len(X), dtype=np.int32))
+    return first[cluster]
+
+
+def oriented(X: Floats, F: Ints) -> tuple[Flags, Longs]:
+    """Which faces to turn so that neighbours agree and closed patches face outwards, and each face's component.
+
+    A patch is what edges of exactly two faces connect. A closed patch is turned to positive volume; so is an open one
+    that clearly encloses some about its centroid; a flat one keeps the side that most of its area had.
+
+    X, F    : (vertex, xyz) · (face, corner) without repeated corners or faces
+    returns : (face,) · (face,) component by shared edges, numbered in the order of first faces
+    """
+    order = _lexicographic(_edges(F), len(X))
+    root, flip, is_open, component_root = _patches(F, order)
+    patch = _numbered(root)
+    sign = 1.0 - 2.0 * flip
+    N = _area_vectors(X, F)
+    area = np.linalg.norm(N, axis=1)
+    A = np.bincount(patch, weights=area)
+    moment = np.stack([np.bincount(patch, weights=area * x) for x in X[F].mean(axis=1).T], axis=1)
+    centroid = moment / np.where(A > 0, A, 1.0)[:, None]
+    height = np.einsum("fx,fx->f", X[F[:, 0]] - centroid[patch], N)
+    volume = np.bincount(patch, weights=sign * height) / 3
+    majority = np.bincount(patch, weights=sign * area)
+    encloses = (np.bincount(patch, weights=is_open) == 0) | (np.abs(volume) >= _FLAT * A**1.5)
+    turned = np.where(encloses, volume, majority)[patch] * sign < 0
+    # nothing to go by (a patch without area or volume): the first face of the patch decides
+    turned |= (np.where(encloses, volume, majority)[patch] == 0) & flip
+    return turned, _numbered(component_root)
+
+
+def winding(P: Floats, X: Floats, F: Ints) -> Floats:
+    """How often the surface winds round each point: 1 inside a closed one that faces outwards, 0 outside.
+
+    Solid angles after Van Oosterom and Strackee 1983.
+
+    P, X, F : (point, xyz) off the surface · (vertex, xyz) · (face, corner)
+    returns : (point,)
+    """
+    return _winding(np.ascontiguousarray(P), np.ascontiguousarray(X), np.ascontiguousarray(F))
+
+
+def _body(X: Floats, F: Ints, component: Longs, shares: Floats, least: float) -> tuple[Flags, Flags]:
+    """(component,) large enough but wholly inside a larger one · (component,) to be kept."""
+    large = shares >= min(least, float(shares.max()))
+    inside = np.zeros(len(shares), dtype=bool)
+    ranked = np.flatnonzero(large)[np.argsort(-shares[large], kind="stable")]
+    parts = {c: F[component == c] for c in ranked} if len(ranked) > 1 else {}
+    for i, c in enumerate(ranked):
+        own = np.unique(parts[c]) if parts else np.empty(0, dtype=np.int32)
+        probes = X[own[np.linspace(0, len(own) - 1, min(_PROBES, len(own))).astype(int)]]
+        for other in ranked[:i]:
+            box = X[parts[other].ravel()]
+            within = (X[own] > box.min(axis=0)).all() and (X[own] < box.max(axis=0)).all()
+            inside[c] |= within and bool((winding(probes, X, parts[other]) > _INSIDE).all())
+    return inside, large & ~inside
+
+
+def _edges(F: Ints) -> Ints:
+    """(3 · face, end) ends, the smaller first, of half-edge 3f + k from corner k of face f to the next."""
+    H = F[:, [1, 2, 0]]
+    return np.stack([np.minimum(F, H), np.maximum(F, H)], axis=2).reshape(-1, 2)
+
+
+def _numbered(root: Longs) -> Longs:
+    """Labels 0, 1, … instead of roots, in the order of the roots."""
+    return (np.cumsum(root == np.arange(len(root))) - 1)[root]
+
+
+def _first_of_equal(G: Ints, n: int) -> Longs:
+    """Rows, ascending, without those whose corners, in whatever order, an earlier row has."""
+    rows = np.sort(G, axis=1)
+    order = _lexicographic(rows, n)
+    new = np.r_[True, (np.diff(rows[order], axis=0) != 0).any(axis=1)][: len(rows)]
+    return np.sort(order[new])
+
+
+def _compacted(V: Floats, F: Ints, first: Ints) -> tuple[Floats, Ints, Ints]:
+    """Only the vertices in use, the faces that use them, and where every input vertex went (−1: nowhere)."""
+    used = np.zeros(len(V), dtype=bool)
+    used[F] = True
+    position = np.where(used, np.cumsum(used) - 1, -1).astype(np.int32)
+    return np.ascontiguousarray(V[used]), position[F], position[first]
+
+
+def _edge_counts(F: Ints, n: int) -> tuple[int, int, int, int]:
+    """How many edges have one face, more than two, two that disagree, and how many edges there are."""
+    ends = _edges(F)
+    order = _lexicographic(ends, n)
+    key = (ends[:, 0].astype(np.int64) * n + ends[:, 1])[order]
+    start = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
+    degree = np.diff(start, append=len(key))
+    upward = (F[:, [1, 2, 0]] > F).ravel()[order].view(np.int8)
+    disagreeing = (degree == 2) & (np.add.reduceat(upward, start) != 1)
+    return int((degree == 1).sum()), int((degree > 2).sum()), int(disagreeing.sum()), len(start)
+
+
+def _volume(X: Floats, F: Ints) -> float:
+    """Volume inside a closed surface that faces outwards, by the divergence theorem."""
+    return float(np.einsum("fx,fx->", X[F[:, 0]] - X[F[0, 0]], _area_vectors(X, F)) / 3)
+
+
+@njit(cache=True, nogil=True)
+def _area_vectors(X: Floats, F: Ints) -> Floats:
+    """(face, xyz) normals as long as the faces' areas."""
+    N = np.empty((len(F), 3))
+    for f in range(len(F)):
+        a, b, c = F[f]
+        for x in range(3):
+            y, z = (x + 1) % 3, (x + 2) % 3
+            N[f, x] = (X[b, y] - X[a, y]) * (X[c, z] - X[a, z]) - (X[b, z] - X[a, z]) * (X[c, y] - X[a, y])
+            N[f, x] *= 0.5
+    return N
+
+
+@njit(cache=True, nogil=True)
+def _needles(X: Floats, F: Ints, area: Floats) -> int:
+    """How many faces are lower than a millionth of their longest edge."""
+    count = 0
+    for f in range(len(F)):
+        longest = 0.0
+        for k in range(3):
+            a, b = F[f, k], F[f, (k + 1) % 3]
+            squared = (X[b, 0] - X[a, 0]) ** 2 + (X[b, 1] - X[a, 1]) ** 2 + (X[b, 2] - X[a, 2]) ** 2
+            longest = max(longest, squared)
+        count += 2 * area[f] <= _NEEDLE * longest
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _lexicographic(rows: Ints, n: int) -> Longs:
+    """Stable order of the rows of integers in [0, n): a counting sort per column, linear in rows + n."""
+    order = np.arange(len(rows))
+    for column in range(rows.shape[1] - 1, -1, -1):
+        begin = np.zeros(n + 1, dtype=np.int64)
+        for value in rows[:, column]:
+            begin[value + 1] += 1
+        begin = np.cumsum(begin)
+        placed = np.empty_like(order)
+        for row in order:
+            placed[begin[rows[row, column]]] = row
+            begin[rows[row, column]] += 1
+        order = placed
+    return order
+
+
+@njit(cache=True, nogil=True)
+def _find(parent: Longs, flip: Flags, f: int) -> int:
+    """Root of face f; afterwards f hangs from it directly and flip[f] is relative to it."""
+    root, relative = f, False
+    while parent[root] != root:
+        relative ^= flip[root]
+        root = parent[root]
+    while parent[f] != root and f != root:
+        parent[f], flip[f], f, relative = root, relative, parent[f], relative ^ flip[f]
+    return root
+
+
+@njit(cache=True, nogil=True)
+def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
+    """Per face: root of its patch, flip relative to it, whether it has an open end, root of its component.
+
+    Edges are joined in the order of their vertices: where a surface cannot be oriented the cut does not depend on
+    which way faces were turned before, so that a second cleaning finds nothing to turn.
+    """
+    m = len(F)
+    patch, flip, component, unused = np.arange(m), np.zeros(m, np.bool_), np.arange(m), np.zeros(m, np.bool_)
+    is_open = np.zeros(m, np.bool_)
+    i = 0
+    while i < 3 * m:
+        f, k = order[i] // 3, order[i] % 3
+        a, b = F[f, k], F[f, (k + 1) % 3]
+        j = i + 1
+        while j < 3 * m:
+            g, k = order[j] // 3, order[j] % 3
+            c, d = F[g, k], F[g, (k + 1) % 3]
+            if min(a, b) != min(c, d) or max(a, b) != max(c, d):
+                break
+            p, q = _find(component, unused, f), _find(component, unused, g)
+            component[max(p, q)] = min(p, q)
+            j += 1
+        if j - i == 2:
+            g, k = order[i + 1] // 3, order[i + 1] % 3
+            p, q = _find(patch, flip, f), _find(patch, flip, g)
+            differ = (a == F[g, k]) ^ flip[f] ^ flip[g]
+            if p != q:
+                patch[max(p, q)] = min(p, q)
+                flip[max(p, q)] = differ
+            else:
+                is_open[f] |= differ
+        else:
+            for h in range(i, j):
+                is_open[order[h] // 3] = True
+        i = j
+    for f in range(m):
+        patch[f], component[f] = _find(patch, flip, f), _find(component, unused, f)
+    return patch, flip, is_open, component
+
+
+@njit(cache=True, nogil=True)
+def _winding(P: Floats, X: Floats, F: Ints) -> Floats:
+    out = np.zeros(len(P))
+    for i in range(len(P)):
+        total = 0.0
+        for f in range(len(F)):
+            a, b, c = X[F[f, 0]] - P[i], X[F[f, 1]] - P[i], X[F[f, 2]] - P[i]
+            la, lb, lc = np.sqrt((a * a).sum()), np.sqrt((b * b).sum()), np.sqrt((c * c).sum())
+            determinant = (
+                a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+            )
+            dots = la * lb * lc + (a * b).sum() * lc + (b * c).sum() * la + (c * a).sum() * lb
+            total += np.arctan2(determinant, dots)
+        out[i] = total / (2 * np.pi)
+    return out
