@@ -23,6 +23,8 @@ Flags = NDArray[np.bool_]
 _NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
 _FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
 _INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
+_SMALLEST = 1e-100  # diagonal whose cube, and that of its inverse, is still a number
+_FAR = 1e150  # box diagonals: what lies beyond is in no face, and its square must be a number
 _PROBES = 32  # vertices of a shell that must all be inside; the box, tested first, catches most that stick out
 
 
@@ -31,7 +33,7 @@ class Cleaned:
     """A clean mesh, what was done to get it, and where every input vertex went.
 
     Input vertices = merged + unreferenced + left_out_vertices + len(V);
-    input faces = degenerate + duplicate + left_out_faces + len(F).
+    input faces = degenerate + duplicate + folded + left_out_faces + len(F).
 
     V, F          : (vertex, xyz) mesh unit · (face, corner); survivors in the input's order
     vertex_map    : (input_vertex,) its vertex in V, −1 if dropped: labels come back as `labels[vertex_map]`
@@ -39,7 +41,8 @@ class Cleaned:
     merged        : vertices welded to an earlier one
     unreferenced  : vertices, after welding, in no face
     degenerate    : faces dropped because two corners are one vertex after welding
-    duplicate     : faces dropped because an earlier one has the same three corners, turned either way
+    duplicate     : faces dropped because an earlier one has the same three corners
+    folded        : faces dropped in pairs that face away from each other on the same three corners
     needles       : faces without height, kept because taking one out would open the surface
     flipped       : faces of F turned the other way round
     shares        : (component,) share of the surface's area, in the order of the components' first faces
@@ -60,6 +63,7 @@ class Cleaned:
     unreferenced: int
     degenerate: int
     duplicate: int
+    folded: int
     needles: int
     flipped: int
     shares: Floats
@@ -79,8 +83,11 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
     """Weld, drop what is no surface, orient outwards and keep the body; cleaning twice changes nothing more.
 
     Components are what shared edges connect. Kept are the largest, and those of at least `component_share` of the area
-    that do not lie wholly inside a kept one. An arm has about 0.08 of a body's area and must stay; what floats by
+    that do not lie wholly inside a larger one. An arm has about 0.08 of a body's area and must stay; what floats by
     itself with less than 0.05 is debris, or a hand that no distance over the surface can tie to the body.
+    Faces back to back are a fin folded flat and go in pairs, which leaves every edge as even as it was; where they make
+    up `component_share` of the area they are a sheet drawn from both sides, and the first side stays.
+    Faces without height stay.
 
     V               : (vertex, xyz) finite, mesh unit
     F               : (face, corner) indices into V
@@ -92,15 +99,19 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
     if not len(F):
         raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
     corners = V[F.ravel()]
-    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    diagonal = float(np.hypot.reduce(corners.max(axis=0) / 2 - corners.min(axis=0) / 2)) * 2
+    if not _SMALLEST < diagonal < 1 / _SMALLEST:
+        raise MeshError(f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged")
     # the box of the faces alone: one stray vertex far away must not widen what counts as close
-    X = (V - corners.min(axis=0)) / (diagonal or 1.0)
+    with np.errstate(over="ignore"):
+        X = np.clip((V - corners.min(axis=0)) / diagonal, -_FAR, _FAR)
     first = welded(X, merge)
     G = first[F]
     whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
-    origin = whole[_first_of_equal(G[whole], len(V))]
+    area = np.linalg.norm(_area_vectors(X, G[whole]), axis=1)
+    distinct, folded = _distinct(G[whole], area, component_share, len(V))
+    origin, area = whole[distinct], area[distinct]
     G = G[origin]
-    area = np.linalg.norm(_area_vectors(X, G), axis=1)
     if not area.sum() > 0:
         raise MeshError(f"{name}: its {len(F)} faces have no area; the corners of each lie in one point or on one line")
     turned, component = oriented(X, G)
@@ -120,7 +131,8 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
         merged=int((~stays).sum()),
         unreferenced=int(stays.sum()) - referenced,
         degenerate=len(F) - len(whole),
-        duplicate=len(whole) - len(origin),
+        duplicate=len(whole) - folded - len(origin),
+        folded=folded,
         needles=int(_needles(X, G[keep], area[keep])),
         flipped=int(turned[keep].sum()),
         shares=shares,
@@ -228,12 +240,25 @@ def _numbered(root: Longs) -> Longs:
     return (np.cumsum(root == np.arange(len(root))) - 1)[root]
 
 
-def _first_of_equal(G: Ints, n: int) -> Longs:
-    """Rows, ascending, without those whose corners, in whatever order, an earlier row has."""
+def _distinct(G: Ints, area: Floats, sheet: float, n: int) -> tuple[Longs, int]:
+    """One face, the first, for each set of corners, without pairs back to back unless they are a sheet.
+
+    G, area : (face, corner) three different vertices below n · (face,)
+    sheet   : share of the area from which faces back to back are a sheet
+    returns : rows to keep, ascending · how many faces were back to back and are not kept
+    """
     rows = np.sort(G, axis=1)
     order = _lexicographic(rows, n)
-    new = np.r_[True, (np.diff(rows[order], axis=0) != 0).any(axis=1)][: len(rows)]
-    return np.sort(order[new])
+    start = np.flatnonzero(np.r_[True, (np.diff(rows[order], axis=0) != 0).any(axis=1)][: len(rows)])
+    first = order[start]
+    if len(first) == len(rows):
+        return np.arange(len(rows)), 0
+    ascents = (np.roll(G, -1, axis=1) > G).sum(axis=1)  # 2 one way round, 1 the other
+    paired = np.add.reduceat(2 * ascents[order] - 3, start) == 0
+    if area[first[paired]].sum() >= sheet * area[first].sum():
+        paired[:] = False
+    copies = np.diff(start, append=len(rows))
+    return np.sort(first[~paired]), int(copies[paired].sum())
 
 
 def _compacted(V: Floats, F: Ints, first: Ints) -> tuple[Floats, Ints, Ints]:

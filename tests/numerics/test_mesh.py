@@ -127,11 +127,36 @@ def test_cleaning_twice_changes_nothing_more(shape):
 def test_every_vertex_and_face_of_the_input_is_accounted_for(shape):
     V, F = together(shape, sphere(1, radius=0.01, centre=(9, 9, 9)))
     V = np.concatenate([V, V[:7], [[20.0, 20.0, 20.0]]])
-    F = np.concatenate([F, F[:5, ::-1], F[:3, [0, 0, 1]]])
+    F = np.concatenate([F, F[:5], F[:3, [0, 0, 1]]])
     c = clean(V, F)
     assert (c.merged, c.unreferenced, c.degenerate, c.duplicate, c.left_out_faces) == (7, 1, 3, 5, 80)
     assert c.merged + c.unreferenced + c.left_out_vertices + len(c.V) == len(V)
-    assert c.degenerate + c.duplicate + c.left_out_faces + len(c.F) == len(F)
+    assert c.degenerate + c.duplicate + c.folded + c.left_out_faces + len(c.F) == len(F)
+
+
+def test_fin_folded_flat_goes_and_leaves_the_surface_closed():
+    V, F = sphere()
+    a, b = F[0, :2]
+    V = np.concatenate([V, [V[a] * 1.1]])
+    tip = len(V) - 1
+    cleaned = clean(V, np.concatenate([[[a, b, tip], [b, a, tip]], F]).astype(np.int32))
+    assert (cleaned.folded, cleaned.duplicate, cleaned.unreferenced) == (2, 0, 1)
+    np.testing.assert_array_equal(cleaned.F, F)
+    assert cleaned.vertex_map[tip] == -1
+
+
+def test_face_given_three_times_is_kept_once():
+    V, F = sphere()
+    cleaned = clean(V, np.concatenate([F, F[7:8], F[7:8, [0, 2, 1]]]))
+    assert (cleaned.folded, cleaned.duplicate) == (0, 2)
+    np.testing.assert_array_equal(cleaned.F, F)
+
+
+def test_sheet_drawn_from_both_sides_becomes_one_sheet():
+    V, F = sphere()
+    cleaned = clean(V, np.concatenate([F, F[:, [0, 2, 1]]]))
+    assert (cleaned.folded, cleaned.duplicate) == (0, len(F))
+    np.testing.assert_array_equal(cleaned.F, F)
 
 
 @pytest.mark.parametrize("shape", [sphere(), box(), torus()])
@@ -155,7 +180,7 @@ def test_seam_is_closed_within_the_tolerance_and_stays_open_beyond():
 
 def test_stray_vertex_far_away_does_not_widen_the_tolerance():
     V, F = sphere()
-    cleaned = clean(np.concatenate([V, [[1e12, 0, 0]]]), F)
+    cleaned = clean(np.concatenate([V, [[1e12, 0, 0], [1e300, 0, 0]]]), F)
     assert cleaned.merged == 0
     assert cleaned.euler == 2
 
@@ -318,7 +343,8 @@ def test_any_faces_turned_any_way_end_up_agreeing(data):
         (sphere()[0], np.empty((0, 3), np.int32), "no faces, only 642 vertices"),
         (np.eye(3), np.array([[0, 0, 1], [1, 2, 2]], np.int32), "its 2 faces have no area"),
         (np.outer(np.arange(3.0), [1, 2, 3]), np.array([[0, 1, 2]], np.int32), "its 1 faces have no area"),
-        (np.ones((3, 3)), np.array([[0, 1, 2]], np.int32), "lie in one point"),
+        (np.ones((3, 3)), np.array([[0, 1, 2]], np.int32), "its bounding box has a diagonal of 0;"),
+        (np.eye(3) * 1e300, np.array([[0, 1, 2]], np.int32), r"a diagonal of 1.73e\+300; the coordinates are damaged"),
     ],
 )
 def test_what_has_no_surface_is_refused_by_name(V, F, words):
