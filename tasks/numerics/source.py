@@ -240,7 +240,8 @@ def _rate(arrays: Mapping[str, Any], name: str) -> float | None:
 def _unit(arrays: Mapping[str, Any]) -> str | None:
     unit = np.asarray(arrays["unit"][...]).reshape(-1) if "unit" in arrays else np.empty(0)
     word = unit[0] if len(unit) else ""
-    return (word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)).strip() or None
+    text = (word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)).strip()
+    return None if text in ("", "unknown") else text
 
 
 def _formats() -> str:

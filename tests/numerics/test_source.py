@@ -379,6 +379,7 @@ def test_rate_and_unit_may_be_missing():
     frames = Frames.of({key: arrays[key] for key in arrays if key not in ("fps", "unit")}, "a")
     assert frames.fps is None
     assert frames.unit is None
+    assert Frames.of(arrays | {"unit": np.array("unknown")}, "a").unit is None
 
 
 def test_what_a_caller_does_to_a_frame_does_not_reach_the_next_caller():
