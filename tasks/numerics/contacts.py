@@ -1,0 +1,159 @@
+"""Contacts: bending a limb by inverse kinematics until its end really touches another part of the body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.tasks.numerics.descriptions import suggestion, triple
+from kinetree.tasks.numerics.figures import Figure
+from kinetree.tasks.numerics.flesh import Flesh
+from kinetree.tasks.numerics.implicit import values
+from kinetree.tasks.numerics.motion import forward_kinematics
+
+Floats = npt.NDArray[np.float64]
+
+_KEYS = ("limb", "target", "begin", "end", "ramp", "direction")
+# The end of a limb sinks into the target by this share of its radius: enough for any sensible voxel to merge them.
+_SINK = 0.6
+_ROUNDS = 200
+_DAMPING = 1e-3
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The end of `limb` touches the body at `target` in frames begin to end, both included.
+
+    limb, target : joint indices
+    ramp         : frames in which the limb comes before, and leaves after
+    direction    : from the target's joint to the place that is touched, rest coordinates; None: where the limb is
+    """
+
+    limb: int
+    target: int
+    begin: int
+    end: int
+    ramp: int
+    direction: tuple[float, float, float] | None
+
+    @classmethod
+    def of(cls, figure: Figure, row: Mapping[str, Any], frames: int) -> Contact:
+        """Check a contact written as data: {limb, target, begin, end} and optionally ramp and direction.
+
+        raises : ConfigError at unknown keys or joints, at frames outside the clip, at a limb that cannot bend
+        """
+        where = f"contact {dict(row)}"
+        for key in row:
+            if key not in _KEYS:
+                raise ConfigError(f"{where}: unknown key {key!r}{suggestion(key, _KEYS)}")
+        for key in _KEYS[:4]:
+            if key not in row:
+                raise ConfigError(f"{where}: {key} is missing; a contact needs limb, target, begin and end")
+        limb, target = (figure.index(str(row[key]), where) for key in ("limb", "target"))
+        begin, end, ramp = (row.get(key, 5) for key in ("begin", "end", "ramp"))
+        if not all(isinstance(n, int) and not isinstance(n, bool) for n in (begin, end, ramp)):
+            raise ConfigError(f"{where}: begin, end and ramp must be whole numbers of frames")
+        if not 0 <= begin <= end < frames or ramp < 0:
+            raise ConfigError(f"{where}: expected 0 ≤ begin ≤ end < {frames} (the clip's frames) and ramp ≥ 0")
+        chain = bending_chain(figure, limb)
+        if not chain:
+            raise ConfigError(f"{where}: {row['limb']!r} has no joint to bend before the trunk; name the limb's end")
+        if target in figure.below(chain[-1]) - {chain[-1]}:
+            raise ConfigError(f"{where}: {row['target']!r} is part of the limb that shall touch it")
+        direction = row.get("direction")
+        if direction is not None:
+            direction = triple(where, "direction", direction)
+            if not any(direction):
+                raise ConfigError(f"{where}: direction is {direction!r}, expected three numbers, not all zero")
+        return cls(limb, target, begin, end, ramp, direction)
+
+    def weights(self, frames: int) -> Floats:
+        """(frame,) share of the contact's pose: 1 in the contact, falling steeply beside it so that the limb is free."""
+        t = np.arange(frames)
+        away = np.maximum(np.maximum(self.begin - t, t - self.end), 0)
+        return np.asarray(np.clip(1.0 - away / (self.ramp + 1.0), 0.0, 1.0) ** 2, dtype=np.float64)
+
+
+def bending_chain(figure: Figure, limb: int) -> list[int]:
+    """Joints that a limb can bend, from its end to the trunk: ancestors with at most one child that has children."""
+    parents = figure.parents
+    inner = {int(p) for p in parents if p >= 0}
+    branches = [sum(1 for c in inner if parents[c] == j) for j in range(len(parents))]
+    chain, j = [], int(parents[limb])
+    while j > 0 and branches[j] <= 1:
+        chain.append(j)
+        j = int(parents[j])
+    return chain
+
+
+def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floats) -> Floats:
+    """Joint rotations in which the limb's end touches its target, blended with the given ones beside the contact.
+
+    R       : (frame, joint, 3, 3) rotations against the parent; shift : (frame, xyz) of the root
+    returns : (frame, joint, 3, 3)
+    raises  : ConfigError if the limb is too short to reach
+    """
+    weight = contact.weights(len(R))
+    busy = np.flatnonzero(weight > 0.0)
+    chain = bending_chain(figure, contact.limb)
+    goal = _goal(figure, flesh, contact, R, shift, chain)[busy]
+    bent, miss = _reach(figure, contact.limb, chain, goal, R[busy], shift[busy])
+    held = weight[busy] == 1.0
+    if miss[held].max() > 0.002 * figure.height:
+        names = ", ".join(figure.joints[j].name for j in chain)
+        raise ConfigError(
+            f"contact of {figure.joints[contact.limb].name!r} with {figure.joints[contact.target].name!r}: turning "
+            f"{names} leaves the limb {miss[held].max():.3g} {figure.unit} short of it; choose a nearer target"
+        )
+    blended = R.copy()
+    for j in chain:
+        step = Rotation.from_matrix(np.swapaxes(R[busy, j], 1, 2) @ bent[:, j]).as_rotvec()
+        blended[busy, j] = R[busy, j] @ Rotation.from_rotvec(weight[busy, None] * step).as_matrix()
+    return blended
+
+
+def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floats, chain: list[int]) -> Floats:
+    """(frame, xyz) place of the limb's end: just under the skin, beside the target, fixed to the part it belongs to."""
+    X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
+    carrier = max(int(figure.parents[contact.target]), 0)
+    middle = (contact.begin + contact.end) // 2
+    if contact.direction is None:
+        u = G[middle, carrier].T @ (X[middle, contact.limb] - X[middle, contact.target])
+    else:
+        u = np.array(contact.direction)
+    u /= np.linalg.norm(u)
+    limb_bones = np.isin(flesh.parent, sorted(figure.below(chain[-1])))
+    cones = flesh.at(X[middle], G[middle], without=limb_bones)
+    ray = np.linspace(0.0, figure.height, 2001)
+    field, _ = values(cones, X[middle, contact.target] + ray[:, None] * (G[middle, carrier] @ u))
+    skin = ray[np.flatnonzero(field < 0.0)[-1]] if (field < 0.0).any() else 0.0
+    end = figure.joints[contact.limb]
+    depth = skin + (1.0 - _SINK) * end.radii[-1] * end.flatten
+    return X[:, contact.target] + depth * (G[:, carrier] @ u)
+
+
+def _reach(figure: Figure, limb: int, chain: list[int], goal: Floats, R: Floats, shift: Floats) -> tuple[Floats, Floats]:
+    """Damped least squares on the chain's rotations, all frames at once: (frame, joint, 3, 3) and (frame,) distance left."""
+    R = R.copy()
+    for _ in range(_ROUNDS):
+        X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
+        e = goal - X[:, limb]
+        if np.linalg.norm(e, axis=1).max() < 1e-4 * figure.height:
+            break
+        arms = np.stack([X[:, limb] - X[:, j] for j in chain], axis=1)
+        # For a rotation ω at a joint the end moves by ω × arm, so JJᵀ = Σ (|arm|² I − arm armᵀ) and ω = arm × (JJᵀ)⁻¹e.
+        A = np.einsum("tci,tci->t", arms, arms)[:, None, None] * np.eye(3) - np.einsum("tci,tcj->tij", arms, arms)
+        A += _DAMPING * np.trace(A, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+        omega = np.cross(arms, np.linalg.solve(A, e[:, :, None])[:, None, :, 0])
+        omega /= np.maximum(1.0, np.linalg.norm(omega, axis=2, keepdims=True) / 0.2)
+        for c, j in enumerate(chain):
+            P = G[:, figure.parents[j]]
+            R[:, j] = np.swapaxes(P, 1, 2) @ Rotation.from_rotvec(omega[:, c]).as_matrix() @ P @ R[:, j]
+    X, _ = forward_kinematics(figure.rest, figure.parents, R, shift)
+    return R, np.asarray(np.linalg.norm(goal - X[:, limb], axis=1), dtype=np.float64)

@@ -1,0 +1,60 @@
+"""What reconstruction does to a surface: noise along the normals, and holes."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+# Share of the noise's variance that varies smoothly over the surface, as errors of silhouettes and stereo do.
+_SMOOTH_SHARE = 0.4
+_WAVES = 32
+
+
+def vertex_normals(V: Floats, F: Ints) -> Floats:
+    """(vertex, xyz) unit normals, faces weighted by area; zero at a vertex without a face."""
+    N = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    summed = np.stack([np.bincount(F.ravel(), np.repeat(N[:, k], 3), minlength=len(V)) for k in range(3)], axis=1)
+    return np.asarray(summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300), dtype=np.float64)
+
+
+def roughened(V: Floats, F: Ints, sigma: float, wavelength: float, rng: np.random.Generator) -> Floats:
+    """Vertices moved along their normals by noise of root mean square `sigma`, part white and part smooth.
+
+    The smooth part is a sum of plane waves with random directions and lengths about `wavelength`.
+
+    V          : (vertex, xyz); sigma, wavelength : its unit
+    returns    : (vertex, xyz)
+    """
+    k = rng.normal(size=(3, _WAVES)) * (2.0 * np.pi / wavelength)
+    smooth = np.cos(np.einsum("vi,iw->vw", V, k) + rng.uniform(0.0, 2.0 * np.pi, _WAVES)).sum(axis=1)
+    noise = np.sqrt(_SMOOTH_SHARE) * smooth / np.sqrt(0.5 * _WAVES)
+    noise += np.sqrt(1.0 - _SMOOTH_SHARE) * rng.normal(size=len(V))
+    noise *= sigma / np.sqrt(np.mean(noise**2))
+    return V + noise[:, None] * vertex_normals(V, F)
+
+
+def punctured(V: Floats, F: Ints, count: int, radius: float, rng: np.random.Generator) -> tuple[Floats, Ints]:
+    """The mesh with `count` holes: around random vertices, all faces within `radius` that hang together with them.
+
+    V       : (vertex, xyz), F : (face, corner); radius : the unit of V
+    returns : the vertices that still have a face, in their order, and the faces
+    """
+    for centre in rng.choice(len(V), size=count, replace=False):
+        near = np.linalg.norm(V - V[centre], axis=1) < radius
+        near[centre] = True
+        inside = near[F].all(axis=1) | (centre == F).any(axis=1)
+        corners = F[inside]
+        links = coo_matrix(
+            (np.ones(2 * len(corners)), (corners[:, :2].ravel(), corners[:, 1:].ravel())), shape=(len(V), len(V))
+        )
+        _, patch = connected_components(links, directed=False)
+        F = F[~(inside & (patch[F[:, 0]] == patch[centre]))]
+    used = np.unique(F)
+    renamed = np.full(len(V), -1, dtype=np.int64)
+    renamed[used] = np.arange(len(used))
+    return V[used], renamed[F]

@@ -1,0 +1,200 @@
+"""Implicit figures: generalized cylinders blended along their tree, evaluated on a sparse grid near their surface.
+
+A limb is the set |e| < r(t), where e leads from the nearest point of its axis and r is a smooth radius profile.
+Limbs that meet at a joint blend by a polynomial smooth minimum whose width shrinks where their gradients agree
+(gradient-based blending, after Gourmel et al. 2013), so that a straight limb gets no bulge and a bent one no crease.
+All other limbs meet by the plain minimum: they merge when they touch and not before.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+_BLOCK = 4
+
+
+class Cones(NamedTuple):
+    """Limbs at one pose, as the compiled kernels read them.
+
+    A, D    : (limb, xyz) start and vector to the end; side : (limb, xyz) unit direction in which it is flat
+    table   : (limb, knot) radius at even steps; flat : (limb,) share of the radius kept along `side`
+    first   : (blend + 1,) where each blend's limbs begin in `members`; reach : (blend,) its width
+    slope   : Lipschitz bound of every limb's value
+    """
+
+    A: Floats
+    D: Floats
+    side: Floats
+    table: Floats
+    flat: Floats
+    first: Ints
+    members: Ints
+    reach: Floats
+    slope: float
+
+
+def values(cones: Cones, P: Floats, near: npt.NDArray[np.bool_] | None = None) -> tuple[Floats, Floats]:
+    """Field and its approximate unit gradient at points: negative inside, about the distance near the surface.
+
+    P       : (point, xyz)
+    near    : (point, limb) limbs that exist for each point; all of them when None
+    returns : (point,) in the figure's unit, (point, xyz)
+    """
+    if near is None:
+        near = np.ones((1, len(cones.A)), dtype=np.bool_)
+    return _values(cones, np.ascontiguousarray(P), near)
+
+
+def limb_distances(cones: Cones, P: Floats) -> Floats:
+    """How far every limb is from points: its own value plus half of how far the point lies past the ends of its axis.
+
+    Past a joint the balls of both limbs are equally near; the second term gives the point to the limb beside it.
+
+    P       : (point, xyz)
+    returns : (point, limb) in the figure's unit
+    """
+    return _limb_distances(cones, np.ascontiguousarray(P))
+
+
+def grid_values(cones: Cones, origin: Floats, spacing: float, shape: tuple[int, int, int], band: float) -> Floats:
+    """Field on a grid, exact where its magnitude is below `band` and clipped to ±band elsewhere.
+
+    origin  : (xyz) of grid point (0, 0, 0); spacing : between neighbours, the figure's unit
+    returns : shape, in the figure's unit
+    """
+    return _grid_values(cones, np.asarray(origin, dtype=np.float64), float(spacing), shape, float(band))
+
+
+def extent(cones: Cones) -> tuple[Floats, Floats]:
+    """Corners (xyz), (xyz) of the box that holds every limb that is present."""
+    r = cones.table.max(axis=1)
+    held = r > 0.0
+    ends = np.stack([cones.A[held], cones.A[held] + cones.D[held]])
+    grow = (r[held] + 0.25 * cones.reach.max())[:, None]
+    return (ends - grow).min(axis=(0, 1)), (ends + grow).max(axis=(0, 1))
+
+
+@njit(cache=True, nogil=True)
+def _limb(cones, b, x, y, z, seen):  # type: ignore[no-untyped-def]
+    """Value of limb b and its unit gradient into seen[b]."""
+    ax, ay, az = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
+    sx, sy, sz = cones.side[b, 0], cones.side[b, 1], cones.side[b, 2]
+    x, y, z = x - cones.A[b, 0], y - cones.A[b, 1], z - cones.A[b, 2]
+    t = min(max((x * ax + y * ay + z * az) / (ax * ax + ay * ay + az * az), 0.0), 1.0)
+    x, y, z = x - t * ax, y - t * ay, z - t * az
+    squeeze = 1.0 / cones.flat[b] - 1.0
+    along = squeeze * (x * sx + y * sy + z * sz)
+    x, y, z = x + along * sx, y + along * sy, z + along * sz
+    length = np.sqrt(x * x + y * y + z * z) + 1e-300
+    s = t * (cones.table.shape[1] - 1)
+    i = min(int(s), cones.table.shape[1] - 2)
+    r = cones.table[b, i] + (s - i) * (cones.table[b, i + 1] - cones.table[b, i])
+    seen[b, 0] = (length - r) * cones.flat[b]
+    if squeeze > 0.0:
+        along = squeeze * (x * sx + y * sy + z * sz)
+        x, y, z = x + along * sx, y + along * sy, z + along * sz
+        length = np.sqrt(x * x + y * y + z * z) + 1e-300
+    seen[b, 1], seen[b, 2], seen[b, 3] = x / length, y / length, z / length
+
+
+@njit(cache=True, nogil=True)
+def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
+    """Value and gradient of the blended union of the limbs marked in `near` into out."""
+    out[0] = np.inf
+    for b in range(len(near)):
+        if near[b]:
+            _limb(cones, b, x, y, z, seen)
+            if seen[b, 0] < out[0]:
+                out[:] = seen[b]
+    for g in range(len(cones.reach)):
+        count = 0
+        d, gx, gy, gz = 0.0, 0.0, 0.0, 0.0
+        for m in range(cones.first[g], cones.first[g + 1]):
+            b = cones.members[m]
+            if not near[b]:
+                continue
+            count += 1
+            e, hx, hy, hz = seen[b, 0], seen[b, 1], seen[b, 2], seen[b, 3]
+            if count == 1:
+                d, gx, gy, gz = e, hx, hy, hz
+                continue
+            width = 0.5 * cones.reach[g] * (1.0 - (gx * hx + gy * hy + gz * hz)) + 1e-12
+            h = max(width - abs(d - e), 0.0) / width
+            w = 1.0 - 0.5 * h if d < e else 0.5 * h
+            d = min(d, e) - 0.25 * h * h * width
+            gx, gy, gz = w * gx + (1.0 - w) * hx, w * gy + (1.0 - w) * hy, w * gz + (1.0 - w) * hz
+            length = np.sqrt(gx * gx + gy * gy + gz * gz) + 1e-300
+            gx, gy, gz = gx / length, gy / length, gz / length
+        if count > 1 and d < out[0]:
+            out[0], out[1], out[2], out[3] = d, gx, gy, gz
+
+
+@njit(cache=True, nogil=True)
+def _values(cones, P, near):  # type: ignore[no-untyped-def]
+    f, g = np.empty(len(P)), np.empty((len(P), 3))
+    seen, out = np.empty((len(cones.A), 4)), np.empty(4)
+    for i in range(len(P)):
+        _field(cones, near[min(i, len(near) - 1)], P[i, 0], P[i, 1], P[i, 2], seen, out)
+        f[i] = out[0]
+        g[i] = out[1:]
+    return f, g
+
+
+@njit(cache=True, nogil=True)
+def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
+    d, seen = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
+    for b in range(len(cones.A)):
+        length = np.sqrt((cones.D[b] ** 2).sum())
+        for i in range(len(P)):
+            _limb(cones, b, P[i, 0], P[i, 1], P[i, 2], seen)
+            along = ((P[i] - cones.A[b]) * cones.D[b]).sum() / length
+            d[i, b] = seen[b, 0] + 0.5 * max(0.0, -along, along - length)
+    return d
+
+
+@njit(cache=True, nogil=True)
+def _grid_values(cones, origin, spacing, shape, band):  # type: ignore[no-untyped-def]
+    """Blocks whose centre proves them far from the surface are filled with ±band; the others see only near limbs."""
+    field = np.empty(shape)
+    near = np.ones(len(cones.A), dtype=np.bool_)
+    seen, out = np.empty((len(cones.A), 4)), np.empty(4)
+    half = 0.5 * (_BLOCK - 1) * spacing
+    sweep = cones.slope * half * np.sqrt(3.0)
+    width = cones.reach.max() if len(cones.reach) else 0.0
+    for i0 in range(0, shape[0], _BLOCK):
+        i1 = min(i0 + _BLOCK, shape[0])
+        for j0 in range(0, shape[1], _BLOCK):
+            j1 = min(j0 + _BLOCK, shape[1])
+            for k0 in range(0, shape[2], _BLOCK):
+                k1 = min(k0 + _BLOCK, shape[2])
+                x, y, z = (
+                    origin[0] + i0 * spacing + half,
+                    origin[1] + j0 * spacing + half,
+                    origin[2] + k0 * spacing + half,
+                )
+                least = np.inf
+                for b in range(len(near)):
+                    _limb(cones, b, x, y, z, seen)
+                    least = min(least, seen[b, 0])
+                if least > sweep + 0.25 * width + band:
+                    field[i0:i1, j0:j1, k0:k1] = band
+                    continue
+                if least < -sweep - band:
+                    field[i0:i1, j0:j1, k0:k1] = -band
+                    continue
+                for b in range(len(near)):
+                    near[b] = seen[b, 0] <= least + 2.0 * sweep + width
+                for i in range(i0, i1):
+                    for j in range(j0, j1):
+                        for k in range(k0, k1):
+                            x, y, z = origin[0] + i * spacing, origin[1] + j * spacing, origin[2] + k * spacing
+                            _field(cones, near, x, y, z, seen, out)
+                            field[i, j, k] = min(max(out[0], -band), band)
+    return field
