@@ -1,23 +1,23 @@
 """What can go wrong, as one tree: whoever catches `KinetreeError` catches everything kinetree raises on purpose.
 
-    KinetreeError
-    ├── InputError                the user's input is wrong; exit code 2, never a traceback
-    │   ├── ConfigError           a key, a value or a path in a configuration
-    │   ├── SourceError           the sequence cannot be found or listed
-    │   ├── MeshError             one mesh cannot be read or used
-    │   │   └── DisconnectedMeshError   a distance between two components was asked for
-    │   ├── StoreError            the folder is not a store, or cannot be read or written
-    │   │   └── StoreFullError    no space is left on the device
-    │   ├── ClusterError          nobody answers at the scheduler's address
-    │   └── UnknownNodeError      no such task, node, run or artifact
-    ├── GraphError                the declarations do not make a graph; raised at import
-    │   ├── TwoWritersError       two tasks return the same artifact
-    │   ├── MissingWriterError    an argument's type is returned by no task
-    │   └── CycleError            a task waits for itself
-    ├── ArtifactError             a value breaks its schema
-    ├── DamagedArtifactError      a stored artifact lost or changed bytes; it is computed again
-    ├── StaleWorkerError          a worker runs other code than the one that planned
-    └── NodesFailedError          the run ended and some nodes failed; exit code 1
+KinetreeError
+├── InputError                the user's input is wrong; exit code 2, never a traceback
+│   ├── ConfigError           a key, a value or a path in a configuration
+│   ├── SourceError           the sequence cannot be found or listed
+│   ├── MeshError             one mesh cannot be read or used
+│   │   └── DisconnectedMeshError   a distance between two components was asked for
+│   ├── StoreError            the folder is not a store, or cannot be read or written
+│   │   └── StoreFullError    no space is left on the device
+│   ├── ClusterError          nobody answers at the scheduler's address
+│   └── UnknownNodeError      no such task, node, run or artifact
+├── GraphError                the declarations do not make a graph; raised at import
+│   ├── TwoWritersError       two tasks return the same artifact
+│   ├── MissingWriterError    an argument's type is returned by no task
+│   └── CycleError            a task waits for itself
+├── ArtifactError             a value breaks its schema
+├── DamagedArtifactError      a stored artifact lost or changed bytes; it is computed again
+├── StaleWorkerError          a worker runs other code than the one that planned
+└── NodesFailedError          the run ended and some nodes failed; exit code 1
 """
 
 

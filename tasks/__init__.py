@@ -1,4 +1,23 @@
-"""kinetree.tasks."""
+"""The papers' table of contents: every operation, in the order in which the papers tell it.
+
+MESOSCOPIC: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default.
+"""
 
 if __name__ != "kinetree.tasks":
     raise ImportError(f"import kinetree.tasks, not {__name__}: the top-level folders are not packages of their own")
+
+from kinetree.pipeline.graph import Graph
+from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.mesh import mesh
+from kinetree.tasks.sequence import sequence
+from kinetree.tasks.source import source
+
+MESOSCOPIC = (
+    source,  # Sec. 3
+    sequence,
+    mesh,
+    connectivity,  # Sec. 7
+)
+
+METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}
+"""The graph of each method, checked when this package is imported."""

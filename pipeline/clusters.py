@@ -1,0 +1,64 @@
+"""Where parcels are computed on dask's distributed scheduler: workers of this machine, or any scheduler's address."""
+
+import contextlib
+import logging
+from collections.abc import Iterator
+from typing import Any
+
+from distributed import Client, LocalCluster
+
+from kinetree.pipeline.errors import ClusterError
+
+CONNECT_SECONDS = 10
+
+
+@contextlib.contextmanager
+def local(workers: int, memory: str | None) -> Iterator[Client]:
+    """Processes of this machine, one thread each, gone when the block ends, however it ends."""
+    with _quiet(), contextlib.ExitStack() as stack:
+        cluster = stack.enter_context(
+            LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=memory or 0,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+            )
+        )
+        yield stack.enter_context(Client(cluster))
+
+
+@contextlib.contextmanager
+def at(address: str) -> Iterator[Client]:
+    """A scheduler that somebody else runs; raises ClusterError where nobody answers or it has no workers."""
+    try:
+        client = Client(address, timeout=CONNECT_SECONDS)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ClusterError(
+            f"--scheduler {address}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
+            " check the address and that the scheduler runs (dask scheduler), or leave --scheduler out"
+        ) from error
+    with client:
+        if not client.scheduler_info()["workers"]:
+            raise ClusterError(f"--scheduler {address}: the scheduler has no workers; start some (dask worker {address})")
+        yield client
+
+
+def slots(client: Client) -> int:
+    """How many parcels the workers compute at the same time."""
+    return max(1, sum(int(n) for n in client.nthreads().values()))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """A worker that was killed is our message to give, not a page of the library's log."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.nanny", "distributed.scheduler")]
+    before: list[Any] = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)

@@ -1,0 +1,221 @@
+"""Configuration: one block of parameters per task, and what cannot change a result (output, store, compute) beside them.
+
+A value comes from, last wins: the schema's default, the preset a file `extends`, the file, `--set task.name=value`.
+"""
+
+import importlib.resources
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.suggest import nearest
+from kinetree.schemas.array import Params
+from kinetree.schemas.source import SourceParams
+
+PRESETS = importlib.resources.files("kinetree.configs")
+SAVED = "config.yaml"
+"""Name under which a run leaves its configuration in its output folder."""
+M = TypeVar("M", bound=BaseModel)
+PATHS = SourceParams.path_fields()
+RUN_KEYS = ("extends", "method", "output", "store", "compute")
+
+
+class Compute(BaseModel):
+    """Where and how wide a run is computed; never part of a key."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    executor: Literal["sync", "threads", "processes"] = "threads"
+    """sync: in this thread, for debugging; threads: in this process; processes: worker processes of this machine."""
+    workers: int | None = Field(default=None, ge=1, le=4096)
+    """How many at the same time; None takes one per core."""
+    memory: str | None = None
+    """Memory limit of one worker process, e.g. 4GB; None sets none."""
+    scheduler: str | None = None
+    """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
+
+    @property
+    def worker_count(self) -> int:
+        """Workers to start on this machine."""
+        return self.workers or len(os.sched_getaffinity(0))
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked configuration; `params` has an entry for every task that has parameters."""
+
+    method: str
+    params: Mapping[str, Params]
+    output: Path
+    store: Path
+    compute: Compute
+
+    def saved(self) -> dict[str, Any]:
+        """What differs from the defaults, as the YAML a run leaves in its output folder; paths are absolute."""
+        told: dict[str, Any] = {"method": self.method, "output": str(self.output), "store": str(self.store)}
+        for name, params in self.params.items():
+            changed = params.model_dump(mode="json", exclude_defaults=True)
+            if changed:
+                told[name] = changed
+        compute = self.compute.model_dump(mode="json", exclude_defaults=True)
+        return {**told, "compute": compute} if compute else told
+
+
+def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Graph], sets: Iterable[str] = ()) -> Config:
+    """The configuration at `target`: a YAML file, a preset's name, an earlier run's output folder, a mapping, or nothing.
+
+    sets   : overrides as task.name=value, the value in YAML
+    raises : ConfigError, naming file and key, with the nearest known key
+    """
+    blocks, where = _blocks(target)
+    for text in sets:
+        _override(blocks, text)
+    method = blocks.get("method", "mesoscopic")
+    if method not in methods:
+        raise ConfigError(f"{where}: method {method!r}; {nearest(str(method), methods)}")
+    graph = methods[method]
+    known = {task.name: task.params for task in graph.tasks if task.params is not None}
+    _refuse_unknown(blocks, {*known, *RUN_KEYS}, where)
+    params = {name: checked(cls, blocks.get(name) or {}, f"{where}: {name}") for name, cls in known.items()}
+    output = Path(str(blocks.get("output") or "kinetree-output")).expanduser().absolute()
+    store = Path(str(blocks.get("store") or output / "store")).expanduser()
+    return Config(method, params, output, store.absolute(), checked(Compute, _compute(blocks), f"{where}: compute"))
+
+
+def with_compute(config: Config, **changes: Any) -> Config:
+    """The configuration with some of its compute settings replaced; None leaves one as it is."""
+    told = {**config.compute.model_dump(), **{k: v for k, v in changes.items() if v is not None}}
+    return replace(config, compute=checked(Compute, told, "compute"))
+
+
+def checked(cls: type[M], values: Any, where: str) -> M:
+    """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key."""
+    if not isinstance(values, Mapping):
+        raise ConfigError(f"{where}: expected keys with values, got {values!r}")
+    try:
+        return cls.model_validate(dict(values))
+    except ValidationError as error:
+        told = [_told(where, cls, fault) for fault in error.errors()]
+        raise ConfigError("\n".join(told)) from None
+
+
+def preset_names() -> list[str]:
+    """Names of the presets that ship with kinetree."""
+    return sorted(f.name.removesuffix(".yaml") for f in PRESETS.iterdir() if f.name.endswith(".yaml"))
+
+
+def _told(where: str, cls: type[BaseModel], fault: Any) -> str:
+    key = ".".join(str(part) for part in fault["loc"])
+    if fault["type"] == "extra_forbidden":
+        return f"{where}.{key}: no such key; {nearest(key, cls.model_fields)}"
+    return f"{where}.{key}: {fault['msg'][:1].lower()}{fault['msg'][1:]}, got {fault['input']!r}"
+
+
+def _blocks(target: str | Path | Mapping[str, Any] | None) -> tuple[dict[str, Any], str]:
+    if target is None:
+        return {}, "config"
+    if isinstance(target, Mapping):
+        return _extended(dict(target), Path.cwd(), "config", ())
+    path = Path(target).expanduser()
+    if path.is_dir():
+        if not (path / SAVED).is_file():
+            raise ConfigError(f"{path}: no {SAVED} in this folder, so it is not the output of a run; give a YAML file")
+        path = path / SAVED
+    if path.is_file():
+        return _file(path, ())
+    if str(target) in preset_names():
+        return _file(PRESETS / f"{target}.yaml", ())
+    raise ConfigError(f"{target}: no such file, output folder or preset; presets: {', '.join(preset_names())}")
+
+
+def _file(path: Any, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
+    if str(path) in seen:
+        raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
+    try:
+        blocks = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark else ""
+        raise ConfigError(f"{path}{line}: not valid YAML: {getattr(error, 'problem', None) or error}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read: {error}") from None
+    if blocks is not None and not isinstance(blocks, dict):
+        raise ConfigError(f"{path}: expected keys with values at the top, got {type(blocks).__name__}")
+    base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
+    return _extended(blocks or {}, base, str(path), (*seen, str(path)))
+
+
+def _extended(blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
+    """The blocks with their paths made absolute, over those of the preset or file they extend."""
+    blocks = _absolute(blocks, base)
+    parent = blocks.pop("extends", None)
+    if parent is None:
+        return blocks, where
+    found = PRESETS / f"{parent}.yaml" if str(parent) in preset_names() else base / str(parent)
+    if not found.is_file():
+        raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({', '.join(preset_names())}) nor a file")
+    below, _ = _file(found, seen)
+    return _merged(below, blocks), where
+
+
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
+        merged[key] = {**merged[key], **value} if both else value
+    return merged
+
+
+def _absolute(blocks: dict[str, Any], base: Path) -> dict[str, Any]:
+    """Paths are relative to the file that names them."""
+    told = dict(blocks)
+    for key in ("output", "store"):
+        if isinstance(told.get(key), str) and "://" not in told[key]:
+            told[key] = str(base / Path(told[key]).expanduser())
+    source = told.get("source")
+    if isinstance(source, Mapping):
+        paths = {n: str(base / Path(v).expanduser()) for n, v in source.items() if n in PATHS and isinstance(v, str) and v}
+        told["source"] = {**source, **paths}
+    return told
+
+
+def _override(blocks: dict[str, Any], text: str) -> None:
+    key, equals, value = text.partition("=")
+    task, dot, name = key.strip().partition(".")
+    if not equals or not task:
+        raise ConfigError(f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1")
+    try:
+        parsed = yaml.safe_load(value)
+    except yaml.YAMLError:
+        raise ConfigError(f"--set {text}: {value!r} is not valid YAML") from None
+    if not dot:
+        blocks.update(_absolute({task: parsed}, Path.cwd()))
+        return
+    block = blocks.get(task)
+    if block is not None and not isinstance(block, Mapping):
+        raise ConfigError(f"--set {text}: {task} has no keys of its own")
+    blocks[task] = {**(block or {}), **_absolute({task: {name: parsed}}, Path.cwd())[task]}
+
+
+def _refuse_unknown(blocks: Mapping[str, Any], known: Iterable[str], where: str) -> None:
+    for key in blocks:
+        if key not in known:
+            raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), known)}")
+
+
+def _compute(blocks: Mapping[str, Any]) -> Any:
+    """The compute block, or the named one of configs/compute."""
+    found = blocks.get("compute")
+    if not isinstance(found, str):
+        return found or {}
+    names = sorted(f.name.removesuffix(".yaml") for f in (PRESETS / "compute").iterdir() if f.name.endswith(".yaml"))
+    if found not in names:
+        raise ConfigError(f"compute {found!r}; {nearest(found, names)}")
+    return _file(PRESETS / "compute" / f"{found}.yaml", ())[0]

@@ -1,0 +1,44 @@
+"""What differs between two runs, and from where: the difference is told at the nodes where it begins."""
+
+from typing import Any
+
+from kinetree.pipeline.reason import Work, differences
+from kinetree.pipeline.store import Store
+
+
+def difference(store: Store, a: dict[str, Any], b: dict[str, Any]) -> dict[str, Any]:
+    """Nodes that only one run has, nodes whose artifacts differ, and among those the ones where it begins, with reasons.
+
+    A difference begins at a node whose own parameters or code differ, or at an origin that found other content.
+    """
+    before, after = a["nodes"], b["nodes"]
+    changed = [n for n in after if n in before and before[n].get("artifact") != after[n].get("artifact")]
+    begins: dict[str, list[str]] = {}
+    for label in [n for n in after if n in before and before[n].get("key") != after[n].get("key")] + changed:
+        told = _begins(store, label, before[label], after[label])
+        if told:
+            begins[label] = told
+    return {
+        "a": a["name"],
+        "b": b["name"],
+        "only_a": [n for n in before if n not in after],
+        "only_b": [n for n in after if n not in before],
+        "changed": changed,
+        "begins": begins,
+    }
+
+
+def _begins(store: Store, label: str, before: dict[str, Any], after: dict[str, Any]) -> list[str]:
+    if "values" in before or "values" in after:
+        return [f"input: {_content(before)} → {_content(after)}"]
+    then, now = (store.record(told["key"]) if told.get("key") else None for told in (before, after))
+    if then is None or now is None:
+        return [f"{'not computed' if not after.get('key') else 'its record was removed'} in one of the runs"]
+    told = differences(Work(now.params, now.code, now.inputs), then)
+    own = [str(reason) for reason in told if reason.kind in ("params", "code")]
+    return own or ([] if told else [f"{label} gave another result from the same inputs"] * (then.artifact != now.artifact))
+
+
+def _content(told: dict[str, Any]) -> str:
+    values = told.get("values") or {}
+    return str(values.get("content") or values or "nothing")[:12]

@@ -1,0 +1,192 @@
+"""The graph of tasks as their signatures draw it: who writes what, who reads whom, who opens which index.
+
+Everything here is about types; nothing knows which frames or intervals exist. A graph that cannot work is refused when it
+is made, which is when `kinetree.tasks` is imported.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import networkx as nx
+
+from kinetree.pipeline.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
+from kinetree.pipeline.suggest import nearest
+from kinetree.pipeline.task import Argument, Space, Task, space
+from kinetree.schemas.array import Artifact
+
+AnyTask = Task[..., Any]
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Tasks in an order in which each comes after what it reads."""
+
+    tasks: tuple[AnyTask, ...]
+
+    @staticmethod
+    def of(tasks: Iterable[AnyTask]) -> "Graph":
+        """The graph of these tasks.
+
+        raises : TwoWritersError, MissingWriterError, CycleError, GraphError; each names the places in the code
+        """
+        unordered = Graph(tuple(tasks))
+        _one_writer_each(unordered.tasks)
+        _every_edge_has_a_writer(unordered)
+        _every_space_is_opened_once(unordered)
+        ordered = Graph(_ordered(unordered))
+        for task in ordered.tasks:
+            for argument in task.arguments:
+                ordered.gathered_space(task, argument)
+        return ordered
+
+    @cached_property
+    def by_name(self) -> dict[str, AnyTask]:
+        """Tasks by name."""
+        return {task.name: task for task in self.tasks}
+
+    @cached_property
+    def writers(self) -> dict[type[Artifact], AnyTask]:
+        """The task that writes each artifact class."""
+        return {task.returns: task for task in self.tasks}
+
+    @cached_property
+    def openers(self) -> dict[Space, AnyTask]:
+        """The task whose artifact lists the members of each space's last dimension."""
+        found = {task.over: task for task in self.tasks if task.is_origin and task.over}
+        found.update({space(path): task for task in self.tasks for path in task.returns.opens})
+        return found
+
+    def task(self, name: str) -> AnyTask:
+        """The task of that name; raises UnknownNodeError with the nearest one."""
+        if name not in self.by_name:
+            raise UnknownNodeError(f"no task {name!r}; {nearest(name, self.by_name)}")
+        return self.by_name[name]
+
+    def reads(self, task: AnyTask) -> tuple[AnyTask, ...]:
+        """Tasks that must be known before this one can run or even be laid out, itself left out."""
+        found = [self.writers[a.artifact] for a in task.arguments if a.form != "previous"]
+        found += [self.openers[s] for s in self.needed_spaces(task)]
+        if task.along is not None:
+            found.append(self.writers[task.along])
+        return tuple(dict.fromkeys(t for t in found if t is not task))
+
+    def needed_spaces(self, task: AnyTask) -> tuple[Space, ...]:
+        """The spaces whose members must be listed for this task: its own with all prefixes, and those it gathers over."""
+        wanted = [task.over] + [
+            self.gathered_space(task, a) for a in task.arguments if a.form in ("tuple", "mapping")
+        ]
+        return tuple(dict.fromkeys(s[:depth] for s in wanted for depth in range(1, len(s) + 1)))
+
+    def gathered_space(self, task: AnyTask, argument: Argument) -> Space:
+        """The space over which an argument is read: frames *of this interval* where such a space is opened, else all."""
+        writer = self.writers[argument.artifact]
+        if argument.form == "previous":
+            return task.over
+        missing = tuple(d for d in writer.over if d not in task.over)
+        told = f"{task.name} ({task.where}): argument {argument.name}"
+        if argument.form == "one":
+            if missing:
+                raise GraphError(
+                    f"{told} is one {argument.artifact.__name__}, but {writer.name} ({writer.where}) writes one per"
+                    f" {'/'.join(writer.over)}; write tuple[{argument.artifact.__name__}, ...] to gather them"
+                )
+            return writer.over
+        if not missing:
+            raise GraphError(f"{told} gathers {argument.artifact.__name__}, of which there is one at its index")
+        if argument.form == "mapping" and len(missing) != 1:
+            raise GraphError(f"{told} maps from one number, but gathers over {'/'.join(missing)}; use a tuple")
+        joint = task.over + missing
+        if joint in self.openers:
+            return joint
+        if writer.over not in self.openers:
+            raise GraphError(f"{told} gathers over {'/'.join(writer.over)}, which nothing opens")
+        return writer.over
+
+    def until(self, names: Sequence[str]) -> "Graph":
+        """The graph that is needed to run the named tasks and no more."""
+        kept: set[str] = set()
+        waiting = [self.task(name) for name in names]
+        while waiting:
+            task = waiting.pop()
+            if task.name not in kept:
+                kept.add(task.name)
+                waiting.extend(self.reads(task))
+        return Graph(tuple(task for task in self.tasks if task.name in kept))
+
+    def networkx(self) -> "nx.DiGraph[str]":
+        """Task names as nodes (with over, artifact, params, paper, summary), edges with argument name and form."""
+        drawn: nx.DiGraph[str] = nx.DiGraph()
+        for task in self.tasks:
+            drawn.add_node(
+                task.name,
+                over="/".join(task.over),
+                artifact=task.returns.__name__,
+                params=task.params.__name__ if task.params else None,
+                paper=task.paper,
+                summary=task.summary,
+            )
+        for task in self.tasks:
+            for a in task.arguments:
+                drawn.add_edge(self.writers[a.artifact].name, task.name, argument=a.name, form=a.form)
+        return drawn
+
+
+def _one_writer_each(tasks: Sequence[AnyTask]) -> None:
+    writers: dict[type[Artifact], AnyTask] = {}
+    names: dict[str, AnyTask] = {}
+    for task in tasks:
+        writer = writers.setdefault(task.returns, task)
+        if writer is not task:
+            raise TwoWritersError(f"two tasks write {task.returns.__name__}: {writer.where} and {task.where}")
+        namesake = names.setdefault(task.name, task)
+        if namesake is not task:
+            raise TwoWritersError(f"two tasks are named {task.name}: {namesake.where} and {task.where}")
+
+
+def _every_edge_has_a_writer(graph: Graph) -> None:
+    for task in graph.tasks:
+        wanted = [(f"argument {a.name}", a.artifact) for a in task.arguments]
+        wanted += [("the traversal it goes along", task.along)] if task.along else []
+        for what, artifact in wanted:
+            if artifact not in graph.writers:
+                raise MissingWriterError(
+                    f"{task.name} ({task.where}): {what} is {artifact.__name__}"
+                    f" ({artifact.__module__}), which no task writes"
+                )
+
+
+def _every_space_is_opened_once(graph: Graph) -> None:
+    seen: dict[Space, AnyTask] = {}
+    for task in graph.tasks:
+        opened = [space(path) for path in task.returns.opens] + ([task.over] if task.is_origin and task.over else [])
+        for path in opened:
+            if not set(task.over) <= set(path[: None if task.is_origin else -1]):
+                raise GraphError(
+                    f"{task.name} ({task.where}) runs over {'/'.join(task.over)} and cannot open {'/'.join(path)}"
+                )
+            if path in seen:
+                raise TwoWritersError(f"two tasks open {'/'.join(path)}: {seen[path].where} and {task.where}")
+            seen[path] = task
+    for task in graph.tasks:
+        for depth in range(1, len(task.over) + 1):
+            if task.over[:depth] not in seen:
+                raise MissingWriterError(
+                    f"{task.name} ({task.where}) runs over {'/'.join(task.over)}, but no task opens"
+                    f" {'/'.join(task.over[:depth])}"
+                )
+
+
+def _ordered(graph: Graph) -> tuple[AnyTask, ...]:
+    """Topological order, ties in the order of declaration."""
+    edges: nx.DiGraph[str] = nx.DiGraph()
+    edges.add_nodes_from(task.name for task in graph.tasks)
+    edges.add_edges_from((read.name, task.name) for task in graph.tasks for read in graph.reads(task))
+    rank = {task.name: n for n, task in enumerate(graph.tasks)}
+    if not nx.is_directed_acyclic_graph(edges):
+        ring = [edge[0] for edge in nx.find_cycle(edges)]
+        places = " → ".join(f"{name} ({graph.by_name[name].where})" for name in [*ring, ring[0]])
+        raise CycleError(f"tasks wait for each other: {places}")
+    in_order: Any = nx.lexicographical_topological_sort
+    return tuple(graph.by_name[name] for name in in_order(edges, key=rank.__getitem__))

@@ -1,0 +1,93 @@
+"""What runs leave in the store: which nodes they used, so that a later plan can say what changed and gc what is needed."""
+
+import os
+import secrets
+import socket
+import time
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+from kinetree.pipeline.config import Config
+from kinetree.pipeline.events import Account
+from kinetree.pipeline.execute import versions
+from kinetree.pipeline.node import Node, label
+from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.store import Record, Store
+
+FORMAT = "kinetree.run/1"
+
+
+@dataclass
+class History:
+    """The runs of one store, seen from one output folder."""
+
+    store: Store
+    output: str
+    _nodes: dict[str, Any] | None = None
+
+    def recall(self, node: str) -> Record | None:
+        """What the node computed in the last run that is on record, of the same output folder if there is one."""
+        if self._nodes is None:
+            self._nodes = self._last_nodes()
+        key = (self._nodes.get(node) or {}).get("key")
+        return self.store.record(key) if key else None
+
+    def runs(self) -> list[dict[str, Any]]:
+        """Every run on record without its nodes, oldest first."""
+        return [{k: v for k, v in self.store.run(n).items() if k != "nodes"} for n in self.store.run_names()]
+
+    def _last_nodes(self) -> dict[str, Any]:
+        runs = [self.store.run(name) for name in reversed(self.store.run_names())]
+        mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]
+        nodes: dict[str, Any] = {}
+        for run in mine or runs:
+            known: dict[str, Any] = run.get("nodes", {})
+            nodes = {**{name: told for name, told in known.items() if told.get("key")}, **nodes}
+        return nodes
+
+
+def new_name() -> str:
+    """A run's name: its start in UTC, and four digits against runs that start together."""
+    return f"{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
+
+
+def opening(name: str, config: Config) -> dict[str, Any]:
+    """The record of a run that has begun."""
+    return {
+        "format": FORMAT,
+        "name": name,
+        "status": "running",
+        "started": datetime.now(UTC).isoformat(timespec="milliseconds"),
+        "epoch": time.time(),
+        "host": socket.gethostname(),
+        "pid": os.getpid(),
+        "output": str(config.output),
+        "config": config.saved(),
+        "nodes": {},
+    }
+
+
+def closing(opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> dict[str, Any]:
+    """The record of a run that is over."""
+    nodes: dict[str, dict[str, Any]] = {
+        e.label: {"state": e.state, "key": e.key, "artifact": e.artifact} for e in schedule.entries.values()
+    }
+    for task, found in schedule.given.items():
+        over = schedule.graph.by_name[task].over
+        for index, artifact in found.items():
+            nodes[label(Node(task, index), over)]["values"] = artifact.plain()
+    told = summary(account, status, seconds)
+    return {**opened, **told, "counts": told["nodes"], "nodes": nodes}
+
+
+def summary(account: Account, status: str, seconds: float) -> dict[str, Any]:
+    """What run.json holds."""
+    return {
+        "status": status,
+        "nodes": account.nodes(),
+        "tasks": account.tasks,
+        "failures": account.failures,
+        "seconds": round(seconds, 3),
+        "versions": versions(),
+    }

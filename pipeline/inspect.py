@@ -1,0 +1,201 @@
+"""The pipeline as a program sees it: plan it, run it, ask what is there, why it is stale and from what it was made.
+
+pipeline = Pipeline.of("walk.yaml")
+pipeline.plan()                           what a run would do; computes nothing
+pipeline.run()                            does it
+pipeline.artifact("mesh", frame=3)        typed, arrays read when asked for
+"""
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+
+from kinetree.pipeline import config as configuration
+from kinetree.pipeline.config import Config
+from kinetree.pipeline.diff import difference
+from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.pipeline.events import Account, Listener, Watch
+from kinetree.pipeline.files import Files
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.history import History, closing, new_name, opening, summary
+from kinetree.pipeline.node import Node, label, parse
+from kinetree.pipeline.output import write_config, write_run_json
+from kinetree.pipeline.plan import Plan, Planned
+from kinetree.pipeline.schedule import Given, Schedule
+from kinetree.pipeline.store import Store
+from kinetree.schemas.array import Artifact, Index
+
+
+@dataclass(frozen=True)
+class Pipeline:
+    """One graph over one sequence with one configuration and one store; making one computes nothing."""
+
+    config: Config
+    tasks: Graph
+    store: Store = field(repr=False)
+
+    @staticmethod
+    def of(
+        config: str | Path | Mapping[str, Any] | Config | None = None,
+        *,
+        sets: Iterable[str] = (),
+        methods: Mapping[str, Graph] | None = None,
+    ) -> "Pipeline":
+        """The pipeline of a YAML file, a preset's name, an earlier run's output folder, a mapping or a checked Config.
+
+        sets    : overrides as task.name=value
+        methods : the graphs there are by name; None takes those of `kinetree.tasks`
+        raises  : ConfigError, StoreError
+        """
+        known = methods if methods is not None else _methods()
+        checked = config if isinstance(config, Config) else configuration.load(config, known, sets)
+        return Pipeline(checked, known[checked.method], Store.at(checked.store))
+
+    def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Plan:
+        """Every node with its state and the reason for it; looks at the input, computes nothing."""
+        return Plan.of(self.schedule(until=until, force=force))
+
+    def schedule(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Schedule:
+        """The schedule behind `plan` and `run`, laid out as far as it is known."""
+        wanted = tuple(until)
+        graph = self.tasks.until(wanted) if wanted else self.tasks
+        forced = [self.tasks.task(name).name for name in force]
+        history = History(self.store, str(self.config.output))
+        return Schedule(graph, self.config.params, self.store, self._given(graph), force=forced, recall=history.recall)
+
+    def run(
+        self,
+        client: Any = None,
+        *,
+        until: Iterable[str] = (),
+        force: Iterable[str] = (),
+        listeners: Iterable[Listener] = (),
+    ) -> dict[str, Any]:
+        """Runs what is not fresh and returns the content of run.json; failed nodes are told there, not raised.
+
+        client : a `distributed.Client` to run on; None runs where the configuration says
+        raises : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
+        """
+        started = time.perf_counter()
+        schedule = self.schedule(until=until, force=force)
+        self.store.create()
+        write_config(self.config)
+        opened = opening(new_name(), self.config)
+        self.store.write_run(opened["name"], opened)
+        account = Account()
+        watch = Watch((account, *listeners))
+        watch.begin(opened["name"], schedule.entries.values())
+        status = "interrupted"
+        try:
+            self._go(schedule, watch, client)
+            status = "failed" if account.failures else "done"
+        except Exception:
+            status = "stopped"
+            raise
+        finally:
+            seconds = time.perf_counter() - started
+            watch.end(status, seconds)
+            self._close(opened, schedule, account, status, seconds)
+        return {"run": opened["name"], **summary(account, status, seconds)}
+
+    def graph(self, *, expanded: bool = False) -> "nx.DiGraph[str]":
+        """The graph of tasks, or expanded of nodes; each node's `data` is a TaskPlan or Planned, edges name arguments."""
+        schedule = self.schedule()
+        if expanded:
+            return _expanded(schedule)
+        drawn = self.tasks.networkx()
+        for row in Plan.of(schedule).tasks:
+            drawn.nodes[row.task]["data"] = row
+        return drawn
+
+    def why(self, node: str) -> Planned:
+        """The state of one node and the reason for it."""
+        schedule = self.schedule()
+        return Plan.of(schedule)[schedule.entries[found(schedule, node)].label]
+
+    def lineage(self, node: str) -> "nx.DiGraph[str]":
+        """The part of the expanded graph from which this node is made and which is made from it."""
+        schedule = self.schedule()
+        nodes = _expanded(schedule)
+        name = schedule.entries[found(schedule, node)].label
+        kept = nx.ancestors(nodes, name) | nx.descendants(nodes, name) | {name}
+        return nx.DiGraph(nodes.subgraph(kept))
+
+    def artifact(self, name: str, **index: int) -> Artifact:
+        """The artifact of a task at an index, with arrays that are read when asked for.
+
+        raises : UnknownNodeError where there is no such node or it has not been computed
+        """
+        schedule = self.schedule(until=[name])
+        over = self.tasks.task(name).over
+        if set(index) != set(over):
+            raise UnknownNodeError(f"{name} runs over {'/'.join(over) or 'nothing'}; got {', '.join(index) or 'no index'}")
+        node = found(schedule, label(Node(name, tuple(index[d] for d in over)), over))
+        if schedule.entries[node].artifact is None:
+            raise UnknownNodeError(f"{schedule.entries[node].label} has not been computed; kinetree why says what is missing")
+        return schedule.value(node)
+
+    def runs(self) -> list[dict[str, Any]]:
+        """Every run on record in this store, oldest first."""
+        return History(self.store, str(self.config.output)).runs()
+
+    def diff(self, run_a: str, run_b: str) -> dict[str, Any]:
+        """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
+        return difference(self.store, self.store.run(run_a), self.store.run(run_b))
+
+    def _go(self, schedule: Schedule, watch: Watch, client: Any) -> None:
+        """Starts workers only where there is something to run."""
+        if all(entry.state == "fresh" for entry in schedule.entries.values()) and not any(schedule.blocked.values()):
+            return
+        from kinetree.pipeline.run import launcher, run
+
+        with launcher(self.config.compute, client) as launch:
+            run(schedule, launch, watch)
+
+    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> None:
+        told = closing(opened, schedule, account, status, seconds)
+        write_run_json(self.config, {"run": opened["name"], **summary(account, status, seconds)})
+        self.store.write_run(opened["name"], told)
+
+    def _given(self, graph: Graph) -> Given:
+        files = Files.of(self.store)
+        given: dict[str, dict[Index, Artifact]] = {}
+        for task in graph.tasks:
+            if task.is_origin:
+                told = task(params=self.config.params[task.name], files=files)
+                given[task.name] = {(member,): value for member, value in told.items()} if task.over else {(): told}
+        files.save()
+        return given
+
+
+def found(schedule: Schedule, text: str) -> Node:
+    """The node of a schedule that a text names; raises UnknownNodeError, with what there is."""
+    node = parse(text, schedule.graph)
+    if node not in schedule.entries:
+        unknown = schedule.blocked.get(node.task, ())
+        known = sum(1 for n in schedule.entries if n.task == node.task)
+        later = f"; more may appear when {schedule.entries[unknown[0]].label} is computed" if unknown else ""
+        raise UnknownNodeError(f"{text}: no such node; {node.task} has {known} nodes{later}")
+    return node
+
+
+def _expanded(schedule: Schedule) -> "nx.DiGraph[str]":
+    nodes: nx.DiGraph[str] = nx.DiGraph()
+    for row in Plan.of(schedule).nodes:
+        nodes.add_node(row.node, task=row.task, state=row.state, data=row)
+    for entry in schedule.entries.values():
+        for argument, reads in entry.inputs or ():
+            for node in reads:
+                nodes.add_edge(schedule.entries[node].label, entry.label, argument=argument.name, form=argument.form)
+    return nodes
+
+
+def _methods() -> Mapping[str, Graph]:
+    """The graphs of kinetree; the only place where the loom knows that there are tasks."""
+    from kinetree.tasks import METHODS
+
+    return METHODS

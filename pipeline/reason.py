@@ -1,0 +1,79 @@
+"""Why a node is stale: what differs between what it would compute now and what it computed last."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from kinetree.pipeline.store import Record
+
+Kind = Literal["never ran", "params", "code", "input", "artifact", "forced"]
+
+
+@dataclass(frozen=True)
+class Reason:
+    """One cause, and what exactly: the parameter old → new, the module, the input."""
+
+    kind: Kind
+    what: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.what}" if self.what else self.kind
+
+
+@dataclass(frozen=True)
+class Work:
+    """All that decides what a node computes, in words a person can compare."""
+
+    params: Mapping[str, Any]
+    code: Mapping[str, str]
+    inputs: Sequence[Mapping[str, Any]]
+    """Per argument: argument, form, nodes, artifacts."""
+
+
+def never_ran() -> Reason:
+    """No earlier run on record computed this node."""
+    return Reason("never ran")
+
+
+def differences(now: Work, then: Record) -> tuple[Reason, ...]:
+    """What differs between work to do and work that was done: parameters, then code, then inputs."""
+    return (*_params(now.params, then.params), *_code(now.code, then.code), *_inputs(now.inputs, then.inputs))
+
+
+def _params(now: Mapping[str, Any], then: Mapping[str, Any]) -> tuple[Reason, ...]:
+    names = sorted(n for n in {*now, *then} if now.get(n, _ABSENT) != then.get(n, _ABSENT))
+    return tuple(Reason("params", f"{n} {then.get(n, _ABSENT)!r} → {now.get(n, _ABSENT)!r}") for n in names)
+
+
+def _code(now: Mapping[str, str], then: Mapping[str, str]) -> tuple[Reason, ...]:
+    return tuple(Reason("code", name) for name in sorted({*now, *then}) if now.get(name) != then.get(name))
+
+
+def _inputs(now: Sequence[Mapping[str, Any]], then: Sequence[Mapping[str, Any]]) -> tuple[Reason, ...]:
+    before, after = _by_node(then), _by_node(now)
+    told: list[Reason] = []
+    for verb, nodes in (
+        ("changed", [n for n in after if n in before and before[n] != after[n]]),
+        ("added", [n for n in after if n not in before]),
+        ("gone", [n for n in before if n not in after]),
+    ):
+        if nodes:
+            more = f" and {len(nodes) - 3} more" if len(nodes) > 3 else ""
+            told.append(Reason("input", f"{', '.join(nodes[:3])}{more} {verb}"))
+    if not told and [(i["argument"], i["form"]) for i in now] != [(i["argument"], i["form"]) for i in then]:
+        told.append(Reason("input", "the task reads other arguments"))
+    return tuple(told)
+
+
+def _by_node(inputs: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    return {node: artifact for i in inputs for node, artifact in zip(i["nodes"], i["artifacts"], strict=True)}
+
+
+class _Absent:
+    def __repr__(self) -> str:
+        return "(none)"
+
+
+_ABSENT = _Absent()
+Recall = Callable[[str], "Record | None"]
+"""Looks up what a node, by its label, computed in the last run."""

@@ -1,0 +1,73 @@
+"""One node for a person: its schema with shapes and statistics, and where it comes from."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.pipeline.inspect import Pipeline, found
+from kinetree.pipeline.plan import Plan
+from kinetree.pipeline.store import Record
+from kinetree.schemas.array import Artifact
+
+
+def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
+    """State, schema, arrays with statistics, values and provenance of one node, as JSON values.
+
+    raises : UnknownNodeError
+    """
+    schedule = pipeline.schedule()
+    entry = schedule.entries[found(schedule, node)]
+    planned = Plan.of(schedule)[entry.label]
+    told = {"node": entry.label, "state": planned.state, "why": str(planned), "schema": _schema(entry.task.returns)}
+    if entry.artifact is None:
+        return told
+    artifact = schedule.value(entry.node)
+    return {
+        **told,
+        "artifact": entry.artifact,
+        "values": artifact.plain(),
+        "arrays": {name: statistics(array) for name, array in artifact.arrays().items()},
+        "made": _provenance(entry.record) if entry.record else None,
+    }
+
+
+def statistics(array: NDArray[Any]) -> dict[str, Any]:
+    """Shape, dtype, and least, mean and greatest of the finite values."""
+    told: dict[str, Any] = {"shape": list(array.shape), "dtype": str(array.dtype)}
+    finite = array[np.isfinite(array)] if array.dtype.kind == "f" else array
+    if finite.size:
+        told |= {"min": finite.min().item(), "mean": float(finite.mean()), "max": finite.max().item()}
+    if finite.size < array.size:
+        told["not finite"] = int(array.size - finite.size)
+    return told
+
+
+def _schema(cls: type[Artifact]) -> dict[str, Any]:
+    arrays = cls.array_fields()
+    fields = {}
+    for name, field in cls.model_fields.items():
+        spec = arrays.get(name)
+        kind = f"{spec.dtype} {spec.layout} in {spec.unit}" if spec else _type_name(field.annotation)
+        fields[name] = {"type": kind, "what": field.description or ""}
+    return {"name": cls.__name__, "version": cls.version, "fields": fields}
+
+
+def _provenance(record: Record) -> dict[str, Any]:
+    inputs = {i["argument"]: i["nodes"] if len(i["nodes"]) <= 3 else f"{len(i['nodes'])} nodes" for i in record.inputs}
+    return {
+        "created": record.created,
+        "host": record.host,
+        "seconds": round(record.seconds, 4),
+        "peak_bytes": record.peak_bytes,
+        "bytes": record.bytes,
+        "params": record.params,
+        "inputs": inputs,
+        "key": record.key,
+        "code": sorted(record.code),
+        "versions": record.versions,
+    }
+
+
+def _type_name(annotation: Any) -> str:
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation).replace("typing.", "")

@@ -1,0 +1,171 @@
+"""`@task` and `@origin`: a pure function whose signature is its place in the graph.
+
+    @task(over="frame")
+    def geodesics(mesh: Mesh, params: GeodesicsParams) -> Geodesics:
+
+The argument types are the edges, the return type is what the task writes, `params` is the only configuration it sees,
+`over` is its fan-out: a path of dimensions from the outermost in, "" (once), "frame", "interval/cone", … . How an
+argument's type reads:
+
+    X                    the artifact of the same index (a task over interval/frame that asks for a Mesh gets its frame's)
+    tuple[X, ...]        every X below this index, in order
+    Mapping[int, X]      the same by member number, for a task to which the numbers matter
+    X | None             only for a task's own return type: its artifact at the previous member of the traversal that the
+                         artifact class given as `along` orders; None where the traversal starts
+
+The decorated function stays the plain function it was: tests call it with values.
+"""
+
+import importlib
+import inspect
+import re
+import types
+import typing
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, Literal, ParamSpec, TypeVar, Union
+
+from kinetree.pipeline.errors import GraphError
+from kinetree.schemas.array import Artifact, Params
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Space = tuple[str, ...]
+Form = Literal["one", "tuple", "mapping", "previous"]
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One edge: the argument's name, the artifact class it reads and how many of them."""
+
+    name: str
+    artifact: type[Artifact]
+    form: Form
+
+
+@dataclass(frozen=True)
+class Task(Generic[P, R]):
+    """A declared operation; calling it calls the function."""
+
+    name: str
+    function: Callable[P, R]
+    over: Space
+    arguments: tuple[Argument, ...]
+    params: type[Params] | None
+    returns: type[Artifact]
+    along: type[Artifact] | None
+    is_origin: bool
+    where: str
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """The function itself."""
+        return self.function(*args, **kwargs)
+
+    @property
+    def module(self) -> str:
+        """The module that defines the function; a worker imports it by this name."""
+        return self.function.__module__
+
+    @property
+    def summary(self) -> str:
+        """First sentence of the docstring, without the citation."""
+        text = " ".join((inspect.getdoc(self.function) or "").split("\n\n")[0].split())
+        return re.sub(r"\s*\((20\d\d|ours)[^)]*\)", "", text)
+
+    @property
+    def paper(self) -> str:
+        """The paper's section or equation, as the docstring cites it in brackets; empty where it cites none."""
+        found = re.search(r"\(((20\d\d|ours)[^)]*)\)", inspect.getdoc(self.function) or "")
+        return found.group(1) if found else ""
+
+
+def task(*, over: str = "", along: type[Artifact] | None = None) -> Callable[[Callable[P, R]], Task[P, R]]:
+    """Declares a function as a task; see the module's docstring for what its signature says.
+
+    over   : the fan-out, a path of dimensions; "" runs once
+    along  : the artifact class whose `previous` orders the traversal, for a task that reads its own neighbour
+    raises : GraphError, at import, where the signature does not say enough
+    """
+
+    def declare(function: Callable[P, R]) -> Task[P, R]:
+        return _declared(function, over, along, is_origin=False)
+
+    return declare
+
+
+def origin(*, over: str = "") -> Callable[[Callable[P, R]], Task[P, R]]:
+    """Declares a function that looks at the world outside: run while planning, never by a worker.
+
+    It takes its params and `files` (digests of files, remembered) and returns a mapping from member to artifact; the
+    members it returns are the fan-out that tasks over the same space run over.
+    """
+
+    def declare(function: Callable[P, R]) -> Task[P, R]:
+        return _declared(function, over, None, is_origin=True)
+
+    return declare
+
+
+def load(reference: str) -> "Task[..., Any]":
+    """The task that `module:name` names, for a worker that was only told its name."""
+    module, _, name = reference.partition(":")
+    found = getattr(importlib.import_module(module), name)
+    if not isinstance(found, Task):
+        raise GraphError(f"{reference} is not a task")
+    return found
+
+
+def space(path: str) -> Space:
+    """The dimensions of a path such as "interval/cone"."""
+    return tuple(path.split("/")) if path else ()
+
+
+def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None, *, is_origin: bool) -> Task[P, R]:
+    where = f"{inspect.getsourcefile(function)}:{function.__code__.co_firstlineno}"
+    place = f"{function.__name__} ({where})"
+    hints = typing.get_type_hints(function)
+    returns = _artifact_of(hints.pop("return", None), place, is_origin=is_origin)
+    params: type[Params] | None = None
+    arguments: list[Argument] = []
+    for name in inspect.signature(function).parameters:
+        hint = hints.get(name)
+        if name == "params":
+            if not (isinstance(hint, type) and issubclass(hint, Params)):
+                raise GraphError(f"{place}: params must be annotated with a class of Params, got {hint!r}")
+            params = hint
+        elif not (is_origin and name == "files"):
+            arguments.append(_argument(name, hint, returns, place))
+    if is_origin and arguments:
+        raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name}")
+    reads_previous = any(a.form == "previous" for a in arguments)
+    if reads_previous != (along is not None):
+        raise GraphError(f"{place}: a task reads its own previous artifact exactly if it says along which traversal")
+    return Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
+
+
+def _argument(name: str, hint: Any, returns: type[Artifact], place: str) -> Argument:
+    if isinstance(hint, type) and issubclass(hint, Artifact):
+        return Argument(name, hint, "one")
+    outer, inner = typing.get_origin(hint), typing.get_args(hint)
+    if outer is tuple and len(inner) == 2 and inner[1] is Ellipsis and _is_artifact(inner[0]):
+        return Argument(name, inner[0], "tuple")
+    if outer is Mapping and inner[0] is int and _is_artifact(inner[1]):
+        return Argument(name, inner[1], "mapping")
+    if outer in (Union, types.UnionType) and set(inner) == {returns, type(None)}:
+        return Argument(name, returns, "previous")
+    raise GraphError(
+        f"{place}: argument {name} must be an Artifact, tuple[Artifact, ...], Mapping[int, Artifact] or, for the task's"
+        f" own artifact, {returns.__name__} | None; got {hint!r}"
+    )
+
+
+def _artifact_of(hint: Any, place: str, *, is_origin: bool) -> type[Artifact]:
+    if is_origin and typing.get_origin(hint) is Mapping:
+        hint = typing.get_args(hint)[1]
+    if not _is_artifact(hint):
+        raise GraphError(f"{place}: the return type must be an Artifact, got {hint!r}")
+    return typing.cast("type[Artifact]", hint)
+
+
+def _is_artifact(hint: Any) -> bool:
+    return isinstance(hint, type) and issubclass(hint, Artifact)

@@ -1,0 +1,23 @@
+"""Every dimension an array of kinetree may have, once, with its size where that is fixed; order coarse to fine."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Dim:
+    """One dimension: its name, the same in specs, docstrings and zarr `dimension_names`, and its size where fixed."""
+
+    name: str
+    size: int | None = None
+
+
+INTERVAL = Dim("interval")
+CONE = Dim("cone")
+FRAME = Dim("frame")
+SOURCE = Dim("source")
+COMPONENT = Dim("component")
+VERTEX = Dim("vertex")
+INPUT_VERTEX = Dim("input_vertex")
+FACE = Dim("face")
+CORNER = Dim("corner", 3)
+XYZ = Dim("xyz", 3)

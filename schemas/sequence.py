@@ -1,0 +1,23 @@
+"""The sequence as a whole: which frames, how fast, in what unit."""
+
+from kinetree.schemas.array import Artifact, Params
+
+
+class SequenceParams(Params):
+    """What the user says about time and unit, where the files do not or should not be believed."""
+
+    fps: float | None = None
+    """Frames a second; None takes what the files state, or leaves it unknown."""
+    unit: str | None = None
+    """Unit of the coordinates, e.g. mm; None takes what the files state, or leaves it unknown."""
+
+
+class Sequence(Artifact):
+    """The frames of a run in order, with their numbers in the source."""
+
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    fps: float | None
+    """Frames a second; None where nobody knows. No step depends on it."""
+    unit: str | None
+    """Unit of all lengths; None where nobody knows. No step depends on it."""
