@@ -22,6 +22,7 @@ Flags = NDArray[np.bool_]
 
 _NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
 _FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
+_PRESSED = 1e-9  # the same for a closed patch
 _INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
 _SMALLEST = 1e-100  # diagonal whose cube, and that of its inverse, is still a number
 _FAR = 1e150  # box diagonals: what lies beyond is in no face, and its square must be a number
@@ -195,7 +196,8 @@ def oriented(X: Floats, F: Ints) -> tuple[Flags, Longs]:
     height = np.einsum("fx,fx->f", X[F[:, 0]] - centroid[patch], N)
     volume = np.bincount(patch, weights=sign * height) / 3
     majority = np.bincount(patch, weights=sign * area)
-    encloses = (np.bincount(patch, weights=is_open) == 0) | (np.abs(volume) >= _FLAT * A**1.5)
+    # a closed patch pressed flat has a volume of rounding error, whose sign a second cleaning might not find again
+    encloses = np.abs(volume) > np.where(np.bincount(patch, weights=is_open) > 0, _FLAT, _PRESSED) * A**1.5
     turned = np.where(encloses, volume, majority)[patch] * sign < 0
     # nothing to go by (a patch without area or volume): the first face of the patch decides
     turned |= (np.where(encloses, volume, majority)[patch] == 0) & flip

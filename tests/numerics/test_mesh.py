@@ -242,6 +242,13 @@ def test_open_body_faces_outwards_and_flat_sheet_keeps_its_side():
     np.testing.assert_array_equal(clean(sheet_V, sheet_F[:, [0, 2, 1]]).F, [[0, 2, 1], [0, 3, 2], [1, 2, 4]])
 
 
+def test_closed_surface_pressed_flat_keeps_its_side_because_its_volume_is_rounding_error():
+    V, F = sphere()
+    inverted = F[:, [0, 2, 1]]
+    np.testing.assert_array_equal(clean(V * [1, 1, 1e-13], inverted, merge=0.0).F, inverted)
+    np.testing.assert_array_equal(clean(V * [1, 1, 1e-3], inverted, merge=0.0).F, F)
+
+
 def test_moebius_strip_is_told_from_a_band():
     assert clean(*strip(0)).disagreeing_edges == 0
     assert clean(*strip(1)).disagreeing_edges == 1
