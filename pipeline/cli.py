@@ -320,8 +320,10 @@ def _progress(pipeline: Pipeline, quiet: bool, log: Path | None) -> Iterator[lis
                 raise ConfigError(f"--log-json {log}: cannot be written: {error.strerror}") from None
         if not quiet:
             workers = pipeline.config.compute.worker_count
-            progress = LiveProgress(err, workers) if err.is_terminal else PlainProgress(err, workers)
-            listeners.append(stack.enter_context(progress))
+            if err.is_terminal:
+                listeners.append(stack.enter_context(LiveProgress(err, workers)))
+            else:
+                listeners.append(stack.enter_context(PlainProgress(err, workers)))
         yield listeners
 
 

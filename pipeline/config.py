@@ -17,13 +17,13 @@ from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
-from kinetree.schemas.source import SourceParams
 
 PRESETS = importlib.resources.files("kinetree.configs")
 SAVED = "config.yaml"
 """Name under which a run leaves its configuration in its output folder."""
 M = TypeVar("M", bound=BaseModel)
-PATHS = SourceParams.path_fields()
+Paths = Mapping[str, frozenset[str]]
+"""The parameters that are paths, by task."""
 RUN_KEYS = ("extends", "method", "output", "store", "compute")
 
 
@@ -74,9 +74,10 @@ def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Gr
     sets   : overrides as task.name=value, the value in YAML
     raises : ConfigError, naming file and key, with the nearest known key
     """
-    blocks, where = _blocks(target)
+    paths = _path_fields(methods)
+    blocks, where = _blocks(target, paths)
     for text in sets:
-        _override(blocks, text)
+        _override(blocks, text, paths)
     method = blocks.get("method", "mesoscopic")
     if method not in methods:
         raise ConfigError(f"{where}: method {method!r}; {nearest(str(method), methods)}")
@@ -118,24 +119,29 @@ def _told(where: str, cls: type[BaseModel], fault: Any) -> str:
     return f"{where}.{key}: {fault['msg'][:1].lower()}{fault['msg'][1:]}, got {fault['input']!r}"
 
 
-def _blocks(target: str | Path | Mapping[str, Any] | None) -> tuple[dict[str, Any], str]:
+def _path_fields(methods: Mapping[str, Graph]) -> Paths:
+    tasks = [task for graph in methods.values() for task in graph.tasks]
+    return {task.name: task.params.path_fields() for task in tasks if task.params is not None}
+
+
+def _blocks(target: str | Path | Mapping[str, Any] | None, paths: Paths) -> tuple[dict[str, Any], str]:
     if target is None:
         return {}, "config"
     if isinstance(target, Mapping):
-        return _extended(dict(target), Path.cwd(), "config", ())
+        return _extended(dict(target), Path.cwd(), "config", (), paths)
     path = Path(target).expanduser()
     if path.is_dir():
         if not (path / SAVED).is_file():
             raise ConfigError(f"{path}: no {SAVED} in this folder, so it is not the output of a run; give a YAML file")
         path = path / SAVED
     if path.is_file():
-        return _file(path, ())
+        return _file(path, (), paths)
     if str(target) in preset_names():
-        return _file(PRESETS / f"{target}.yaml", ())
+        return _file(PRESETS / f"{target}.yaml", (), paths)
     raise ConfigError(f"{target}: no such file, output folder or preset; presets: {', '.join(preset_names())}")
 
 
-def _file(path: Any, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
+def _file(path: Any, seen: tuple[str, ...], paths: Paths) -> tuple[dict[str, Any], str]:
     if str(path) in seen:
         raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
     try:
@@ -149,19 +155,21 @@ def _file(path: Any, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
     if blocks is not None and not isinstance(blocks, dict):
         raise ConfigError(f"{path}: expected keys with values at the top, got {type(blocks).__name__}")
     base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
-    return _extended(blocks or {}, base, str(path), (*seen, str(path)))
+    return _extended(blocks or {}, base, str(path), (*seen, str(path)), paths)
 
 
-def _extended(blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
+def _extended(
+    blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...], paths: Paths
+) -> tuple[dict[str, Any], str]:
     """The blocks with their paths made absolute, over those of the preset or file they extend."""
-    blocks = _absolute(blocks, base)
+    blocks = _absolute(blocks, base, paths)
     parent = blocks.pop("extends", None)
     if parent is None:
         return blocks, where
     found = PRESETS / f"{parent}.yaml" if str(parent) in preset_names() else base / str(parent)
     if not found.is_file():
         raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({', '.join(preset_names())}) nor a file")
-    below, _ = _file(found, seen)
+    below, _ = _file(found, seen, paths)
     return _merged(below, blocks), where
 
 
@@ -173,20 +181,21 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
     return merged
 
 
-def _absolute(blocks: dict[str, Any], base: Path) -> dict[str, Any]:
+def _absolute(blocks: dict[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
     """Paths are relative to the file that names them."""
     told = dict(blocks)
     for key in ("output", "store"):
         if isinstance(told.get(key), str) and "://" not in told[key]:
             told[key] = str(base / Path(told[key]).expanduser())
-    source = told.get("source")
-    if isinstance(source, Mapping):
-        paths = {n: str(base / Path(v).expanduser()) for n, v in source.items() if n in PATHS and isinstance(v, str) and v}
-        told["source"] = {**source, **paths}
+    for task, names in paths.items():
+        block = told.get(task)
+        if isinstance(block, Mapping):
+            here = {n: block[n] for n in names if isinstance(block.get(n), str) and block[n]}
+            told[task] = {**block, **{n: str(base / Path(v).expanduser()) for n, v in here.items()}}
     return told
 
 
-def _override(blocks: dict[str, Any], text: str) -> None:
+def _override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     key, equals, value = text.partition("=")
     task, dot, name = key.strip().partition(".")
     if not equals or not task:
@@ -196,12 +205,12 @@ def _override(blocks: dict[str, Any], text: str) -> None:
     except yaml.YAMLError:
         raise ConfigError(f"--set {text}: {value!r} is not valid YAML") from None
     if not dot:
-        blocks.update(_absolute({task: parsed}, Path.cwd()))
+        blocks.update(_absolute({task: parsed}, Path.cwd(), paths))
         return
     block = blocks.get(task)
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
-    blocks[task] = {**(block or {}), **_absolute({task: {name: parsed}}, Path.cwd())[task]}
+    blocks[task] = {**(block or {}), **_absolute({task: {name: parsed}}, Path.cwd(), paths)[task]}
 
 
 def _refuse_unknown(blocks: Mapping[str, Any], known: Iterable[str], where: str) -> None:
@@ -218,4 +227,4 @@ def _compute(blocks: Mapping[str, Any]) -> Any:
     names = sorted(f.name.removesuffix(".yaml") for f in (PRESETS / "compute").iterdir() if f.name.endswith(".yaml"))
     if found not in names:
         raise ConfigError(f"compute {found!r}; {nearest(found, names)}")
-    return _file(PRESETS / "compute" / f"{found}.yaml", ())[0]
+    return _file(PRESETS / "compute" / f"{found}.yaml", (), {})[0]

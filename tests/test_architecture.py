@@ -1,0 +1,98 @@
+"""Who may import whom, and that every operation has one stem behind every door."""
+
+import ast
+import sys
+from pathlib import Path
+
+import networkx as nx
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+FILES = [*ROOT.glob("pipeline/*.py"), *ROOT.glob("schemas/*.py"), *ROOT.glob("tasks/**/*.py")]
+NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
+ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
+BORDER = "tasks/source.py"
+
+
+def imports(path: Path) -> set[str]:
+    """Every module an import statement of the file names, `from a import b` as a and a.b."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            found |= {str(node.module)} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def name(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def outside(modules: set[str]) -> set[str]:
+    return {m.split(".")[0] for m in modules} - set(sys.stdlib_module_names) - {"kinetree"}
+
+
+def ours(modules: set[str], *allowed: str) -> set[str]:
+    """The kinetree modules among them that lie in none of the allowed packages."""
+    mine = {m for m in modules if m.startswith("kinetree.")}
+    return {m for m in mine if not any(m == a or m.startswith(a + ".") or a.startswith(m + ".") for a in allowed)}
+
+
+@pytest.mark.parametrize("path", FILES, ids=name)
+def test_one_file_each_imports_dask_distributed_and_zarr(path: Path) -> None:
+    for library, home in ALONE.items():
+        if name(path) != home:
+            assert library not in outside(imports(path))
+
+
+@pytest.mark.parametrize("path", list(ROOT.glob("tasks/numerics/*.py")), ids=name)
+def test_numerics_know_numbers_and_nothing_of_the_loom(path: Path) -> None:
+    assert outside(imports(path)) <= NUMERIC
+    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.pipeline.errors")
+
+
+@pytest.mark.parametrize("path", list(ROOT.glob("schemas/*.py")), ids=name)
+def test_schemas_know_only_schemas(path: Path) -> None:
+    assert outside(imports(path)) <= {"numpy", "pydantic", "pydantic_core"}
+    assert not ours(imports(path), "kinetree.schemas", "kinetree.pipeline.errors")
+
+
+@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/*.py") if p.name != "__init__.py"], ids=name)
+def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
+    border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.store"] if name(path) == BORDER else []
+    allowed = ["kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.pipeline.errors", *border]
+    assert not ours(imports(path), *allowed)
+
+
+@pytest.mark.parametrize("path", list(ROOT.glob("pipeline/*.py")), ids=name)
+def test_the_loom_knows_no_task_and_no_mathematics(path: Path) -> None:
+    if path.name != "inspect.py":
+        assert not {m for m in imports(path) if m.startswith("kinetree.tasks")}
+    assert not {m for m in imports(path) if m.startswith("kinetree.schemas.")} - {
+        m for m in imports(path) if m.startswith(("kinetree.schemas.array", "kinetree.schemas.dims"))
+    }
+    assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"})
+
+
+def test_no_module_imports_itself_in_a_ring() -> None:
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    modules = {"kinetree." + name(p).removesuffix(".py").removesuffix("/__init__").replace("/", "."): p for p in FILES}
+    for module, path in modules.items():
+        # inspect names the tasks inside a function, when it is asked for the product's own graph
+        seen = {m for m in imports(path) if m in modules and not (path.name == "inspect.py" and m == "kinetree.tasks")}
+        packages = {m for m in seen if modules[m].name == "__init__.py"}
+        graph.add_edges_from((module, m) for m in seen - packages)
+    assert list(nx.simple_cycles(graph)) == []
+
+
+@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/*.py") if p.name != "__init__.py"], ids=name)
+def test_every_operation_has_one_stem_behind_every_door(path: Path) -> None:
+    assert (ROOT / "schemas" / path.name).is_file()
+    assert (ROOT / "tests" / "tasks" / f"test_{path.name}").is_file()
+
+
+@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/numerics/*.py") if p.name != "__init__.py"], ids=name)
+def test_every_numeric_file_has_its_laws(path: Path) -> None:
+    assert (ROOT / "tests" / "numerics" / f"test_{path.name}").is_file()

@@ -1,0 +1,57 @@
+"""A wheel built from the sdist, installed in a clean environment, used from another folder."""
+
+import json
+import subprocess
+import sys
+import venv
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(out), str(ROOT)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return next(out.glob("*.whl"))  # build makes the wheel from the sdist it has just made
+
+
+def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) -> None:
+    held = set(zipfile.ZipFile(wheel).namelist())
+    for folder in ("pipeline", "tasks", "schemas", "configs"):
+        for file in (ROOT / folder).rglob("*"):
+            if file.suffix in (".py", ".yaml") and "__pycache__" not in file.parts:
+                assert f"kinetree/{file.relative_to(ROOT)}" in held
+    assert {name.split("/")[0] for name in held if ".dist-info" not in name} == {"kinetree"}
+
+
+def test_wheel_works_from_another_folder_in_a_clean_environment(wheel: Path, tmp_path: Path) -> None:
+    home = tmp_path / "clean"
+    venv.create(home, with_pip=True)
+    subprocess.run([home / "bin/pip", "install", "--quiet", str(wheel)], check=True, capture_output=True)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    generic = "import importlib.util as u; print([n for n in ('pipeline', 'tasks', 'schemas') if u.find_spec(n)])"
+    found = subprocess.run([home / "bin/python", "-c", generic], cwd=elsewhere, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+    _write_two_tetrahedra(elsewhere / "two.npz")
+    command = [home / "bin/kinetree", "run", "--input", "two.npz", "--output", "out", "--until", "connectivity", "--json"]
+    for ran in (4, 0):
+        done = subprocess.run(command, cwd=elsewhere, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        counts = json.loads(done.stdout)["nodes"]
+        assert counts["ran"] <= ran
+        assert (counts["ran"] == 0) == (ran == 0)
+
+
+def _write_two_tetrahedra(path: Path) -> None:
+    V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=np.float32)
+    F = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+    offsets = {"vertex_offsets": np.array([0, 4, 8]), "face_offsets": np.array([0, 4])}
+    np.savez(path, vertices=np.vstack([V, V * 2]), faces=F, fps=25.0, unit="mm", **offsets)

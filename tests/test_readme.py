@@ -1,0 +1,46 @@
+"""What the README says is so."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import typer
+
+from kinetree.pipeline.cli import app
+from kinetree.pipeline.draw import draw
+from kinetree.pipeline.inspect import Pipeline
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text()
+COMMANDS = typer.main.get_command(app)
+
+
+def test_drawn_graph_is_the_graph_of_the_code() -> None:
+    drawn = re.search(r"```mermaid\n(.*?)\n```", README, re.DOTALL)
+    assert drawn is not None, "README.md has no mermaid block"
+    now = draw(Pipeline.of().tasks.networkx(), "mermaid")
+    assert drawn.group(1) == now, "the drawing is stale: kinetree graph --format mermaid prints the new one"
+
+
+@pytest.mark.parametrize("line", list(re.findall(r"^kinetree .*$", README, re.MULTILINE)))
+def test_every_command_in_it_exists_with_its_options(line: str) -> None:
+    words = shlex.split(line, comments=True)
+    command = COMMANDS.commands[words[1]]  # type: ignore[attr-defined]
+    known = {option for param in command.params for option in param.opts}
+    assert {w.split("=")[0] for w in words[2:] if w.startswith("-")} <= known
+
+
+@pytest.mark.parametrize("path", re.findall(r"\]\((?!https?:)([^)#]+)\)", README))
+def test_every_link_in_it_leads_somewhere(path: str) -> None:
+    assert (ROOT / path).exists()
+
+
+@pytest.mark.parametrize("command", sorted(COMMANDS.commands))  # type: ignore[attr-defined]
+def test_every_command_is_told_in_it(command: str) -> None:
+    assert re.search(rf"^kinetree {command}\b", README, re.MULTILINE)
+
+
+def test_test_command_is_the_one_ci_runs() -> None:
+    assert "make test" in README
+    assert "make test" in (ROOT / ".ci" / "run").read_text()
