@@ -1,0 +1,195 @@
+"""The toy graph as a package that a test may edit, over a folder of frames that it may change."""
+
+import contextlib
+import importlib
+import json
+import os
+import secrets
+import shutil
+import subprocess
+import sys
+import threading
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.key import code_closure
+
+HERE = Path(__file__).parent
+MAIN = """import kinetree.tasks
+from .toys import GRAPH
+kinetree.tasks.METHODS = {"mesoscopic": GRAPH}
+from kinetree.pipeline.cli import main
+if __name__ == "__main__":
+    main()
+"""
+
+
+@dataclass
+class Heard:
+    """A listener that keeps every event."""
+
+    events: list[dict[str, Any]] = field(default_factory=list)
+
+    def hear(self, event: dict[str, Any]) -> None:
+        """One event."""
+        self.events.append(event)
+
+    def nodes(self, kind: str) -> list[str]:
+        """Labels of the nodes of which this was told."""
+        return [e["node"] for e in self.events if e["event"] == kind]
+
+
+@dataclass
+class Run:
+    """One run in this process: what it returned, what was heard."""
+
+    told: dict[str, Any]
+    heard: Heard
+
+    @property
+    def ran(self) -> set[str]:
+        """Labels of the nodes that were computed."""
+        found = self.heard.nodes("finish")
+        assert len(found) == len(set(found)), "a node was computed twice"
+        return set(found)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many nodes of each task were computed."""
+        return dict(Counter(node.partition("[")[0] for node in self.ran))
+
+
+@dataclass
+class Toys:
+    """The toy package, its frames, its flags and its store."""
+
+    folder: Path
+    name: str
+    frames: Path
+    flags: Path
+    log: Path
+    output: Path
+
+    @property
+    def module(self) -> ModuleType:
+        """The package's module of tasks, as it is written now."""
+        return importlib.import_module(f"{self.name}.toys")
+
+    def edit(self, old: str, new: str, file: str = "toys.py") -> None:
+        """Replaces text in the source and forgets what was loaded of it."""
+        path = self.folder / self.name / file
+        text = path.read_text()
+        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {file}"
+        path.write_text(text.replace(old, new))
+        self.forget()
+
+    def forget(self) -> None:
+        """Makes the next import read the source again, as a new process would."""
+        for module in [m for m in sys.modules if m.partition(".")[0] == self.name]:
+            del sys.modules[module]
+        importlib.invalidate_caches()
+        code_closure.cache_clear()
+
+    def write(self, *numbers: float, start: int = 0) -> None:
+        """Writes one frame per number, from frame `start` on."""
+        for frame, number in enumerate(numbers, start):
+            (self.frames / f"{frame:05d}.txt").write_text(f"{number}")
+
+    def flag(self, name: str) -> Path:
+        """Raises a flag such as fail-points-30."""
+        path = self.flags / name
+        path.touch()
+        return path
+
+    def config(self, **blocks: Any) -> dict[str, Any]:
+        """A configuration: synchronous unless told otherwise, blocks of parameters by task."""
+        told = {"output": str(self.output), "compute": {"executor": "sync"}, **blocks}
+        told["source"] = {"input": str(self.frames), **blocks.get("source", {})}
+        return told
+
+    def pipeline(self, **blocks: Any) -> Pipeline:
+        """The toy graph over the frames."""
+        return Pipeline.of(self.config(**blocks), methods={"mesoscopic": self.module.GRAPH})
+
+    def run(self, client: Any = None, *, until: tuple[str, ...] = (), force: tuple[str, ...] = (), **blocks: Any) -> Run:
+        """Runs in this process and keeps what was heard."""
+        heard = Heard()
+        told = self.pipeline(**blocks).run(client, until=until, force=force, listeners=[heard])
+        return Run(told, heard)
+
+    def executions(self) -> list[str]:
+        """What every process executed since the last `clear`, such as points-30, in the order of the log."""
+        return self.log.read_text().split() if self.log.exists() else []
+
+    def clear(self) -> None:
+        """Forgets the executions so far."""
+        self.log.unlink(missing_ok=True)
+
+    def artifacts(self, **blocks: Any) -> dict[str, str | None]:
+        """The artifact digest of every node, as a plan tells it."""
+        return {n.node: n.artifact for n in self.pipeline(**blocks).plan().nodes}
+
+    def stored(self) -> dict[str, bytes]:
+        """Every file of the store, byte for byte."""
+        store = self.output / "store"
+        return {str(f.relative_to(store)): f.read_bytes() for f in sorted(store.rglob("*")) if f.is_file()}
+
+    def yaml(self, **blocks: Any) -> Path:
+        """The configuration as a file (JSON is YAML)."""
+        path = self.folder / "config.yaml"
+        path.write_text(json.dumps(self.config(**blocks)))
+        return path
+
+    def start(self, *arguments: str, **options: Any) -> "subprocess.Popen[str]":
+        """The command kinetree on the toy graph, in a process of its own, in a group of its own."""
+        command = [sys.executable, "-m", self.name, *arguments]
+        return subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, **options
+        )
+
+    def command(self, *arguments: str) -> "subprocess.CompletedProcess[str]":
+        """The command kinetree on the toy graph, to its end."""
+        process = self.start(*arguments)
+        out, err = process.communicate(timeout=120)
+        return subprocess.CompletedProcess(arguments, process.returncode, out, err)
+
+    @staticmethod
+    def until(condition: Callable[[], Any], what: str) -> None:
+        """Waits for a fact that another process makes true; gives up only where it never will."""
+        for _ in range(6000):
+            if condition():
+                return
+            threading.Event().wait(0.01)
+        raise AssertionError(f"never happened: {what}")
+
+
+@pytest.fixture
+def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
+    """Six frames with the numbers 10, 20, … 60 under the toy graph; worker processes find it through PYTHONPATH."""
+    name = f"toys_{secrets.token_hex(6)}"
+    package = tmp_path / "code" / name
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "__main__.py").write_text(MAIN)
+    for file in ("toys.py", "toy_sums.py"):
+        shutil.copy(HERE / file, package / file)
+    found = Toys(package.parent, name, tmp_path / "frames", tmp_path / "flags", tmp_path / "log", tmp_path / "out")
+    found.frames.mkdir()
+    found.flags.mkdir()
+    found.write(10, 20, 30, 40, 50, 60)
+    monkeypatch.syspath_prepend(str(found.folder))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(found.folder), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep))
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    monkeypatch.setenv("TOYS_LOG", str(found.log))
+    monkeypatch.setenv("TOYS_FLAGS", str(found.flags))
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    yield found
+    with contextlib.suppress(ImportError):
+        found.forget()
