@@ -4,6 +4,7 @@ Everything here is about types; nothing knows which frames or intervals exist. A
 is made, which is when `kinetree.tasks` is imported.
 """
 
+import contextlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +13,7 @@ from typing import Any
 import networkx as nx
 
 from kinetree.pipeline.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
+from kinetree.pipeline.key import code_closure
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space
 from kinetree.schemas.array import Artifact
@@ -39,6 +41,7 @@ class Graph:
         for task in ordered.tasks:
             for argument in task.arguments:
                 ordered.gathered_space(task, argument)
+        ordered._remember_code()
         return ordered
 
     @cached_property
@@ -114,6 +117,13 @@ class Graph:
                 kept.add(task.name)
                 waiting.extend(self.reads(task))
         return Graph(tuple(task for task in self.tasks if task.name in kept))
+
+    def _remember_code(self) -> None:
+        """Digests the code now, while what lies there is what was loaded: a process that lives on while its source is
+        edited must not pass the old code's results off as the new code's."""
+        for task in self.tasks:
+            with contextlib.suppress(ImportError, ValueError):  # tasks typed at a prompt can be drawn, not run
+                code_closure(task.module)
 
     def networkx(self) -> "nx.DiGraph[str]":
         """Task names as nodes (with over, artifact, params, paper, summary), edges with argument name and form."""

@@ -24,7 +24,8 @@ from kinetree.schemas.array import Artifact
 
 DIGEST_BYTES = 20
 CODE_ROOTS = ("kinetree.tasks", "kinetree.schemas")
-"""Packages whose modules can change a result; `kinetree.pipeline` is not among them because it may not."""
+"""Packages whose modules can change a result; `kinetree.pipeline` is not among them because it may not. For a task that
+somebody else's package defines, that package counts too."""
 
 
 def digest(value: Any) -> str:
@@ -83,6 +84,8 @@ def code_digest(module: str) -> str:
 @cache
 def code_closure(module: str) -> dict[str, str]:
     """Digest of the code of `module` and of every module of `CODE_ROOTS` it imports, transitively, by module name."""
+    package = module.partition(".")[0]
+    roots = CODE_ROOTS if package == "kinetree" else (*CODE_ROOTS, package)
     found: dict[str, str] = {}
     waiting = [module]
     while waiting:
@@ -91,7 +94,7 @@ def code_closure(module: str) -> dict[str, str]:
             continue
         tree = ast.parse(_source(name))
         found[name] = digest(["kinetree.module/1", *_syntax(tree)])
-        waiting.extend(_imports(tree, name))
+        waiting.extend(_imports(tree, name, roots))
     return dict(sorted(found.items()))
 
 
@@ -156,8 +159,8 @@ def _is_docstring(node: Any) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
 
 
-def _imports(tree: ast.AST, module: str) -> Iterator[str]:
-    """The modules of `CODE_ROOTS` that a module's import statements name, wherever in it they stand."""
+def _imports(tree: ast.AST, module: str, roots: Sequence[str]) -> Iterator[str]:
+    """The modules below `roots` that a module's import statements name, wherever in it they stand."""
     for node in ast.walk(tree):
         names: list[str] = []
         if isinstance(node, ast.Import):
@@ -166,12 +169,12 @@ def _imports(tree: ast.AST, module: str) -> Iterator[str]:
             package = module if _is_package(module) else module.rpartition(".")[0]
             origin = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
             inner = [f"{origin}.{alias.name}" for alias in node.names]
-            names = [name if _exists(name) else origin for name in inner] if _counts(origin) else []
-        yield from (name for name in names if _counts(name))
+            names = [name if _exists(name) else origin for name in inner] if _counts(origin, roots) else []
+        yield from (name for name in names if _counts(name, roots))
 
 
-def _counts(name: str) -> bool:
-    return any(name == root or name.startswith(root + ".") for root in CODE_ROOTS)
+def _counts(name: str, roots: Sequence[str]) -> bool:
+    return any(name == root or name.startswith(root + ".") for root in roots)
 
 
 def _exists(name: str) -> bool:

@@ -22,12 +22,11 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.key import code_closure
 
 HERE = Path(__file__).parent
-MAIN = """import kinetree.tasks
+MAIN = """from kinetree.pipeline import cli, inspect
 from .toys import GRAPH
-kinetree.tasks.METHODS = {"mesoscopic": GRAPH}
-from kinetree.pipeline.cli import main
+inspect._methods = lambda: {"mesoscopic": GRAPH}
 if __name__ == "__main__":
-    main()
+    cli.main()
 """
 
 
