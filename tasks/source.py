@@ -1,17 +1,19 @@
 """Where the frames are: a folder or glob of mesh files, or one npz or zarr file that holds them all."""
 
+import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from kinetree.pipeline.errors import SourceError
+from kinetree.pipeline.errors import SourceError, StoreError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.key import array_digest, digest, file_digest
 from kinetree.pipeline.store import group_arrays
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.source import Source, SourceParams
-from kinetree.tasks.numerics.source import Frames, mesh_files, read_mesh, read_npz
+from kinetree.tasks.numerics.formats import read_mesh
+from kinetree.tasks.numerics.source import Frames, mesh_files, read_npz
 
 
 @origin(over="frame")
@@ -19,14 +21,18 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     """Finds the frames of a sequence and the digest of each one's bytes (2014, Sec. 3)."""
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
-    path = Path(params.input)
+    path = _spoken(Path(params.input))
     if path.suffix == ".npz" or _is_zarr(path):
         found = _packed(path, "npz" if path.suffix == ".npz" else "zarr", files)
     else:
-        paths = mesh_files(params.input)
+        paths = [_spoken(p) for p in mesh_files(params.input)]
         contents = files.digests(paths)
         found = [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
-    return {frame: found[frame] for frame in _selected(params.frames, len(found), params.input)}
+    chosen = _selected(params.frames, len(found), params.input)
+    if len(chosen) < 2:
+        held = f"frames {params.frames!r} selects" if len(found) > 1 else f"{params.input}: there is"
+        raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
+    return {frame: found[frame] for frame in chosen}
 
 
 def surface(found: Source) -> tuple[Floats, Ints]:
@@ -53,12 +59,24 @@ def name(found: Source) -> str:
 
 
 def _packed_frames(path: Path, kind: str) -> Frames:
-    return read_npz(path) if kind == "npz" else _zarr_frames(path, (path / "zarr.json").stat().st_mtime_ns)
+    return read_npz(path) if kind == "npz" else _zarr_frames(path, _state(path))
+
+
+def _state(path: Path) -> tuple[tuple[str, int, int], ...]:
+    """Name, size and time of every file of a group: what was read is remembered until one of them changes."""
+    try:
+        stats = [(str(file), file.stat()) for file in sorted(path.rglob("*"))]
+    except OSError as error:
+        raise SourceError(f"{path}: cannot be read: {error.strerror}; did it change while it was read?") from error
+    return tuple((name, stat.st_size, stat.st_mtime_ns) for name, stat in stats)
 
 
 @lru_cache(maxsize=2)
-def _zarr_frames(path: Path, modified: int) -> Frames:
-    return Frames.of(group_arrays(path), str(path))
+def _zarr_frames(path: Path, state: tuple[tuple[str, int, int], ...]) -> Frames:
+    try:
+        return Frames.of(group_arrays(path), str(path))
+    except StoreError as error:  # the user's file, not the store
+        raise SourceError(str(error)) from error
 
 
 def _mesh_digest(V: Floats, F: Ints) -> str:
@@ -71,21 +89,21 @@ def _packed(path: Path, kind: str, files: Files) -> list[Source]:
 
     def parts(where: Path) -> Sequence[str]:
         frames = _packed_frames(where, kind)
-        heads = [f"{frames.fps!r}", f"{frames.unit!r}"]
+        heads = [json.dumps(frames.fps), json.dumps(frames.unit)]
         return heads + [_mesh_digest(*frames.mesh(t)) for t in range(len(frames))]
 
-    fps, unit, *contents = files.parts(path, kind, parts)
-    return [
-        Source(content=c, path=str(path), part=t, kind=kind, fps=_number(fps), unit=_text(unit)) for t, c in enumerate(contents)
-    ]
+    fps, unit, *contents = files.parts(path, f"{kind}/2", parts)
+    told = {"path": str(path), "kind": kind, "fps": json.loads(fps), "unit": json.loads(unit)}
+    return [Source(content=c, part=t, **told) for t, c in enumerate(contents)]
 
 
-def _number(told: str) -> float | None:
-    return None if told == "None" else float(told)
-
-
-def _text(told: str) -> str | None:
-    return None if told == "None" else told[1:-1]
+def _spoken(path: Path) -> Path:
+    """The path, if its name can be written down; raises SourceError where its bytes are no text."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise SourceError(f"{str(path)!r}: this name is not valid UTF-8; rename the file or folder") from None
+    return path
 
 
 def _is_zarr(path: Path) -> bool:

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinetree.pipeline.errors import MeshError
+from kinetree.tasks.numerics.orientation import area_vectors, half_edges, lexicographic, oriented, winding
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -21,8 +22,6 @@ Longs = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 _NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
-_FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
-_PRESSED = 1e-9  # the same for a closed patch
 _INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
 _SMALLEST = 1e-100  # diagonal whose cube, and that of its inverse, is still a number
 _FAR = 1e150  # box diagonals: what lies beyond is in no face, and its square must be a number
@@ -109,7 +108,7 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
     first = welded(X, merge)
     G = first[F]
     whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
-    area = np.linalg.norm(_area_vectors(X, G[whole]), axis=1)
+    area = np.linalg.norm(area_vectors(X, G[whole]), axis=1)
     distinct, folded = _distinct(G[whole], area, component_share, len(V))
     origin, area = whole[distinct], area[distinct]
     G = G[origin]
@@ -175,46 +174,6 @@ def welded(X: Floats, tolerance: float) -> Ints:
     return first[cluster]
 
 
-def oriented(X: Floats, F: Ints) -> tuple[Flags, Longs]:
-    """Which faces to turn so that neighbours agree and closed patches face outwards, and each face's component.
-
-    A patch is what edges of exactly two faces connect. A closed patch is turned to positive volume; so is an open one
-    that clearly encloses some about its centroid; a flat one keeps the side that most of its area had.
-
-    X, F    : (vertex, xyz) · (face, corner) without repeated corners or faces
-    returns : (face,) · (face,) component by shared edges, numbered in the order of first faces
-    """
-    order = _lexicographic(_edges(F), len(X))
-    root, flip, is_open, component_root = _patches(F, order)
-    patch = _numbered(root)
-    sign = 1.0 - 2.0 * flip
-    N = _area_vectors(X, F)
-    area = np.linalg.norm(N, axis=1)
-    A = np.bincount(patch, weights=area)
-    moment = np.stack([np.bincount(patch, weights=area * x) for x in X[F].mean(axis=1).T], axis=1)
-    centroid = moment / np.where(A > 0, A, 1.0)[:, None]
-    height = np.einsum("fx,fx->f", X[F[:, 0]] - centroid[patch], N)
-    volume = np.bincount(patch, weights=sign * height) / 3
-    majority = np.bincount(patch, weights=sign * area)
-    # a closed patch pressed flat has a volume of rounding error, whose sign a second cleaning might not find again
-    encloses = np.abs(volume) > np.where(np.bincount(patch, weights=is_open) > 0, _FLAT, _PRESSED) * A**1.5
-    turned = np.where(encloses, volume, majority)[patch] * sign < 0
-    # nothing to go by (a patch without area or volume): the first face of the patch decides
-    turned |= (np.where(encloses, volume, majority)[patch] == 0) & flip
-    return turned, _numbered(component_root)
-
-
-def winding(P: Floats, X: Floats, F: Ints) -> Floats:
-    """How often the surface winds round each point: 1 inside a closed one that faces outwards, 0 outside.
-
-    Solid angles after Van Oosterom and Strackee 1983.
-
-    P, X, F : (point, xyz) off the surface · (vertex, xyz) · (face, corner)
-    returns : (point,)
-    """
-    return _winding(np.ascontiguousarray(P), np.ascontiguousarray(X), np.ascontiguousarray(F))
-
-
 def _body(X: Floats, F: Ints, component: Longs, shares: Floats, least: float) -> tuple[Flags, Flags]:
     """(component,) large enough but wholly inside a larger one · (component,) to be kept."""
     large = shares >= min(least, float(shares.max()))
@@ -231,17 +190,6 @@ def _body(X: Floats, F: Ints, component: Longs, shares: Floats, least: float) ->
     return inside, large & ~inside
 
 
-def _edges(F: Ints) -> Ints:
-    """(3 · face, end) ends, the smaller first, of half-edge 3f + k from corner k of face f to the next."""
-    H = F[:, [1, 2, 0]]
-    return np.stack([np.minimum(F, H), np.maximum(F, H)], axis=2).reshape(-1, 2)
-
-
-def _numbered(root: Longs) -> Longs:
-    """Labels 0, 1, … instead of roots, in the order of the roots."""
-    return (np.cumsum(root == np.arange(len(root))) - 1)[root]
-
-
 def _distinct(G: Ints, area: Floats, sheet: float, n: int) -> tuple[Longs, int]:
     """One face, the first, for each set of corners, without pairs back to back unless they are a sheet.
 
@@ -250,7 +198,7 @@ def _distinct(G: Ints, area: Floats, sheet: float, n: int) -> tuple[Longs, int]:
     returns : rows to keep, ascending · how many faces were back to back and are not kept
     """
     rows = np.sort(G, axis=1)
-    order = _lexicographic(rows, n)
+    order = lexicographic(rows, n)
     start = np.flatnonzero(np.r_[True, (np.diff(rows[order], axis=0) != 0).any(axis=1)][: len(rows)])
     first = order[start]
     if len(first) == len(rows):
@@ -273,8 +221,8 @@ def _compacted(V: Floats, F: Ints, first: Ints) -> tuple[Floats, Ints, Ints]:
 
 def _edge_counts(F: Ints, n: int) -> tuple[int, int, int, int]:
     """How many edges have one face, more than two, two that disagree, and how many edges there are."""
-    ends = _edges(F)
-    order = _lexicographic(ends, n)
+    ends = half_edges(F)
+    order = lexicographic(ends, n)
     key = (ends[:, 0].astype(np.int64) * n + ends[:, 1])[order]
     start = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
     degree = np.diff(start, append=len(key))
@@ -285,20 +233,7 @@ def _edge_counts(F: Ints, n: int) -> tuple[int, int, int, int]:
 
 def _volume(X: Floats, F: Ints) -> float:
     """Volume inside a closed surface that faces outwards, by the divergence theorem."""
-    return float(np.einsum("fx,fx->", X[F[:, 0]] - X[F[0, 0]], _area_vectors(X, F)) / 3)
-
-
-@njit(cache=True, nogil=True)
-def _area_vectors(X: Floats, F: Ints) -> Floats:
-    """(face, xyz) normals as long as the faces' areas."""
-    N = np.empty((len(F), 3))
-    for f in range(len(F)):
-        a, b, c = F[f]
-        for x in range(3):
-            y, z = (x + 1) % 3, (x + 2) % 3
-            N[f, x] = (X[b, y] - X[a, y]) * (X[c, z] - X[a, z]) - (X[b, z] - X[a, z]) * (X[c, y] - X[a, y])
-            N[f, x] *= 0.5
-    return N
+    return float(np.einsum("fx,fx->", X[F[:, 0]] - X[F[0, 0]], area_vectors(X, F)) / 3)
 
 
 @njit(cache=True, nogil=True)
@@ -313,90 +248,3 @@ def _needles(X: Floats, F: Ints, area: Floats) -> int:
             longest = max(longest, squared)
         count += 2 * area[f] <= _NEEDLE * longest
     return count
-
-
-@njit(cache=True, nogil=True)
-def _lexicographic(rows: Ints, n: int) -> Longs:
-    """Stable order of the rows of integers in [0, n): a counting sort per column, linear in rows + n."""
-    order = np.arange(len(rows))
-    for column in range(rows.shape[1] - 1, -1, -1):
-        begin = np.zeros(n + 1, dtype=np.int64)
-        for value in rows[:, column]:
-            begin[value + 1] += 1
-        begin = np.cumsum(begin)
-        placed = np.empty_like(order)
-        for row in order:
-            placed[begin[rows[row, column]]] = row
-            begin[rows[row, column]] += 1
-        order = placed
-    return order
-
-
-@njit(cache=True, nogil=True)
-def _find(parent: Longs, flip: Flags, f: int) -> int:
-    """Root of face f; afterwards f hangs from it directly and flip[f] is relative to it."""
-    root, relative = f, False
-    while parent[root] != root:
-        relative ^= flip[root]
-        root = parent[root]
-    while parent[f] != root and f != root:
-        parent[f], flip[f], f, relative = root, relative, parent[f], relative ^ flip[f]
-    return root
-
-
-@njit(cache=True, nogil=True)
-def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
-    """Per face: root of its patch, flip relative to it, whether it has an open end, root of its component.
-
-    Edges are joined in the order of their vertices: where a surface cannot be oriented the cut does not depend on
-    which way faces were turned before, so that a second cleaning finds nothing to turn.
-    """
-    m = len(F)
-    patch, flip, component, unused = np.arange(m), np.zeros(m, np.bool_), np.arange(m), np.zeros(m, np.bool_)
-    is_open = np.zeros(m, np.bool_)
-    i = 0
-    while i < 3 * m:
-        f, k = order[i] // 3, order[i] % 3
-        a, b = F[f, k], F[f, (k + 1) % 3]
-        j = i + 1
-        while j < 3 * m:
-            g, k = order[j] // 3, order[j] % 3
-            c, d = F[g, k], F[g, (k + 1) % 3]
-            if min(a, b) != min(c, d) or max(a, b) != max(c, d):
-                break
-            p, q = _find(component, unused, f), _find(component, unused, g)
-            component[max(p, q)] = min(p, q)
-            j += 1
-        if j - i == 2:
-            g, k = order[i + 1] // 3, order[i + 1] % 3
-            p, q = _find(patch, flip, f), _find(patch, flip, g)
-            differ = (a == F[g, k]) ^ flip[f] ^ flip[g]
-            if p != q:
-                patch[max(p, q)] = min(p, q)
-                flip[max(p, q)] = differ
-            else:
-                is_open[f] |= differ
-        else:
-            for h in range(i, j):
-                is_open[order[h] // 3] = True
-        i = j
-    for f in range(m):
-        patch[f], component[f] = _find(patch, flip, f), _find(component, unused, f)
-    return patch, flip, is_open, component
-
-
-@njit(cache=True, nogil=True)
-def _winding(P: Floats, X: Floats, F: Ints) -> Floats:
-    out = np.zeros(len(P))
-    for i in range(len(P)):
-        total = 0.0
-        for f in range(len(F)):
-            a, b, c = X[F[f, 0]] - P[i], X[F[f, 1]] - P[i], X[F[f, 2]] - P[i]
-            la, lb, lc = np.sqrt((a * a).sum()), np.sqrt((b * b).sum()), np.sqrt((c * c).sum())
-            determinant = (
-                a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-            )
-            dots = la * lb * lc + (a * b).sum() * lc + (b * c).sum() * la + (c * a).sum() * lb
-            total += np.arctan2(determinant, dots)
-        out[i] = total / (2 * np.pi)
-    return out

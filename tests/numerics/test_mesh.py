@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinetree.pipeline.errors import MeshError
-from kinetree.tasks.numerics.mesh import clean, oriented, welded, winding
+from kinetree.tasks.numerics.mesh import clean, welded
+from kinetree.tasks.numerics.orientation import oriented, winding
 
 
 def sphere(subdivisions=3, radius=1.0, centre=(0.0, 0.0, 0.0)):
