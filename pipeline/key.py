@@ -10,6 +10,7 @@ Three digests, each of tagged canonical bytes (1 and "1" differ, no two values s
 import ast
 import hashlib
 import importlib.util
+import math
 import struct
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -112,7 +113,7 @@ def _encode(value: Any) -> Iterator[bytes]:
         text = str(value).encode()
         yield b"i" + struct.pack(">Q", len(text)) + text
     elif isinstance(value, float) and type(value) is float:
-        yield b"f" + (b"nan     " if value != value else struct.pack(">d", value))
+        yield b"f" + struct.pack(">d", value if value == value else math.nan)  # one NaN, whatever its bits
     elif isinstance(value, str) and type(value) is str:
         text = value.encode("utf-8", "surrogatepass")
         yield b"s" + struct.pack(">Q", len(text)) + text
@@ -169,7 +170,7 @@ def _imports(tree: ast.AST, module: str, roots: Sequence[str]) -> Iterator[str]:
             package = module if _is_package(module) else module.rpartition(".")[0]
             origin = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
             inner = [f"{origin}.{alias.name}" for alias in node.names]
-            names = [name if _exists(name) else origin for name in inner] if _counts(origin, roots) else []
+            names = [name if _counts(name, roots) and _exists(name) else origin for name in inner]
         yield from (name for name in names if _counts(name, roots))
 
 
@@ -188,7 +189,10 @@ def _exists(name: str) -> bool:
 
 
 def _is_package(module: str) -> bool:
-    return hasattr(sys.modules.get(module), "__path__")
+    if module in sys.modules:
+        return hasattr(sys.modules[module], "__path__")
+    spec = importlib.util.find_spec(module)
+    return spec is not None and spec.submodule_search_locations is not None
 
 
 def _source(module: str) -> str:
