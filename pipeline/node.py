@@ -36,7 +36,7 @@ def parse(text: str, graph: Graph) -> Node:
     index = []
     for part, dim in zip(parts, task.over, strict=True):
         name, equals, number = part.rpartition("=")
-        if (equals and name.strip() != dim) or not re.fullmatch(r"\s*\d+\s*", number):
+        if (equals and name.strip() != dim) or not re.fullmatch(r"\s*[0-9]{1,18}\s*", number):
             raise UnknownNodeError(f"{text!r}: a node of {task.name} is written {expected}")
         index.append(int(number))
     return Node(task.name, tuple(index))
