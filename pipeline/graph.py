@@ -157,6 +157,13 @@ def _one_writer_each(tasks: Sequence[AnyTask]) -> None:
 
 def _every_edge_has_a_writer(graph: Graph) -> None:
     for task in graph.tasks:
+        own = next((a.name for a in task.arguments if a.artifact is task.returns and a.form != "previous"), None)
+        if own is not None or task.along is task.returns:
+            what = f"argument {own}" if own else "the traversal it goes along"
+            raise CycleError(
+                f"{task.name} ({task.where}) waits for itself: {what} is {task.returns.__name__}, which it writes; for its"
+                f" artifact at the previous member write {task.returns.__name__} | None and say along which other artifact"
+            )
         wanted = [(f"argument {a.name}", a.artifact) for a in task.arguments]
         wanted += [("the traversal it goes along", task.along)] if task.along else []
         for what, artifact in wanted:
