@@ -127,8 +127,10 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
     returns = _artifact_of(hints.pop("return", None), place, is_origin=is_origin)
     params: type[Params] | None = None
     arguments: list[Argument] = []
-    for name in inspect.signature(function).parameters:
+    for name, parameter in inspect.signature(function).parameters.items():
         hint = hints.get(name)
+        if parameter.kind not in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
+            raise GraphError(f"{place}: argument {parameter} must have a name of its own; tasks are called by keyword")
         if name == "params":
             if not (isinstance(hint, type) and issubclass(hint, Params)):
                 raise GraphError(f"{place}: params must be annotated with a class of Params, got {hint!r}")
@@ -137,6 +139,8 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
             arguments.append(_argument(name, hint, returns, place))
     if is_origin and arguments:
         raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name}")
+    if is_origin and (params is None or "files" not in inspect.signature(function).parameters):
+        raise GraphError(f"{place}: an origin takes both params and files, one of them is missing")
     reads_previous = any(a.form == "previous" for a in arguments)
     if reads_previous != (along is not None):
         raise GraphError(f"{place}: a task reads its own previous artifact exactly if it says along which traversal")
