@@ -11,6 +11,7 @@ digest when it is read. Only arrays and JSON are stored: nothing is ever unpickl
 """
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -92,9 +93,11 @@ class Store:
         if data is None:
             return None
         try:
-            return Record(**json.loads(data))
+            record = Record(**json.loads(data))
         except (ValueError, TypeError):
             return None
+        is_sound = record.key == key and re.fullmatch("[0-9a-f]{40}", str(record.artifact)) and isinstance(record.files, dict)
+        return record if is_sound else None
 
     def records(self) -> Iterator[Record]:
         """Every readable record."""
@@ -161,14 +164,16 @@ class Store:
 
     def run(self, name: str) -> dict[str, Any]:
         """The record of one run; raises UnknownNodeError where there is none."""
-        data = self.place.get(f"runs/{name}.json")
+        data = self.place.get(f"runs/{name}.json") if Path(name).name == name else None
         if data is None:
             raise UnknownNodeError(f"no run {name!r} in {self.url}; kinetree runs lists them")
         try:
             run = json.loads(data)
-        except ValueError as error:
-            raise StoreError(f"store {self.url}: runs/{name}.json is damaged; delete it") from error
-        return dict(run)
+        except ValueError:
+            run = None
+        if not isinstance(run, dict) or not isinstance(run.get("nodes"), dict):
+            raise StoreError(f"store {self.url}: runs/{name}.json is damaged; delete it")
+        return run
 
     def write_run(self, name: str, run: Mapping[str, Any]) -> None:
         """Writes or replaces the record of one run."""
@@ -182,9 +187,12 @@ class Store:
             except (ValueError, AttributeError):
                 found = "unreadable"
             if found != FORMAT:
-                raise StoreError(f"store {self.url}: its format is {found!r}, this version reads {FORMAT!r}")
+                raise StoreError(
+                    f"store {self.url}: its format is {found!r}, this version reads {FORMAT!r}; name another folder with"
+                    " --store, or use the kinetree that wrote it"
+                )
         elif Path(self.place.url).is_file():
-            raise StoreError(f"store {self.url}: this is a file; a store is a folder")
+            raise StoreError(f"store {self.url}: this is a file; a store is a folder, name one with --store")
         elif set(self.place.names("")) - {"tmp"}:
             raise StoreError(
                 f"store {self.url}: this folder holds other things and is no kinetree store; name an empty or a new one"
