@@ -5,9 +5,10 @@ import logging
 from collections.abc import Iterator
 from typing import Any
 
+from dask.utils import parse_bytes
 from distributed import Client, LocalCluster
 
-from kinetree.pipeline.errors import ClusterError
+from kinetree.pipeline.errors import ClusterError, ConfigError
 
 CONNECT_SECONDS = 10
 
@@ -16,12 +17,16 @@ CONNECT_SECONDS = 10
 def local(workers: int, memory: str | None) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends."""
     with _quiet(), contextlib.ExitStack() as stack:
+        try:
+            limit = parse_bytes(memory) if memory else 0
+        except ValueError:
+            raise ConfigError(f"compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}") from None
         cluster = stack.enter_context(
             LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
-                memory_limit=memory or 0,
+                memory_limit=limit,
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
             )
