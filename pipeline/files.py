@@ -18,6 +18,7 @@ from kinetree.pipeline.store import Store
 
 MEMORY = "files.json"
 SETTLED_SECONDS = 2.0
+UNREADABLE = "unreadable: "
 
 
 @dataclass
@@ -55,11 +56,12 @@ class Files:
         stamp = _stamp(path)
         name = f"{kind}:{path}"
         entry = self._known.get(name)
-        if stamp is not None and isinstance(entry, list) and entry[0] == stamp:
+        if stamp is not None and isinstance(entry, list) and len(entry) == 2 and entry[0] == stamp:
             found: list[str] = entry[1]
             return found
         told = list(read(path))
-        if stamp is not None and stamp == _stamp(path) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS:
+        lasting = not told or not told[0].startswith(UNREADABLE)
+        if lasting and stamp is not None and stamp == _stamp(path) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS:
             self._known[name] = [stamp, told]
             self._learnt = True
         return told
@@ -69,7 +71,7 @@ def _bytes(path: Path) -> list[str]:
     try:
         return [file_digest(path)]
     except OSError as error:
-        return [f"unreadable: {error.strerror}"]
+        return [f"{UNREADABLE}{error.strerror}"]
 
 
 def _stamp(path: Path) -> list[int] | None:
