@@ -53,7 +53,10 @@ class Array:
 
     def check(self, value: Any, name: str | None = None) -> NDArray[Any]:
         """Returns `value` as a read-only contiguous array of this dtype, or says what is wrong with it."""
-        given = np.asarray(value)
+        try:
+            given = np.asarray(value)
+        except ValueError as error:
+            raise ArtifactError(f"{name}: expected an array of dimensions {self.layout}, got {error}") from None
         if given.dtype.kind not in "biuf":
             raise ArtifactError(f"{name}: expected numbers of dtype {self.dtype}, got dtype {given.dtype}")
         if not _castable(given, np.dtype(self.dtype)):
