@@ -1,12 +1,14 @@
 """The sequence as a whole: which frames, how fast, in what unit."""
 
+from pydantic import Field
+
 from kinetree.schemas.array import Artifact, Params
 
 
 class SequenceParams(Params):
     """What the user says about time and unit, where the files do not or should not be believed."""
 
-    fps: float | None = None
+    fps: float | None = Field(default=None, gt=0)
     """Frames a second; None takes what the files state, or leaves it unknown."""
     unit: str | None = None
     """Unit of the coordinates, e.g. mm; None takes what the files state, or leaves it unknown."""
