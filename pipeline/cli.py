@@ -20,6 +20,7 @@ from kinetree.pipeline import gc as collection
 from kinetree.pipeline.draw import Format, draw
 from kinetree.pipeline.errors import ConfigError, InputError, KinetreeError
 from kinetree.pipeline.events import JsonLog, Listener
+from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.plan import Plan
 from kinetree.pipeline.progress import LiveProgress, PlainProgress, clock
@@ -113,6 +114,13 @@ def plan(
         _print_json(found.json())
     else:
         _print_plan(found, nodes)
+
+
+@app.command(name="config", epilog="Examples: kinetree config > walk.yaml · kinetree config paper-2014 · kinetree config walk/")
+def config_(config: Target = None, sets: Set = None) -> None:
+    """Print the whole configuration as YAML, every parameter with its value and what it means."""
+    pipeline = Pipeline.of(config, sets=sets or ())
+    typer.echo(explained(pipeline.config, pipeline.tasks), nl=False)
 
 
 @app.command(epilog='Examples: kinetree why "mesh[frame=3]" walk/ · kinetree why skeleton walk/')

@@ -47,7 +47,7 @@ def test_one_file_each_imports_dask_distributed_and_zarr(path: Path) -> None:
             assert library not in outside(imports(path))
 
 
-@pytest.mark.parametrize("path", list(ROOT.glob("tasks/numerics/*.py")), ids=name)
+@pytest.mark.parametrize("path", list(ROOT.glob("tasks/numerics/**/*.py")), ids=name)
 def test_numerics_know_numbers_and_nothing_of_the_loom(path: Path) -> None:
     assert outside(imports(path)) <= NUMERIC
     assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.pipeline.errors")
@@ -93,6 +93,8 @@ def test_every_operation_has_one_stem_behind_every_door(path: Path) -> None:
     assert (ROOT / "tests" / "tasks" / f"test_{path.name}").is_file()
 
 
-@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/numerics/*.py") if p.name != "__init__.py"], ids=name)
-def test_every_numeric_file_has_its_laws(path: Path) -> None:
-    assert (ROOT / "tests" / "numerics" / f"test_{path.name}").is_file()
+def test_every_numeric_file_is_tried_by_laws() -> None:
+    tried = {m for test in ROOT.glob("tests/numerics/**/test_*.py") for m in imports(test)}
+    for path in ROOT.glob("tasks/numerics/**/*.py"):
+        stem = "kinetree." + name(path).removesuffix(".py").replace("/", ".")
+        assert path.name == "__init__.py" or stem in tried, f"no law imports {stem}"

@@ -1,0 +1,35 @@
+"""The presets that ship with kinetree."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from kinetree.pipeline.config import Compute, checked, preset_names
+from kinetree.pipeline.explain import explained
+from kinetree.pipeline.inspect import Pipeline
+
+CONFIGS = Path(__file__).resolve().parent.parent / "configs"
+
+
+def test_default_yaml_tells_every_default() -> None:
+    default = Pipeline.of()
+    told = explained(default.config, default.tasks)
+    assert (CONFIGS / "default.yaml").read_text().endswith(told), "stale: kinetree config prints the new one"
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_every_preset_is_a_configuration(name: str) -> None:
+    assert Pipeline.of(name).config.method == "mesoscopic"
+
+
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("compute/*.yaml")), ids=lambda path: path.stem)
+def test_every_compute_preset_is_one(path: Path) -> None:
+    told = yaml.safe_load(path.read_text())
+    assert Pipeline.of({"compute": path.stem}).config.compute == checked(Compute, told, path.name)
+
+
+def test_configuration_printed_in_full_is_read_back_as_the_same() -> None:
+    here = Pipeline.of({"mesh": {"component_share": 0.25}, "sequence": {"fps": 12.5}})
+    again = Pipeline.of(yaml.safe_load(explained(here.config, here.tasks)))
+    assert again.config.params == here.config.params
