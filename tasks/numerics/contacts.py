@@ -22,7 +22,9 @@ Floats = npt.NDArray[np.float64]
 _KEYS = ("limb", "target", "begin", "end", "ramp", "direction")
 # The end of a limb sinks into the target by this share of its radius: enough for any sensible voxel to merge them.
 _SINK = 0.6
-_ROUNDS = 200
+# Sine of the angle at which the last bone stands off the skin.
+_STEEP = 0.6
+_ROUNDS = 120
 _DAMPING = 1e-3
 
 
@@ -102,8 +104,8 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
     weight = contact.weights(len(R))
     busy = np.flatnonzero(weight > 0.0)
     chain = bending_chain(figure, contact.limb)
-    goal = _goal(figure, flesh, contact, R, shift, chain)[busy]
-    bent, miss = _reach(figure, contact.limb, chain, goal, R[busy], shift[busy])
+    goal, away = _goal(figure, flesh, contact, R, shift, chain)
+    bent, miss = _reach(figure, contact.limb, chain, goal[busy], away[busy], R[busy], shift[busy])
     held = weight[busy] == 1.0
     if miss[held].max() > 0.002 * figure.height:
         names = ", ".join(figure.joints[j].name for j in chain)
@@ -118,8 +120,8 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
     return blended
 
 
-def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floats, chain: list[int]) -> Floats:
-    """(frame, xyz) place of the limb's end: just under the skin, beside the target, fixed to the part it belongs to."""
+def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floats, chain: list[int]) -> tuple[Floats, Floats]:
+    """(frame, xyz) place of the limb's end, just under the skin beside the target, and (frame, xyz) the way out of it."""
     X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
     carrier = max(int(figure.parents[contact.target]), 0)
     middle = (contact.begin + contact.end) // 2
@@ -135,25 +137,60 @@ def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floa
     skin = ray[np.flatnonzero(field < 0.0)[-1]] if (field < 0.0).any() else 0.0
     end = figure.joints[contact.limb]
     depth = skin + (1.0 - _SINK) * end.radii[-1] * end.flatten
-    return X[:, contact.target] + depth * (G[:, carrier] @ u)
+    away = G[:, carrier] @ u
+    return X[:, contact.target] + depth * away, away
 
 
-def _reach(figure: Figure, limb: int, chain: list[int], goal: Floats, R: Floats, shift: Floats) -> tuple[Floats, Floats]:
-    """Damped least squares on the chain's rotations, all frames at once: (frame, joint, 3, 3) and (frame,) distance left."""
+def _reach(
+    figure: Figure, limb: int, chain: list[int], goal: Floats, away: Floats, R: Floats, shift: Floats
+) -> tuple[Floats, Floats]:
+    """Damped least squares on the chain's rotations, all frames at once: (frame, joint, 3, 3), (frame,) distance left.
+
+    What freedom the goal leaves, lifts the limb's last bone off the body, so that its end touches and not its side.
+
+    goal, away : (frame, xyz) place of the limb's end, and unit normal of the skin there
+    """
     R = R.copy()
-    for _ in range(_ROUNDS):
+    for round_ in range(_ROUNDS):
         X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
         e = goal - X[:, limb]
-        if np.linalg.norm(e, axis=1).max() < 1e-4 * figure.height:
+        if round_ >= _ROUNDS // 2 and np.linalg.norm(e, axis=1).max() < 1e-4 * figure.height:
             break
-        arms = np.stack([X[:, limb] - X[:, j] for j in chain], axis=1)
-        # For a rotation ω at a joint the end moves by ω × arm, so JJᵀ = Σ (|arm|² I − arm armᵀ) and ω = arm × (JJᵀ)⁻¹e.
-        A = np.einsum("tci,tci->t", arms, arms)[:, None, None] * np.eye(3) - np.einsum("tci,tcj->tij", arms, arms)
-        A += _DAMPING * np.trace(A, axis1=1, axis2=2)[:, None, None] * np.eye(3)
-        omega = np.cross(arms, np.linalg.solve(A, e[:, :, None])[:, None, :, 0])
-        omega /= np.maximum(1.0, np.linalg.norm(omega, axis=2, keepdims=True) / 0.2)
+        J, K = (_jacobian(X, chain, joint) for joint in (limb, chain[0]))
+        pinned = np.linalg.inv(J @ _T(J) + _DAMPING * np.trace(J @ _T(J), axis1=1, axis2=2)[:, None, None] * np.eye(3))
+        omega = _T(J) @ pinned @ e[:, :, None]
+        lift = 0.2 * _T(K) @ _lift(X[:, limb], X[:, chain[0]], away)[:, :, None] / (np.sum(K**2, axis=(1, 2))[:, None, None])
+        omega += lift - _T(J) @ pinned @ J @ lift
+        turns = omega.reshape(len(R), len(chain), 3)
+        turns /= np.maximum(1.0, np.linalg.norm(turns, axis=2, keepdims=True) / 0.2)
         for c, j in enumerate(chain):
             P = G[:, figure.parents[j]]
-            R[:, j] = np.swapaxes(P, 1, 2) @ Rotation.from_rotvec(omega[:, c]).as_matrix() @ P @ R[:, j]
+            R[:, j] = _T(P) @ Rotation.from_rotvec(turns[:, c]).as_matrix() @ P @ R[:, j]
     X, _ = forward_kinematics(figure.rest, figure.parents, R, shift)
     return R, np.asarray(np.linalg.norm(goal - X[:, limb], axis=1), dtype=np.float64)
+
+
+def _jacobian(X: Floats, chain: list[int], joint: int) -> Floats:
+    """(frame, xyz, 3 chain) how a joint moves with the rotations of the chain: ω at joint j moves it by ω × (x − x_j)."""
+    blocks = np.zeros((len(X), 3, len(chain), 3))
+    for c, j in enumerate(chain):
+        x, y, z = (X[:, joint] - X[:, j]).T
+        blocks[:, 0, c, 1], blocks[:, 0, c, 2] = z, -y
+        blocks[:, 1, c, 0], blocks[:, 1, c, 2] = -z, x
+        blocks[:, 2, c, 0], blocks[:, 2, c, 1] = y, -x
+    return blocks.reshape(len(X), 3, -1)
+
+
+def _lift(end: Floats, knuckle: Floats, away: Floats) -> Floats:
+    """(frame, xyz) how far the last bone's other joint must go to stand off the skin by `_STEEP`; zero where it does."""
+    bone = knuckle - end
+    length = np.linalg.norm(bone, axis=1, keepdims=True)
+    rise = np.einsum("ti,ti->t", bone, away)[:, None] / length
+    level = bone / length - rise * away
+    level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-12)
+    wanted = length * (_STEEP * away + np.sqrt(1.0 - _STEEP**2) * level)
+    return np.where(rise < _STEEP, wanted - bone, 0.0)
+
+
+def _T(A: Floats) -> Floats:
+    return np.swapaxes(A, 1, 2)

@@ -30,7 +30,7 @@ def roughened(V: Floats, F: Ints, sigma: float, wavelength: float, rng: np.rando
     V          : (vertex, xyz); sigma, wavelength : its unit
     returns    : (vertex, xyz)
     """
-    k = rng.normal(size=(3, _WAVES)) * (2.0 * np.pi / wavelength)
+    k = rng.normal(size=(3, _WAVES)) * (2.0 * np.pi / wavelength / np.sqrt(3.0))
     smooth = np.cos(np.einsum("vi,iw->vw", V, k) + rng.uniform(0.0, 2.0 * np.pi, _WAVES)).sum(axis=1)
     noise = np.sqrt(_SMOOTH_SHARE) * smooth / np.sqrt(0.5 * _WAVES)
     noise += np.sqrt(1.0 - _SMOOTH_SHARE) * rng.normal(size=len(V))

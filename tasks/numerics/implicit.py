@@ -77,7 +77,7 @@ def extent(cones: Cones) -> tuple[Floats, Floats]:
     r = cones.table.max(axis=1)
     held = r > 0.0
     ends = np.stack([cones.A[held], cones.A[held] + cones.D[held]])
-    grow = (r[held] + 0.25 * cones.reach.max())[:, None]
+    grow = (r[held] + 0.25 * cones.reach.max(initial=0.0))[:, None]
     return (ends - grow).min(axis=(0, 1)), (ends + grow).max(axis=(0, 1))
 
 

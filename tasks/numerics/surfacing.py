@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from numba import njit
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 from skimage.measure import marching_cubes
 
@@ -38,7 +40,27 @@ def surface(cones: Cones, spacing: float, rng: np.random.Generator, vertices: in
             spacing *= coarseness * float(np.sqrt(max(_crossings(coarse), 1) / vertices))
     field, origin = _sampled(turned, spacing, shift)
     V, F, _, _ = marching_cubes(_clear_of_zero(field, _SNAP * spacing), 0.0, gradient_direction="descent")
-    return _turned(origin + spacing * V.astype(np.float64), turn.T), F.astype(np.int64)
+    V, F = without_cavities(V.astype(np.float64), F.astype(np.int64))
+    return _turned(origin + spacing * V, turn.T), F
+
+
+def without_cavities(V: Floats, F: Ints) -> tuple[Floats, Ints]:
+    """The mesh without the components that bound a cavity: where limbs touch they enclose pockets that no one sees.
+
+    A component around a cavity faces inwards, so that its signed volume is negative.
+
+    V       : (vertex, xyz), F : (face, corner) counter-clockwise seen from outside the solid
+    returns : the same, vertices renumbered in their order
+    """
+    links = coo_matrix((np.ones(2 * len(F)), (F[:, :2].ravel(), F[:, 1:].ravel())), shape=(len(V), len(V)))
+    count, component = connected_components(links, directed=False)
+    if count == 1:
+        return V, F
+    a, b, c = (V[F[:, k]] - V[0] for k in range(3))
+    volume = np.bincount(component[F[:, 0]], np.einsum("fi,fi->f", a, np.cross(b, c)), minlength=count)
+    kept = volume[component] > 0.0
+    renamed = np.cumsum(kept, dtype=np.int64) - 1
+    return V[kept], renamed[F[kept[F[:, 0]]]]
 
 
 def spacing_for(cones: Cones, vertices: int) -> float:

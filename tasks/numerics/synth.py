@@ -119,7 +119,7 @@ class Body:
             V, F = surface(cones, self._first_spacing, self._rng(_SURFACE, t), self.vertices)
         if self.noise:
             height = self.figure.height
-            V = roughened(V, F, self.noise * height, 0.06 * height, self._rng(_NOISE, t))
+            V = roughened(V, F, self.noise * height, 0.1 * height, self._rng(_NOISE, t))
         if self.holes:
             V, F = punctured(V, F, self.holes, self.hole_size * self.figure.height, self._rng(_HOLES, t))
         return V, F
