@@ -5,17 +5,18 @@ A value comes from, last wins: the schema's default, the preset a file `extends`
 
 import importlib.resources
 import os
+import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
+from kinetree.pipeline.yaml_text import parsed
 from kinetree.schemas.array import Params
 
 PRESETS = importlib.resources.files("kinetree.configs")
@@ -79,15 +80,15 @@ def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Gr
     for text in sets:
         _override(blocks, text, paths)
     method = blocks.get("method", "mesoscopic")
-    if method not in methods:
+    if not isinstance(method, str) or method not in methods:
         raise ConfigError(f"{where}: method {method!r}; {nearest(str(method), methods)}")
     graph = methods[method]
     known = {task.name: task.params for task in graph.tasks if task.params is not None}
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, where)
-    params = {name: checked(cls, blocks.get(name) or {}, f"{where}: {name}") for name, cls in known.items()}
-    output = Path(str(blocks.get("output") or "kinetree-output")).expanduser().absolute()
-    store = Path(str(blocks.get("store") or output / "store")).expanduser()
-    return Config(method, params, output, store.absolute(), checked(Compute, _compute(blocks), f"{where}: compute"))
+    params = {name: checked(cls, _block(blocks, name), f"{where}: {name}") for name, cls in known.items()}
+    output = _folder(blocks, "output", where) or Path("kinetree-output").absolute()
+    store = _folder(blocks, "store", where) or output / "store"
+    return Config(method, params, output, store, checked(Compute, _compute(blocks), f"{where}: compute"))
 
 
 def with_compute(config: Config, **changes: Any) -> Config:
@@ -99,7 +100,7 @@ def with_compute(config: Config, **changes: Any) -> Config:
 def checked(cls: type[M], values: Any, where: str) -> M:
     """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key."""
     if not isinstance(values, Mapping):
-        raise ConfigError(f"{where}: expected keys with values, got {values!r}")
+        raise ConfigError(f"{where}: expected keys with values, got {_short(values)}")
     try:
         return cls.model_validate(dict(values))
     except ValidationError as error:
@@ -116,7 +117,7 @@ def _told(where: str, cls: type[BaseModel], fault: Any) -> str:
     key = ".".join(str(part) for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
         return f"{where}.{key}: no such key; {nearest(key, cls.model_fields)}"
-    return f"{where}.{key}: {fault['msg'][:1].lower()}{fault['msg'][1:]}, got {fault['input']!r}"
+    return f"{where}.{key}: {fault['msg'][:1].lower()}{fault['msg'][1:]}, got {_short(fault['input'])}"
 
 
 def _path_fields(methods: Mapping[str, Graph]) -> Paths:
@@ -129,7 +130,7 @@ def _blocks(target: str | Path | Mapping[str, Any] | None, paths: Paths) -> tupl
         return {}, "config"
     if isinstance(target, Mapping):
         return _extended(dict(target), Path.cwd(), "config", (), paths)
-    path = Path(target).expanduser()
+    path = _expanded(target)
     if path.is_dir():
         if not (path / SAVED).is_file():
             raise ConfigError(f"{path}: no {SAVED} in this folder, so it is not the output of a run; give a YAML file")
@@ -145,11 +146,7 @@ def _file(path: Any, seen: tuple[str, ...], paths: Paths) -> tuple[dict[str, Any
     if str(path) in seen:
         raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
     try:
-        blocks = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
-        raise ConfigError(f"{path}{line}: not valid YAML: {getattr(error, 'problem', None) or error}") from None
+        blocks = parsed(path.read_text(encoding="utf-8"), str(path))
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read: {error}") from None
     if blocks is not None and not isinstance(blocks, dict):
@@ -166,7 +163,7 @@ def _extended(
     parent = blocks.pop("extends", None)
     if parent is None:
         return blocks, where
-    found = PRESETS / f"{parent}.yaml" if str(parent) in preset_names() else base / str(parent)
+    found = PRESETS / f"{parent}.yaml" if str(parent) in preset_names() else (base / _expanded(str(parent))).resolve()
     if not found.is_file():
         raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({', '.join(preset_names())}) nor a file")
     below, _ = _file(found, seen, paths)
@@ -186,31 +183,54 @@ def _absolute(blocks: dict[str, Any], base: Path, paths: Paths) -> dict[str, Any
     told = dict(blocks)
     for key in ("output", "store"):
         if isinstance(told.get(key), str) and "://" not in told[key]:
-            told[key] = str(base / Path(told[key]).expanduser())
+            told[key] = str(base / _expanded(told[key]))
     for task, names in paths.items():
         block = told.get(task)
         if isinstance(block, Mapping):
             here = {n: block[n] for n in names if isinstance(block.get(n), str) and block[n]}
-            told[task] = {**block, **{n: str(base / Path(v).expanduser()) for n, v in here.items()}}
+            told[task] = {**block, **{n: str(base / _expanded(v)) for n, v in here.items()}}
     return told
 
 
 def _override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     key, equals, value = text.partition("=")
     task, dot, name = key.strip().partition(".")
-    if not equals or not task:
+    if not equals or not task or task == "extends":
         raise ConfigError(f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1")
-    try:
-        parsed = yaml.safe_load(value)
-    except yaml.YAMLError:
-        raise ConfigError(f"--set {text}: {value!r} is not valid YAML") from None
+    given = parsed(value, f"--set {text}")
     if not dot:
-        blocks.update(_absolute({task: parsed}, Path.cwd(), paths))
+        blocks.update(_absolute({task: given}, Path.cwd(), paths))
         return
     block = blocks.get(task)
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
-    blocks[task] = {**(block or {}), **_absolute({task: {name: parsed}}, Path.cwd(), paths)[task]}
+    blocks[task] = {**(block or {}), **_absolute({task: {name: given}}, Path.cwd(), paths)[task]}
+
+
+def _folder(blocks: Mapping[str, Any], key: str, where: str) -> Path | None:
+    told = blocks.get(key)
+    if told is None:
+        return None
+    if not isinstance(told, str) or not told:
+        raise ConfigError(f"{where}: {key}: expected the path of a folder, got {_short(told)}; put it in quotes if it is one")
+    if "://" in told:
+        raise ConfigError(f"{where}: {key}: {told} is the address of a service, which is not supported yet; give a folder")
+    return _expanded(told).absolute()
+
+
+def _expanded(path: str | Path) -> Path:
+    """The path with ~ replaced; one that names no user's home is a name like any other."""
+    try:
+        return Path(path).expanduser()
+    except RuntimeError:
+        return Path(path)
+
+
+def _short(value: Any) -> str:
+    """A value as a message can quote it: nested aliases can stand for more than memory holds."""
+    quoting = reprlib.Repr()
+    quoting.maxstring = quoting.maxother = 200
+    return quoting.repr(value)
 
 
 def _refuse_unknown(blocks: Mapping[str, Any], known: Iterable[str], where: str) -> None:
@@ -219,11 +239,15 @@ def _refuse_unknown(blocks: Mapping[str, Any], known: Iterable[str], where: str)
             raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), known)}")
 
 
+def _block(blocks: Mapping[str, Any], name: str) -> Any:
+    return {} if blocks.get(name) is None else blocks[name]
+
+
 def _compute(blocks: Mapping[str, Any]) -> Any:
     """The compute block, or the named one of configs/compute."""
     found = blocks.get("compute")
     if not isinstance(found, str):
-        return found or {}
+        return _block(blocks, "compute")
     names = sorted(f.name.removesuffix(".yaml") for f in (PRESETS / "compute").iterdir() if f.name.endswith(".yaml"))
     if found not in names:
         raise ConfigError(f"compute {found!r}; {nearest(found, names)}")

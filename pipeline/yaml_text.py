@@ -1,0 +1,55 @@
+"""YAML as people write it in configurations: 10:50:2 is a range of frames and not a number to base sixty."""
+
+import re
+from typing import Any
+
+import yaml
+
+from kinetree.pipeline.errors import ConfigError
+
+_INT = "tag:yaml.org,2002:int"
+_FLOAT = "tag:yaml.org,2002:float"
+_DECIMAL = re.compile(r"[-+]?(?:0|[1-9][0-9_]*|0x[0-9a-fA-F][0-9a-fA-F_]*)")
+_POINT = re.compile(r"[-+]?(?:[0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|[0-9]+[eE][-+]?[0-9]+)"
+                    r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")  # fmt: skip
+
+
+class _Loader(yaml.SafeLoader):
+    """Plain values only, each key once; numbers as in YAML 1.2."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Refuses a key that stands there twice, of which one would silently be lost."""
+        seen: set[str] = set()
+        for name, _ in node.value:
+            if isinstance(name, yaml.ScalarNode) and name.tag != "tag:yaml.org,2002:merge":
+                if name.value in seen:
+                    told = f"key {name.value!r} stands there twice"
+                    raise yaml.constructor.ConstructorError(None, None, told, name.start_mark)
+                seen.add(name.value)
+        return super().construct_mapping(node, deep)
+
+
+_Loader.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in rows if tag not in (_INT, _FLOAT)]
+    for first, rows in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+_Loader.add_implicit_resolver(_INT, re.compile(f"^(?:{_DECIMAL.pattern})$"), list("-+0123456789"))
+_Loader.add_implicit_resolver(_FLOAT, re.compile(f"^(?:{_POINT.pattern})$"), list("-+0123456789."))
+
+
+def parsed(text: str, where: str) -> Any:
+    """The plain value that a YAML text holds.
+
+    raises : ConfigError with the line, where it is no YAML, asks for anything but plain values, or is nested beyond reason
+    """
+    try:
+        return yaml.load(text, Loader=_Loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark else ""
+        told = getattr(error, "problem", None) or " ".join(str(error).split())
+        raise ConfigError(f"{where}{line}: not valid YAML: {told}") from None
+    except RecursionError:
+        raise ConfigError(f"{where}: not a configuration: its values are nested too deeply") from None
+    except ValueError as error:
+        raise ConfigError(f"{where}: not valid YAML: {error}; put texts that look like dates or numbers in quotes") from None
