@@ -1,6 +1,8 @@
 """The command `kinetree`: what it takes and what it prints; everything it does is `Pipeline`'s."""
 
 import contextlib
+import errno
+import io
 import json
 import signal
 import sys
@@ -23,6 +25,7 @@ from kinetree.pipeline.events import JsonLog, Listener
 from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.plan import Plan
+from kinetree.pipeline.printable import printable
 from kinetree.pipeline.progress import LiveProgress, PlainProgress, clock
 from kinetree.pipeline.show import shown
 
@@ -51,11 +54,16 @@ Set = Annotated[
 Input = Annotated[
     str | None, typer.Option("--input", "-i", help="Folder or glob of meshes, one a frame; or one .npz or zarr file.")
 ]
-Output = Annotated[Path | None, typer.Option("--output", "-o", help="Folder for the results.")]
-StoreAt = Annotated[Path | None, typer.Option("--store", help="Folder for what is computed; default: OUTPUT/store.")]
+Output = Annotated[str | None, typer.Option("--output", "-o", help="Folder for the results.")]
+StoreAt = Annotated[str | None, typer.Option("--store", help="Folder for what is computed; default: OUTPUT/store.")]
 Frames = Annotated[str | None, typer.Option("--frames", metavar="START:STOP:STEP", help="Frames wanted, e.g. 10:60:2.")]
 Until = Annotated[list[str] | None, typer.Option("--until", metavar="TASK", help="Stop after this task; may be repeated.")]
 Force = Annotated[list[str] | None, typer.Option("--force", metavar="TASK", help="Run this task though it is fresh.")]
+ENVIRONMENT = (
+    errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.ENAMETOOLONG, errno.EIO, errno.EMFILE,
+    errno.ENFILE, errno.ELOOP, errno.ENOTDIR, errno.ESTALE, errno.ENOMEM,
+)  # fmt: skip
+"""What a system refuses for reasons that lie in it and not in kinetree."""
 GATHERS = {"one": "", "tuple": " of all", "mapping": " of all", "previous": " before it"}
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False)
@@ -136,11 +144,11 @@ def why(node: Annotated[str, typer.Argument(help="A node, e.g. mesh[frame=3] or 
                      "reasons": [{"kind": r.kind, "what": r.what} for r in planned.reasons],
                      "reads": reads, "feeds": feeds})  # fmt: skip
         return
-    out.print(str(planned), markup=False)
+    out.print(printable(planned), markup=False)
     for word, names in (("reads", reads), ("feeds", feeds)):
         if names:
             more = f" and {len(names) - 8} more" if len(names) > 8 else ""
-            out.print(f"  {word} {', '.join(names[:8])}{more}", markup=False)
+            out.print(printable(f"  {word} {', '.join(names[:8])}{more}"), markup=False)
 
 
 @app.command(epilog="Examples: kinetree graph · kinetree graph walk/ --format dot | dot -Tsvg > graph.svg")
@@ -148,11 +156,12 @@ def graph(
     config: Target = None,
     form: Annotated[str, typer.Option("--format", help="mermaid, dot or json.")] = "mermaid",
     expanded: Annotated[bool, typer.Option("--expanded", help="One node a frame instead of one a task.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Draw the graph as text: of a configuration with the state of its nodes, or of the method alone."""
     if form not in ("mermaid", "dot", "json"):
         raise ConfigError(f"--format {form}; there are: dot, json, mermaid")
-    chosen: Format = form  # type: ignore[assignment]
+    chosen: Format = "json" if as_json else form  # type: ignore[assignment]
     target = config if config is not None else _here()
     if target is None and expanded:
         raise ConfigError("--expanded draws the nodes of a sequence; name a config or an output folder")
@@ -168,15 +177,15 @@ def show(node: Annotated[str, typer.Argument(help="A node, e.g. mesh[frame=3].")
     if as_json:
         _print_json(told)
         return
-    out.print(told["why"], markup=False)
+    out.print(printable(told["why"]), markup=False)
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("field", "type", "value", "what"):
         table.add_column(name)
     for name, field in told["schema"]["fields"].items():
-        table.add_row(name, escape(field["type"]), escape(_value(told, name)), escape(field["what"]))
+        table.add_row(name, escape(field["type"]), escape(printable(_value(told, name))), escape(field["what"]))
     out.print(table)
     for name, value in (told.get("made") or {}).items():
-        out.print(f"{name}: {_brief(value)}", markup=False)
+        out.print(printable(f"{name}: {_brief(value)}"), markup=False)
 
 
 @app.command(epilog="Example: kinetree runs walk/")
@@ -191,7 +200,8 @@ def runs(config: Target = None, as_json: AsJson = False) -> None:
         table.add_column(name)
     for row in found:
         told = [str(row.get("counts", {}).get(name, "")) for name in ("ran", "fresh", "failed")]
-        table.add_row(row["name"], row["status"], *told, str(row.get("seconds", "")), escape(row["output"]))
+        fields = [row["name"], row["status"], *told, row.get("seconds", ""), row["output"]]
+        table.add_row(*(escape(printable(field)) for field in fields))
     out.print(table)
 
 
@@ -206,9 +216,9 @@ def diff(run_a: Annotated[str, typer.Argument(help="A run, as kinetree runs name
         return
     for word, names in (("only in the first", told["only_a"]), ("only in the second", told["only_b"])):
         if names:
-            out.print(f"{word}: {_brief(names)}", markup=False)
+            out.print(printable(f"{word}: {_brief(names)}"), markup=False)
     for label, reasons in told["begins"].items():
-        out.print(f"begins at {label}: {'; '.join(reasons)}", markup=False)
+        out.print(printable(f"begins at {label}: {'; '.join(reasons)}"), markup=False)
     out.print(f"{len(told['changed'])} nodes have other results{': ' + _brief(told['changed']) if told['changed'] else ''}",
               markup=False)  # fmt: skip
 
@@ -228,7 +238,7 @@ def gc(
     if as_json:
         _print_json(garbage.json())
     else:
-        out.print(f"{'would free' if dry_run else 'freed'} {garbage} in {pipeline.store.url}", markup=False)
+        out.print(f"{'would free' if dry_run else 'freed'} {garbage} in {printable(pipeline.store.url)}", markup=False)
 
 
 @app.command(epilog="Example: kinetree tasks --json")
@@ -257,16 +267,16 @@ def _root(show_version: Annotated[bool, typer.Option("--version", help="Print th
 def main() -> NoReturn:
     """The console script: every refusal is one message and an exit code, never a traceback."""
     signal.signal(signal.SIGTERM, _interrupt)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal that cannot show × must not end a run
     try:
-        app(standalone_mode=False)
-        code = 0
-    except typer.Exit as end:
-        code = end.exit_code
+        code = int(app(standalone_mode=False) or 0)  # the command returns the code of a typer.Exit
     except InputError as error:
-        err.print(f"kinetree: {error}", markup=False, style="red")
+        _print_error(error)
         code = 2
     except KinetreeError as error:
-        err.print(f"kinetree: {error}", markup=False, style="red")
+        _print_error(error)
         code = 1
     except (KeyboardInterrupt, typer.Abort):
         err.print("kinetree: interrupted; what is finished is kept, run again to go on", markup=False)
@@ -283,11 +293,20 @@ def _unexpected(error: Exception) -> int:
     """Click's own refusals of options and arguments, and errors that are ours."""
     told = getattr(error, "format_message", None)
     if told is not None:
-        err.print(f"kinetree: {told()}\nTry kinetree --help", markup=False, style="red")
+        if told():  # the help that a bare command asks for is printed already
+            err.print(f"kinetree: {printable(told())}\nTry kinetree --help", markup=False, style="red")
+        return 2
+    if isinstance(error, OSError) and error.errno in ENVIRONMENT:
+        err.print(f"kinetree: {printable(error.filename or 'the system')}: {error.strerror}", markup=False, style="red")
         return 2
     traceback.print_exception(error)
     err.print("kinetree: this is an error in kinetree itself; the store is whole. Please report it with the lines above.")
     return 1
+
+
+def _print_error(error: KinetreeError) -> None:
+    lines = isinstance(error, ConfigError)  # one line a key; elsewhere a line end is part of somebody's file name
+    err.print(f"kinetree: {printable(error, lines=lines)}", markup=False, style="red")
 
 
 def _interrupt(*_: object) -> NoReturn:
@@ -297,18 +316,23 @@ def _interrupt(*_: object) -> NoReturn:
 def _pipeline(
     config: str | None,
     source: str | None = None,
-    output: Path | None = None,
-    store: Path | None = None,
+    output: str | None = None,
+    store: str | None = None,
     frames: str | None = None,
     sets: list[str] | None = None,
 ) -> Pipeline:
     """The pipeline that arguments and options name; options win over --set, and both over the file."""
     options = {"source.input": source, "source.frames": frames, "output": output, "store": store}
-    told = [f"{key}={json.dumps(str(value))}" for key, value in options.items() if value is not None]
+    told = [f"{key}={_quoted(str(value))}" for key, value in options.items() if value is not None]
     target = config if config is not None else (None if source else _here())
     if target is None and not source and store is None:
         raise ConfigError("nothing to work on: name a config or an output folder, or give --input FOLDER")
     return Pipeline.of(target, sets=[*(sets or ()), *told])
+
+
+def _quoted(text: str) -> str:
+    """The text as a YAML string, whatever characters a path has."""
+    return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\U{ord(c):08x}" for c in text) + '"'
 
 
 def _here() -> str | None:
@@ -323,9 +347,9 @@ def _progress(pipeline: Pipeline, quiet: bool, log: Path | None) -> Iterator[lis
         listeners: list[Listener] = []
         if log is not None:
             try:
-                listeners.append(JsonLog(stack.enter_context(log.open("a", encoding="utf-8"))))
+                listeners.append(JsonLog(stack.enter_context(log.open("a", encoding="utf-8", errors="backslashreplace"))))
             except OSError as error:
-                raise ConfigError(f"--log-json {log}: cannot be written: {error.strerror}") from None
+                raise ConfigError(f"--log-json {log}: cannot be written: {error.strerror}; name another file") from None
         if not quiet:
             workers = pipeline.config.compute.worker_count
             if err.is_terminal:
@@ -337,7 +361,7 @@ def _progress(pipeline: Pipeline, quiet: bool, log: Path | None) -> Iterator[lis
 
 def _print_plan(found: Plan, nodes: bool) -> None:
     for row in found.nodes if nodes else found.tasks:
-        out.print(str(row), markup=False)
+        out.print(printable(row), markup=False)
     if found.is_done:
         out.print("everything is fresh; a run would compute nothing")
 
@@ -347,12 +371,13 @@ def _print_summary(told: dict[str, Any], folder: Path) -> None:
     line = ", ".join(f"{count} {name}" for name, count in counts.items() if count or name in ("ran", "fresh"))
     _print_failures(told)
     out.print(f"{told['status']}: {line} in {clock(told['seconds'])}")
-    out.print(f"results: {folder}", markup=False)
+    out.print(f"results: {printable(folder)}", markup=False)
 
 
 def _print_failures(told: dict[str, Any]) -> None:
     for failure in told["failures"][:20]:
-        err.print(f"{failure['node']}: {failure['error']}: {failure['message']}", markup=False, style="red")
+        line = printable(f"{failure['node']}: {failure['error']}: {failure['message']}")
+        err.print(line, markup=False, style="red")
     if len(told["failures"]) > 20:
         err.print(f"… and {len(told['failures']) - 20} more, all in run.json", markup=False, style="red")
 

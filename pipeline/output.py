@@ -24,4 +24,4 @@ def write_run_json(config: Config, told: dict[str, Any]) -> None:
 
 
 def _write(folder: Path, name: str, text: str) -> None:
-    Folder(folder, "output folder", beside="").put(name, text.encode())
+    Folder(folder, "output folder", beside="").put(name, text.encode("utf-8", "backslashreplace"))

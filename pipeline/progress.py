@@ -8,6 +8,8 @@ from rich.console import Console
 from rich.live import Live
 from rich.table import Table
 
+from kinetree.pipeline.printable import printable
+
 PLAIN_SECONDS = 5.0
 
 
@@ -124,7 +126,7 @@ class PlainProgress:
 
     def _say(self, line: str) -> None:
         self._told = time.monotonic()
-        self._console.print(line, markup=False, highlight=False, soft_wrap=True)
+        self._console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
 
 
 def clock(seconds: float) -> str:
