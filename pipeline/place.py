@@ -109,7 +109,8 @@ class Folder:
     def tree(self, path: str) -> Mapping[str, int]:
         """Size of every object below `path`, by path relative to it."""
         top = self.root / path
-        sizes = {str(f.relative_to(top)): self.size(str(f.relative_to(self.root))) for f in sorted(top.rglob("*")) if f.is_file()}
+        files = [file for file in sorted(top.rglob("*")) if file.is_file()]
+        sizes = {str(file.relative_to(top)): self.size(str(file.relative_to(self.root))) for file in files}
         return {name: size for name, size in sizes.items() if size is not None}  # another run may remove what is listed here
 
     def modified(self, path: str) -> float:
