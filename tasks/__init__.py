@@ -8,6 +8,7 @@ if __name__ != "kinetree.tasks":
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.mesh import mesh
 from kinetree.tasks.sequence import sequence
 from kinetree.tasks.source import source
@@ -17,6 +18,7 @@ MESOSCOPIC = (
     sequence,
     mesh,
     connectivity,  # Sec. 7
+    geodesics,  # Sec. 4
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}

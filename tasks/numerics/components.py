@@ -1,0 +1,30 @@
+"""The largest connected piece of a surface: distances run over one piece only."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+Longs = npt.NDArray[np.int64]
+
+
+def largest_component(V: Floats, F: Ints) -> tuple[Longs, Longs, float]:
+    """The vertices and faces of the piece with the greatest area; pieces are what shared vertices connect.
+
+    V, F    : (vertex, xyz) mesh unit · (face, corner)
+    returns : (kept vertex,) ascending numbers in V · (face, corner) of the piece, counted within the kept vertices ·
+              the piece's share of the area, 1 where nothing has any area
+    """
+    links = coo_array((np.ones(2 * len(F), bool), (F[:, [0, 1]].ravel(), F[:, [1, 2]].ravel())), shape=(len(V), len(V)))
+    count, piece = connected_components(links, directed=False)
+    of_face = piece[F[:, 0]]
+    area = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
+    areas = np.bincount(of_face, area, count)
+    largest = int(np.argmax(areas)) if areas.any() else int(of_face[0])
+    kept = np.flatnonzero(piece == largest)
+    number = np.full(len(V), -1)
+    number[kept] = np.arange(len(kept))
+    total = float(areas.sum())
+    return kept, number[F[of_face == largest]], float(areas[largest]) / total if total else 1.0
