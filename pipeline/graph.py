@@ -120,7 +120,8 @@ class Graph:
 
     def _remember_code(self) -> None:
         """Digests the code now, while what lies there is what was loaded: a process that lives on while its source is
-        edited must not pass the old code's results off as the new code's."""
+        edited must not pass the old code's results off as the new code's.
+        """
         for task in self.tasks:
             with contextlib.suppress(ImportError, ValueError):  # tasks typed at a prompt can be drawn, not run
                 code_closure(task.module)

@@ -26,13 +26,11 @@ from dataclasses import dataclass
 from typing import Any, Generic, Literal, ParamSpec, TypeVar, Union
 
 from kinetree.pipeline.errors import GraphError
-from kinetree.pipeline.key import code_closure
 from kinetree.schemas.array import Artifact, Params
 
 P = ParamSpec("P")
 R = TypeVar("R")
 Space = tuple[str, ...]
-_unidentified: list[str] = []
 Form = Literal["one", "tuple", "mapping", "previous"]
 
 
@@ -109,17 +107,11 @@ def origin(*, over: str = "") -> Callable[[Callable[P, R]], Task[P, R]]:
 
 
 def load(reference: str) -> "Task[..., Any]":
-    """The task that `module:name` names, for a worker that was only told its name.
-
-    The first time, the code of every task that came along is identified too: from then on an edit on disk, which this
-    process does not run, cannot pass for what it runs.
-    """
+    """The task that `module:name` names, for a worker that was only told its name."""
     module, _, name = reference.partition(":")
     found = getattr(importlib.import_module(module), name)
     if not isinstance(found, Task):
         raise GraphError(f"{reference} is not a task")
-    while _unidentified:
-        code_closure(_unidentified.pop())
     return found
 
 
@@ -152,7 +144,6 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
     reads_previous = any(a.form == "previous" for a in arguments)
     if reads_previous != (along is not None):
         raise GraphError(f"{place}: a task reads its own previous artifact exactly if it says along which traversal")
-    _unidentified.append(function.__module__)
     return Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
 
 
