@@ -16,7 +16,7 @@ def mesh(*parts: trimesh.Trimesh) -> Mesh:
     return Mesh(vertices=V, faces=np.array(whole.faces), vertex_of_input=np.arange(len(V)), cleaning=Cleaning())
 
 
-BALL = trimesh.creation.icosphere(subdivisions=3)
+BALL = trimesh.creation.icosphere(subdivisions=4)
 SMALL = trimesh.creation.icosphere(subdivisions=2, radius=0.3).apply_translation([3, 0, 0])
 
 
