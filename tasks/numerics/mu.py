@@ -7,7 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from kinetree.pipeline.errors import ConfigError, DisconnectedMeshError
-from kinetree.tasks.numerics.geodesics import Topology, propagate, topology, workspace
+from kinetree.tasks.numerics.front import Topology, propagate, topology, workspace
 from kinetree.tasks.numerics.surface import Surface
 
 Floats = npt.NDArray[np.float64]

@@ -1,6 +1,7 @@
 """A triangle mesh prepared for many distance queries: ordered rings, half-edges and lengths (2014, §4)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +31,8 @@ class Surface:
     apex        : (half-edge,) vertex opposite
     twin        : (half-edge,) the other face's half-edge; NONE at a border, at an edge of three or more faces and
                   between faces of opposite orientation
+    opening     : (half-edge,) its twin if the angle opposite the twin exceeds a sixth of a turn, else NONE: a vertex
+                  at a smaller angle is reached in time through its triangle's other edges
     length      : (half-edge,) mesh unit
     bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or no closed ring of faces
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
@@ -46,6 +49,7 @@ class Surface:
     ring_edge: Indices
     apex: Indices
     twin: Indices
+    opening: Indices
     length: Lengths
     bends: npt.NDArray[np.uint8]
     area: Floats
@@ -54,7 +58,7 @@ class Surface:
     edge: float
 
     @classmethod
-    def of(cls, V: Floats, F: Ints) -> "Surface":
+    def of(cls, V: Floats, F: npt.NDArray[np.integer[Any]]) -> "Surface":
         """Prepare a mesh; open borders, any number of components and edges of three or more faces are accepted.
 
         V : (vertex, xyz) finite, mesh unit
@@ -69,6 +73,8 @@ class Surface:
         tail, head, apex = F.ravel(), F[:, [1, 2, 0]].ravel(), F[:, [2, 0, 1]].ravel()
         length = np.linalg.norm(P[head] - P[tail], axis=1)
         twin = _twins(tail, head, len(P))
+        angle = _angles(length)
+        wide = np.append(angle[_before(np.arange(len(length)))] > np.pi / 3, False)
         corner = np.argsort(tail, kind="stable")
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
@@ -86,8 +92,9 @@ class Surface:
             ring_edge=edge.astype(np.uint32),
             apex=apex.astype(np.uint32),
             twin=twin.astype(np.uint32),
+            opening=np.where(wide[np.minimum(twin, len(length))], twin, NONE).astype(np.uint32),
             length=length.astype(np.float32),
-            bends=_bends(length, tail, head, twin, len(P)),
+            bends=_bends(angle, tail, head, twin, len(P)),
             area=area,
             centre=(area[:, None] * V).sum(axis=0) / max(area.sum(), np.finfo(float).tiny),
             position=np.ascontiguousarray(V, dtype=np.float64),
@@ -127,12 +134,17 @@ def _twins(tail: Ints, head: Ints, vertices: int) -> Ints:
     return twin
 
 
-def _bends(length: Floats, tail: Ints, head: Ints, twin: Ints, vertices: int) -> npt.NDArray[np.uint8]:
-    """A shortest path passes through a vertex only if the angle on both sides is at least π."""
+def _angles(length: Floats) -> Floats:
+    """(half-edge,) the angle at its tail; 0 in a triangle without area or with impossible sides."""
     edge = np.arange(len(length))
     a, b, c = length, length[_before(edge)], length[_after(edge)]
     with np.errstate(divide="ignore", invalid="ignore"):
-        angle = np.arccos(np.clip(np.nan_to_num((a * a + b * b - c * c) / (2 * a * b)), -1, 1))
+        cosine = (a * a + b * b - c * c) / (2 * a * b)
+    return np.arccos(np.clip(np.nan_to_num(cosine, nan=1.0), -1.0, 1.0))
+
+
+def _bends(angle: Floats, tail: Ints, head: Ints, twin: Ints, vertices: int) -> npt.NDArray[np.uint8]:
+    """A shortest path passes through a vertex only if the angle on both sides is at least π."""
     bends = np.bincount(tail, angle, vertices) > 2 * np.pi
     alone = twin == NONE
     bends[tail[alone]] = bends[head[alone]] = True

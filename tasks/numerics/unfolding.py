@@ -82,7 +82,7 @@ def unfold_next(count: np.uint64, code: Indices, length: Lengths, W: Floats) -> 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def leave_first(count: np.uint64, code: Indices, ring_edge: Indices, twin: Indices, W: Floats, passing: Indices) -> np.uint64:
+def leave_first(count: np.uint64, code: Indices, ring_edge: Indices, opening: Indices, W: Floats, passing: Indices) -> np.uint64:
     """Triangles whose line passes beside the edge go on to the neighbour it enters; how many there are.
 
     code    : (i,) 2 × ring entry + 1 if the edge's OTHER end is the entry before
@@ -92,7 +92,7 @@ def leave_first(count: np.uint64, code: Indices, ring_edge: Indices, twin: Indic
     for k in range(count):
         passing[kept] = k
         kept += np.uint64((W[k + Y] > 0.0) & ((W[k + FROM_LEFT] < 0.0) | (W[k + FROM_RIGHT] < 0.0)))
-    going, borders = _0, np.uint64(twin.size)
+    going, borders = _0, np.uint64(opening.size)
     for k in range(kept):
         i = np.uint64(passing[k])
         outside = np.uint64(code[i]) & _1
@@ -100,7 +100,7 @@ def leave_first(count: np.uint64, code: Indices, ring_edge: Indices, twin: Indic
         left = W[i + FROM_LEFT] < 0.0
         corner = h // _3 * _3
         side = h - corner + (_1 if left else outside + outside)
-        across = np.uint64(twin[corner + (side if side < _3 else side - _3)])
+        across = np.uint64(opening[corner + (side if side < _3 else side - _3)])
         x, y, cx, cy, base, sigma = W[i + X], W[i + Y], W[i + CX], W[i + CY], W[i + BASE], W[i + SIGMA]
         # rows are compacted in place: entry `going` is never ahead of the one being read
         W[going + AX] = cx if left else 0.0
