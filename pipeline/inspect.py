@@ -61,11 +61,14 @@ class Pipeline:
 
     def schedule(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Schedule:
         """The schedule behind `plan` and `run`, laid out as far as it is known."""
+        return self._schedule(Files.of(self.store), until, force)
+
+    def _schedule(self, files: Files, until: Iterable[str], force: Iterable[str]) -> Schedule:
         wanted = tuple(until)
         graph = self.tasks.until(wanted) if wanted else self.tasks
         forced = [self.tasks.task(name).name for name in force]
         history = History(self.store, str(self.config.output))
-        return Schedule(graph, self.config.params, self.store, self._given(graph), force=forced, recall=history.recall)
+        return Schedule(graph, self.config.params, self.store, self._given(graph, files), force=forced, recall=history.recall)
 
     def run(
         self,
@@ -81,8 +84,10 @@ class Pipeline:
         raises : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
         """
         started = time.perf_counter()
-        schedule = self.schedule(until=until, force=force)
+        files = Files.of(self.store)
+        schedule = self._schedule(files, until, force)
         self.store.create()
+        files.save()
         write_config(self.config)
         opened = opening(new_name(), self.config)
         self.store.write_run(opened["name"], opened)
@@ -161,14 +166,12 @@ class Pipeline:
         write_run_json(self.config, {"run": opened["name"], **summary(account, status, seconds)})
         self.store.write_run(opened["name"], told)
 
-    def _given(self, graph: Graph) -> Given:
-        files = Files.of(self.store)
+    def _given(self, graph: Graph, files: Files) -> Given:
         given: dict[str, dict[Index, Artifact]] = {}
         for task in graph.tasks:
             if task.is_origin:
                 told = task(params=self.config.params[task.name], files=files)
                 given[task.name] = {(member,): value for member, value in told.items()} if task.over else {(): told}
-        files.save()
         return given
 
 

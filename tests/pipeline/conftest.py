@@ -75,11 +75,13 @@ class Toys:
     flags: Path
     log: Path
     output: Path
+    main: str = "toys"
+    """The module of the package that has the graph."""
 
     @property
     def module(self) -> ModuleType:
-        """The package's module of tasks, as it is written now."""
-        return importlib.import_module(f"{self.name}.toys")
+        """The module that has the graph, as it is written now."""
+        return importlib.import_module(f"{self.name}.{self.main}")
 
     def edit(self, old: str, new: str, file: str = "toys.py") -> None:
         """Replaces text in the source and forgets what was loaded of it."""
