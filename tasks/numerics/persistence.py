@@ -1,0 +1,183 @@
+"""0-dimensional persistence of a function on a surface, and the loops that its level sets close (2014, §5.1: Morse theory).
+
+Superlevel sets {f ≥ c} grow as c falls: a component is born at a maximum and dies at the saddle where it meets an older
+one (the elder rule). Between two vertices f is linear, so saddles lie at vertices.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class Peaks(NamedTuple):
+    """Maxima of a function and where their components end; highest persistence first, ties by vertex.
+
+    vertex      : (peak,) the maximum
+    saddle      : (peak,) vertex at which its component meets that of `into`; −1 if it is a whole component's highest
+    into        : (peak,) row of the older peak; −1 if none
+    persistence : (peak,) f(vertex) − f(saddle); for a whole component's highest, down to that component's minimum
+    """
+
+    vertex: Ints
+    saddle: Ints
+    into: Ints
+    persistence: Floats
+
+
+def superlevel_peaks(f: Floats, F: npt.NDArray[np.integer], least: float = 0.0) -> Peaks:
+    """Maxima of f with their 0-dimensional persistence over superlevel sets, by union-find from the top down.
+
+    Equal values are ordered by vertex number, the smaller one first; this makes pairs of persistence 0, which never count.
+
+    f       : (vertex,) finite; vertices in no face are ignored
+    F       : (face, corner)
+    least   : only peaks whose persistence is at least this and above 0, in the unit of f
+    returns : Peaks; a component on which f is constant has none
+    """
+    order = np.argsort(-f, kind="stable").astype(np.int64)
+    peak, saddle, into, low = _merges(order, *_neighbours(F, len(f)))
+    persistence = f[peak] - f[np.where(saddle >= 0, saddle, low)]
+    kept = np.flatnonzero((persistence >= least) & (persistence > 0.0))
+    kept = kept[np.lexsort((peak[kept], -persistence[kept]))]
+    row = np.full(len(f), -1, dtype=np.int64)
+    row[peak[kept]] = np.arange(len(kept))
+    # an older peak always persists longer than the one that ends in it, so it was kept too
+    older = np.where(into[kept] >= 0, row[into[kept]], -1)
+    return Peaks(peak[kept], saddle[kept], older, persistence[kept])
+
+
+def loop_counts(f: Floats, F: npt.NDArray[np.integer], levels: int = 200) -> Ints:
+    """How many independent loops of the surface cross each level of f: the spectrum of its handles.
+
+    By Mayer–Vietoris, b₀(level) − b₀(above) − b₀(below) + b₀(surface) is the rank of H₁(surface) → H₀(level). A bump adds
+    one to the level and one to what lies above, so noise cancels however rough the surface is; a handle counts at all
+    levels that it spans, and a small one spans few.
+
+    f       : (vertex,) finite; vertices in no face are ignored
+    F       : (face, corner)
+    levels  : evenly spaced between min f and max f, both left out
+    returns : (level,) from low to high; zeros where f is constant
+    """
+    used = np.unique(F)
+    if not len(used) or not f[used].max() > f[used].min():
+        return np.zeros(levels, dtype=np.int64)
+    low, high = float(f[used].min()), float(f[used].max())
+    # the levels below each vertex: a vertex exactly on a level lies above it, for all three counts
+    step = np.searchsorted(low + (high - low) * np.arange(1, levels + 1) / (levels + 1), f, side="right").astype(np.int64)
+    start, ring = _neighbours(F, len(f))
+    above = _components(step, start, ring, levels)
+    below = _components(levels - step, start, ring, levels)
+    return _contours(*_face_edges(F, step), levels) - above[1:] - below[:0:-1] + above[0]
+
+
+def _neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
+    """Neighbours of every vertex in one array: v's are ring[start[v] : start[v + 1]], repeated where faces share them."""
+    tail = F[:, [0, 1, 2, 1, 2, 0]].ravel().astype(np.int64)
+    head = F[:, [1, 2, 0, 0, 1, 2]].ravel().astype(np.int64)
+    start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=vertices))]).astype(np.int64)
+    return start, head[np.argsort(tail, kind="stable")]
+
+
+def _face_edges(F: npt.NDArray[np.integer], step: Ints) -> tuple[Ints, Ints, Ints]:
+    """Edges of every face by number, and the first and last + 1 level that each edge crosses.
+
+    returns : (face, corner) edge numbers, (edge,) first level, (edge,) end
+    """
+    tail, head = F.ravel().astype(np.int64), F[:, [1, 2, 0]].ravel().astype(np.int64)
+    key = np.minimum(tail, head) * len(step) + np.maximum(tail, head)
+    unique, edge = np.unique(key, return_inverse=True)
+    a, b = step[unique // len(step)], step[unique % len(step)]
+    return edge.reshape(F.shape).astype(np.int64), np.minimum(a, b), np.maximum(a, b)
+
+
+@njit(cache=True, nogil=True)
+def _root(parent: Ints, v: int) -> int:
+    while parent[v] != v:
+        parent[v] = parent[parent[v]]
+        v = parent[v]
+    return v
+
+
+@njit(cache=True, nogil=True)
+def _merges(order: Ints, start: Ints, ring: Ints) -> tuple[Ints, Ints, Ints, Ints]:
+    """Every peak in falling order, the vertex where it ends (−1: never), the older peak there, the last vertex it has."""
+    n = len(order)
+    parent = np.full(n, -1, np.int64)
+    # of each component, named by its highest vertex
+    row, last = np.full(n, -1, np.int64), np.full(n, -1, np.int64)
+    rank = np.empty(n, np.int64)
+    rank[order] = np.arange(n)
+    peak, saddle, into = np.empty(n, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
+    count = 0
+    for v in order:
+        if start[v] == start[v + 1]:
+            continue
+        parent[v] = v
+        own = v
+        for q in range(start[v], start[v + 1]):
+            if parent[ring[q]] < 0:
+                continue
+            other = _root(parent, ring[q])
+            if other == own:
+                continue
+            old, young = (own, other) if rank[own] < rank[other] else (other, own)
+            if young != v:
+                saddle[row[young]], into[row[young]] = v, old
+            parent[young] = old
+            own = old
+        if own == v:
+            peak[count], row[v] = v, count
+            count += 1
+        last[own] = v
+    return peak[:count], saddle[:count], into[:count], last[peak[:count]]
+
+
+@njit(cache=True, nogil=True)
+def _components(step: Ints, start: Ints, ring: Ints, levels: int) -> Ints:
+    """(levels + 1,) components of the vertices with at least k levels below them, for k = 0 to `levels`."""
+    n = len(step)
+    parent = np.full(n, -1, np.int64)
+    counts = np.zeros(levels + 1, np.int64)
+    alive = 0
+    k = levels
+    for v in np.argsort(-step, kind="mergesort"):
+        while k > step[v]:
+            counts[k] = alive
+            k -= 1
+        if start[v] == start[v + 1]:
+            continue
+        parent[v] = v
+        alive += 1
+        for q in range(start[v], start[v + 1]):
+            if parent[ring[q]] >= 0:
+                a, b = _root(parent, v), _root(parent, ring[q])
+                if a != b:
+                    parent[b] = a
+                    alive -= 1
+    counts[: k + 1] = alive
+    return counts
+
+
+@njit(cache=True, nogil=True)
+def _contours(edges: Ints, first: Ints, end: Ints, levels: int) -> Ints:
+    """(level,) components of each level set: crossings of edges, joined where a face has two of them."""
+    offset = np.zeros(len(first) + 1, np.int64)
+    counts = np.zeros(levels, np.int64)
+    for e in range(len(first)):
+        offset[e + 1] = offset[e] + end[e] - first[e]
+        counts[first[e] : end[e]] += 1
+    parent = np.arange(offset[-1])
+    for f in range(len(edges)):
+        for i in range(3):
+            a, b = edges[f, i], edges[f, (i + 1) % 3]
+            for k in range(max(first[a], first[b]), min(end[a], end[b])):
+                x, y = _root(parent, offset[a] + k - first[a]), _root(parent, offset[b] + k - first[b])
+                if x != y:
+                    parent[y] = x
+                    counts[k] -= 1
+    return counts
