@@ -83,7 +83,7 @@ def test_whatever_a_parameter_reaches_runs_and_nothing_else(toys):
     graph = toys.pipeline().tasks.networkx()
     # edges that fan out are not arguments: cones are laid out by intervals, tracks follow the order
     graph.add_edges_from([("intervals", "cones"), ("order", "track")])
-    run = toys.run(points={"scale": 1.7})
+    run = toys.run(points={"scale": 1.3})
     assert {n.partition("[")[0] for n in run.ran} <= {"points", *nx.descendants(graph, "points")}
     assert run.counts["points"] == run.counts["smooth"] == run.counts["centred"] == run.counts["track"] == 6
 

@@ -1,0 +1,111 @@
+"""Wherever nodes are computed the results are the same bytes; workers may die, stale ones are refused."""
+
+import json
+
+import pytest
+from distributed import Client, LocalCluster
+
+from kinetree.pipeline.errors import StaleWorkerError
+from kinetree.pipeline.execute import execute
+from kinetree.pipeline.run import _steps
+
+
+@pytest.fixture
+def cluster(toys):
+    """Two worker processes that know the toy package, as somebody else's dask would."""
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as found:
+        yield found
+
+
+def test_results_are_the_same_bytes_wherever_they_are_computed(toys, cluster, tmp_path):
+    def digests(name, client=None, **compute):
+        toys.clear()
+        run = toys.run(client, store=str(tmp_path / name), compute={"executor": "sync", **compute})
+        assert run.told["status"] == "done"
+        assert len(toys.executions()) == 40
+        return toys.artifacts(store=str(tmp_path / name)), sorted(toys.executions())
+
+    expected = digests("sync")
+    assert digests("thread", executor="threads", workers=1) == expected
+    assert digests("threads", executor="threads", workers=4) == expected
+    assert digests("address", scheduler=cluster.scheduler_address) == expected
+    with Client(cluster) as client:
+        assert digests("client", client) == expected
+
+
+def test_a_killed_worker_costs_its_node_another_try_and_nothing_else(toys, tmp_path):
+    """Worker processes of the run's own, one of which kills itself with SIGKILL in the middle of a node."""
+    toys.run(store=str(tmp_path / "calm"))
+    toys.clear()
+    toys.flag("die-total-210")
+    toys.flag("fail-report-6")
+    run = toys.run(compute={"executor": "processes", "workers": 2})
+    assert run.heard.nodes("failed") == ["report"]
+    assert toys.executions().count("total-210") == 2
+    assert toys.executions().count("report-6") == 1, "an error of the task's own is no reason to try again"
+    calm = toys.artifacts(store=str(tmp_path / "calm"))
+    assert {**toys.artifacts(), "report": calm["report"]} == calm
+
+
+def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, cluster, tmp_path):
+    with Client(cluster) as client:
+        assert len(toys.run(client, until=("smooth",)).ran) == 12
+        assert len(toys.run(client, until=("smooth",), store=str(tmp_path / "other")).ran) == 12
+        assert toys.run(client, until=("smooth",), force=("smooth",)).ran == {f"smooth[frame={n}]" for n in range(6)}
+        toys.edit("return Smooth(value=rough(", "return Smooth(value=1.0 + rough(")
+        told = toys.command("run", str(toys.yaml()), "--scheduler", cluster.scheduler_address, "--quiet")
+        assert told.returncode == 2
+        assert "planned with other code" in told.stderr
+        assert "restart the workers" in told.stderr
+        assert "Traceback" not in told.stderr
+
+
+def parcel(toys, **blocks):
+    """The first parcel of a run, as it would travel."""
+    schedule = toys.pipeline(**blocks).schedule()
+    return schedule, _steps(schedule, schedule.travelling_with(next(schedule.ready())))
+
+
+def test_a_worker_with_other_code_refuses(toys):
+    schedule, steps = parcel(toys)
+    schedule.store.create()
+    toys.edit("return Smooth(value=rough(", "return Smooth(value=1.0 + rough(")
+    toys.module  # noqa: B018 - a worker that has loaded the new code
+    first, second = execute(schedule.store.url, steps)
+    assert (first.status, first.error) == ("refused", StaleWorkerError.__name__)
+    assert "points[frame=0]: planned with other code" in first.message
+    assert second.status == "undone"
+    assert toys.executions() == []
+
+
+def test_a_worker_that_loaded_old_code_does_not_pass_it_off_as_the_new(toys):
+    schedule, steps = parcel(toys)
+    schedule.store.create()
+    module = toys.module
+    path = toys.folder / toys.name / "toys.py"
+    path.write_text(path.read_text().replace("return Smooth(value=rough(", "return Smooth(value=1.0 + rough("))
+    # edited below a process that lives on: what it plans and computes is still the old code
+    assert {r.status for r in execute(schedule.store.url, steps)} == {"ran"}
+    assert toys.run(until=("smooth",)).told["nodes"]["failed"] == 0
+    old = toys.artifacts()["smooth[frame=0]"]
+    assert toys.module is module
+    toys.forget()
+    plan = toys.pipeline().plan()
+    assert [str(r) for r in plan["points[frame=0]"].reasons] == [f"code: {toys.name}.toys"]
+    toys.run(until=("smooth",))
+    assert toys.artifacts()["smooth[frame=0]"] != old
+
+
+def test_a_worker_derives_the_planners_keys(toys, tmp_path):
+    toys.run(compute={"executor": "processes", "workers": 1}, until=("smooth",))
+    assert toys.run(until=("smooth",)).ran == set()
+
+
+def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):
+    from kinetree.pipeline import clusters
+    from kinetree.pipeline.errors import ClusterError
+
+    monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.2)
+    with pytest.raises(ClusterError, match="nobody answers there"):
+        toys.run(compute={"scheduler": "tcp://127.0.0.1:9"})
+    assert json.loads((toys.output / "run.json").read_text())["status"] == "stopped"
