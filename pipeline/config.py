@@ -6,7 +6,7 @@ A value comes from, last wins: the schema's default, the preset a file `extends`
 import importlib.resources
 import os
 import reprlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -23,8 +23,8 @@ PRESETS = importlib.resources.files("kinetree.configs")
 SAVED = "config.yaml"
 """Name under which a run leaves its configuration in its output folder."""
 M = TypeVar("M", bound=BaseModel)
-Paths = Mapping[str, frozenset[str]]
-"""The parameters that are paths, by task."""
+Paths = Mapping[str, frozenset[tuple[str, ...]]]
+"""The parameters that are paths, by task, each as the keys that lead to it."""
 RUN_KEYS = ("extends", "method", "output", "store", "compute")
 
 
@@ -174,7 +174,7 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
     merged = dict(below)
     for key, value in above.items():
         both = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
-        merged[key] = {**merged[key], **value} if both else value
+        merged[key] = _merged(merged[key], value) if both else value
     return merged
 
 
@@ -182,13 +182,22 @@ def _absolute(blocks: dict[str, Any], base: Path, paths: Paths) -> dict[str, Any
     """Paths are relative to the file that names them."""
     told = dict(blocks)
     for key in ("output", "store"):
-        if isinstance(told.get(key), str) and "://" not in told[key]:
+        if isinstance(told.get(key), str) and told[key] and "://" not in told[key]:
             told[key] = str(base / _expanded(told[key]))
-    for task, names in paths.items():
-        block = told.get(task)
-        if isinstance(block, Mapping):
-            here = {n: block[n] for n in names if isinstance(block.get(n), str) and block[n]}
-            told[task] = {**block, **{n: str(base / _expanded(v)) for n, v in here.items()}}
+    for task, fields in paths.items():
+        for keys in fields:
+            told = _with_path(told, (task, *keys), base)
+    return told
+
+
+def _with_path(blocks: Mapping[str, Any], keys: Sequence[str], base: Path) -> dict[str, Any]:
+    """The blocks with the path at the end of the keys, if there is one, made absolute."""
+    told = dict(blocks)
+    value = told.get(keys[0])
+    if len(keys) > 1 and isinstance(value, Mapping):
+        told[keys[0]] = _with_path(value, keys[1:], base)
+    elif len(keys) == 1 and isinstance(value, str) and value:
+        told[keys[0]] = str(base / _expanded(value))
     return told
 
 
@@ -197,14 +206,17 @@ def _override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     task, dot, name = key.strip().partition(".")
     if not equals or not task or task == "extends":
         raise ConfigError(f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1")
-    given = parsed(value, f"--set {text}")
+    bare = value.strip()
+    given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # all frames are written ":"
     if not dot:
         blocks.update(_absolute({task: given}, Path.cwd(), paths))
         return
+    for inner in reversed(name.split(".")):
+        given = {inner: given}
     block = blocks.get(task)
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
-    blocks[task] = {**(block or {}), **_absolute({task: {name: given}}, Path.cwd(), paths)[task]}
+    blocks[task] = _merged(block or {}, _absolute({task: given}, Path.cwd(), paths)[task])
 
 
 def _folder(blocks: Mapping[str, Any], key: str, where: str) -> Path | None:
