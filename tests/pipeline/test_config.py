@@ -1,0 +1,345 @@
+"""Laws of configuration: who wins, what is refused and in which words, and that a run's own file says the same again."""
+
+import os
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kinetree.pipeline.config import Compute, load, preset_names, with_compute
+from kinetree.pipeline.errors import ConfigError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks import METHODS
+
+
+def of(target=None, *sets):
+    return load(target, METHODS, sets)
+
+
+def refusal(target=None, *sets):
+    with pytest.raises(ConfigError) as refused:
+        of(target, *sets)
+    return str(refused.value)
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to(name, text):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    return to
+
+
+# ── who wins ────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_nothing_is_the_defaults_of_the_schemas(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    config = of()
+    assert config.method == "mesoscopic"
+    assert all(params == type(params)() for params in config.params.values())
+    assert (config.output, config.store) == (tmp_path / "kinetree-output", tmp_path / "kinetree-output" / "store")
+    assert config.compute == Compute()
+
+
+def test_set_goes_before_the_file_before_what_it_extends_before_the_default(write):
+    write("base.yaml", "mesh: {component_share: 0.2, merge: 0.01}\nsequence: {fps: 10, unit: m}\n")
+    path = write("walk.yaml", "extends: base.yaml\nmesh: {component_share: 0.3}\nsequence: {fps: 20}\n")
+    config = of(path, "sequence.fps=30")
+    assert (config.params["sequence"].fps, config.params["sequence"].unit) == (30, "m")
+    assert (config.params["mesh"].component_share, config.params["mesh"].merge) == (0.3, 0.01)
+    assert of(write("empty.yaml", "")).params["mesh"].component_share == 0.05
+
+
+def test_last_set_wins():
+    assert of(None, "mesh.component_share=0.1", "mesh.component_share=0.2").params["mesh"].component_share == 0.2
+
+
+def test_chain_of_files_is_followed_to_its_end(write):
+    write("a.yaml", "sequence: {fps: 1, unit: a}\nmesh: {merge: 0.01}")
+    write("sub/b.yaml", "extends: ../a.yaml\nsequence: {fps: 2}")
+    config = of(write("c.yaml", "extends: sub/b.yaml\nmesh: {component_share: 0.5}"))
+    assert config.params["sequence"].model_dump() == {"fps": 2.0, "unit": "a"}
+    assert config.params["mesh"].model_dump() == {"merge": 0.01, "component_share": 0.5}
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_every_preset_loads_by_its_name_and_can_be_extended(name, write):
+    assert of(write("mine.yaml", f"extends: {name}\n")).params == of(name).params
+
+
+def test_mapping_is_as_good_as_a_file():
+    assert of({"sequence": {"fps": 7}}).params["sequence"].fps == 7
+
+
+def test_empty_block_is_no_block(write):
+    assert of(write("a.yaml", "mesh:\nsource: {}\ncompute:\noutput:\n")).params == of().params
+
+
+# ── paths ───────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_paths_are_relative_to_the_file_that_names_them(write, tmp_path, monkeypatch):
+    monkeypatch.chdir("/")
+    write("far/base.yaml", "source: {input: scans}\nstore: shared\n")
+    config = of(write("near/walk.yaml", "extends: ../far/base.yaml\noutput: out\n"), "source.frames=1:3")
+    assert config.params["source"].input == str(tmp_path / "far" / "scans")
+    assert config.store == tmp_path / "far" / "shared"
+    assert config.output == tmp_path / "near" / "out"
+
+
+def test_paths_in_sets_are_relative_to_here(write, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    config = of(write("near/walk.yaml", "source: {input: scans}\n"), "output=out", "source.input=other")
+    assert (config.output, config.params["source"].input) == (tmp_path / "out", str(tmp_path / "other"))
+
+
+def test_tilde_is_the_users_home_and_an_unknown_one_a_name(write, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", "/home/me")
+    config = of(write("a.yaml", "output: ~/out\nstore: ~nobody-of-this-name/x\nsource: {input: ~/scans}\n"))
+    assert str(config.output) == "/home/me/out"
+    assert config.store == tmp_path / "~nobody-of-this-name/x"
+    assert config.params["source"].input == "/home/me/scans"
+
+
+# ── refusals ────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("msh: {}", "no such key 'msh'; did you mean 'mesh'?"),
+        ("stoer: x", "no such key 'stoer'; did you mean 'store'?"),
+        ("1: x", "no such key 1; there are: "),
+        ("? ~\n: x", "no such key None; there are: "),
+        ("mesh: {component_shar: 0.1}", "mesh.component_shar: no such key; did you mean 'component_share'?"),
+        ("mesh: {zzz: 0.1}", "mesh.zzz: no such key; there are: component_share, merge"),
+        ("mesh: {component_share: much}", "mesh.component_share: input should be a valid number, "),
+        ("mesh: {component_share: 2}", "mesh.component_share: input should be less than or equal to 1, got 2"),
+        ("mesh: {component_share: .nan}", "mesh.component_share: input should be a finite number, got nan"),
+        ("sequence: {fps: -5}", "sequence.fps: input should be greater than 0, got -5"),
+        ("sequence: {fps: .inf}", "sequence.fps: input should be a finite number, got inf"),
+        ("mesh: 0.1", "mesh: expected keys with values, got 0.1"),
+        ("mesh: [merge]", "mesh: expected keys with values, got ['merge']"),
+        ("mesh: false", "mesh: expected keys with values, got False"),
+        ("compute: []", "compute: expected keys with values, got []"),
+        ("compute: {workers: 0}", "compute.workers: input should be greater than or equal to 1, got 0"),
+        ("compute: {worker: 2}", "compute.worker: no such key; did you mean 'workers'?"),
+        ("method: rebe", "method 'rebe'; there are: mesoscopic"),
+        ("method: mesoscopc", "method 'mesoscopc'; did you mean 'mesoscopic'?"),
+        ("method: [a]", "method ['a']; there are: "),
+        ("method: {a: b}", "method {'a': 'b'}; there are: "),
+        ("output: 5", "output: expected the path of a folder, got 5; put it in quotes if it is one"),
+        ("store: [a]", "store: expected the path of a folder, got ['a']"),
+        ("output: ''", "output: expected the path of a folder, got ''"),
+        ("store: s3://bucket/x", "store: s3://bucket/x is the address of a service, which is not supported yet; give a folder"),
+    ],
+)  # fmt: skip
+def test_wrong_key_or_value_is_refused_with_file_key_and_what_was_expected(write, text, told):
+    path = write("walk.yaml", text)
+    message = refusal(path)
+    assert message.startswith(f"{path}: {told}")
+
+
+def test_every_wrong_key_is_told_at_once(write):
+    message = refusal(write("walk.yaml", "mesh: {mrge: 1, component_share: none of it}\n"))
+    assert message.count("\n") == 1
+    assert "mesh.mrge: no such key; did you mean 'merge'?" in message
+    assert "mesh.component_share: " in message
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "told"),
+    [
+        ("mesh:\n  merge: [1\nsequence: {}\n", 3, "expected ',' or ']'"),
+        ("a: 1\n\tb: 2", 2, "cannot start any token"),
+        ("mesh: {}\nmesh: {}\n", 2, "key 'mesh' stands there twice"),
+        ("mesh:\n  merge: 0\n  merge: 1\n", 3, "key 'merge' stands there twice"),
+        ("mesh: *nothing\n", 1, "found undefined alias"),
+        ("mesh: {[1]: 2}\n", 1, "found unhashable key"),
+        ("ok: 1\nmesh: !!python/object/apply:os.system ['touch exploded']\n", 2, "could not determine a constructor"),
+        ("mesh: !!python/name:os.system\n", 1, "could not determine a constructor"),
+    ],
+)
+def test_yaml_that_is_none_is_refused_with_its_line(write, tmp_path, monkeypatch, text, line, told):
+    monkeypatch.chdir(tmp_path)
+    path = write("walk.yaml", text)
+    message = refusal(path)
+    assert message.startswith(f"{path}, line {line}: not valid YAML: ")
+    assert told in message
+    assert [p.name for p in tmp_path.iterdir()] == ["walk.yaml"]
+
+
+@pytest.mark.parametrize("text", ["- mesh", "hello", "3", "'mesh: 1'"])
+def test_yaml_without_keys_is_refused(write, text):
+    path = write("walk.yaml", text)
+    assert refusal(path).startswith(f"{path}: expected keys with values at the top, got ")
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path):
+    (tmp_path / "a.yaml").write_bytes(b"\xff\xfe\x00mesh")
+    assert refusal(tmp_path / "a.yaml").startswith(f"{tmp_path / 'a.yaml'}: cannot be read: ")
+    (tmp_path / "b.yaml").write_bytes(b"mesh: \x00")
+    assert "special characters are not allowed" in refusal(tmp_path / "b.yaml")
+
+
+def test_values_nested_beyond_reason_are_refused(write):
+    path = write("deep.yaml", "mesh: " + "[" * 5000 + "]" * 5000)
+    assert refusal(path) == f"{path}: not a configuration: its values are nested too deeply"
+
+
+def test_value_that_unfolds_without_end_is_told_in_a_few_words(write):
+    lines = ["x0: &x0 [a, b, c, d, e, f, g, h, i]"]
+    lines += [f"x{n}: &x{n} [" + ", ".join([f"*x{n - 1}"] * 9) + "]" for n in range(1, 30)]
+    lines += ["mesh: {merge: *x29}", "sequence: *x29"]
+    text = "\n".join(lines)
+    path = write("bomb.yaml", text)
+    assert len(refusal(path)) < 1000
+    path = write("ring.yaml", "mesh: {merge: &a [*a]}\nsequence: &b {fps: *b}")
+    assert len(refusal(path)) < 1000
+
+
+@pytest.mark.parametrize("name", ["a.yaml", "./a.yaml", "sub/../a.yaml", "sub/link.yaml"])
+def test_file_that_extends_itself_is_refused(write, tmp_path, name):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "link.yaml").symlink_to(tmp_path / "a.yaml")
+    path = write("a.yaml", f"extends: {name}")
+    assert f"{path}: extends itself through {path}" in refusal(path)
+
+
+def test_ring_of_files_is_told_in_its_order(write):
+    a, b = write("a.yaml", "extends: b.yaml"), write("b.yaml", "extends: a.yaml")
+    assert refusal(a) == f"{a}: extends itself through {a} → {b}"
+
+
+@pytest.mark.parametrize("parent", ["nothing.yaml", "paper-1066", "[a]", "3", "/"])
+def test_what_cannot_be_extended_is_refused_with_what_can(write, parent):
+    path = write("a.yaml", f"extends: {parent}")
+    message = refusal(path)
+    assert message.startswith(f"{path}: extends ")
+    assert message.endswith(f"which is neither a preset ({', '.join(preset_names())}) nor a file")
+
+
+def test_target_that_is_nothing_is_refused_with_the_presets(tmp_path):
+    assert refusal(tmp_path / "no.yaml") == (
+        f"{tmp_path / 'no.yaml'}: no such file, output folder or preset; presets: {', '.join(preset_names())}"
+    )
+    assert refusal(tmp_path) == (
+        f"{tmp_path}: no config.yaml in this folder, so it is not the output of a run; give a YAML file"
+    )
+
+
+# ── --set ───────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("text", ["", "=", "=1", "mesh.merge", ".merge=1", "extends=default"])
+def test_set_that_sets_nothing_is_refused_with_an_example(text):
+    assert refusal(None, text) == f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("mesh.mrge=1", "config: mesh.mrge: no such key; did you mean 'merge'?"),
+        ("mseh.merge=1", "config: no such key 'mseh'; did you mean 'mesh'?"),
+        ("mesh.=1", "config: mesh.: no such key; there are: "),
+        ("mesh.merge.x=1", "config: mesh.merge: input should be a valid number, got {'x': 1}"),
+        ("mesh.merge=[1", "--set mesh.merge=[1, line 1: not valid YAML: "),
+        ("mesh.merge=!!python/object:os.system {}", "--set mesh.merge=!!python/object:os.system {}, line 1: not valid YAML: "),
+        ("source.frames=2001-13-45", "--set source.frames=2001-13-45: not valid YAML: month must be in 1..12"),
+        ("output.x=1", "config: output: expected the path of a folder, got {'x': 1}"),
+        ("mesh=3", "config: mesh: expected keys with values, got 3"),
+    ],
+)
+def test_wrong_set_is_refused_in_words(text, told):
+    assert refusal(None, text).startswith(told)
+
+
+def test_set_into_what_has_no_keys_is_refused():
+    assert refusal({"output": "x"}, "output.x=1") == "--set output.x=1: output has no keys of its own"
+
+
+@pytest.mark.parametrize("frames", ["10:50:2", "1:20", "10:60:2", ":", "0:59:59"])
+def test_range_of_frames_is_no_number_to_base_sixty(write, frames):
+    assert of(None, f"source.frames={frames}").params["source"].frames == frames
+    assert of(write("a.yaml", f"source: {{frames: '{frames}'}}")).params["source"].frames == frames
+    if frames != ":":
+        assert of(write("a.yaml", f"source:\n  frames: {frames}\n")).params["source"].frames == frames
+
+
+@pytest.mark.parametrize(("text", "value"), [("1e-3", 0.001), ("1E-3", 0.001), (".01", 0.01), ("0", 0.0), ("+0.05", 0.05)])
+def test_numbers_are_read_as_people_write_them(text, value):
+    assert of(None, f"mesh.merge={text}").params["mesh"].merge == value
+
+
+def test_values_may_hold_equals_signs_and_spaces():
+    assert of(None, "sequence.unit=a=b c").params["sequence"].unit == "a=b c"
+    assert of(None, " sequence.unit = mm ").params["sequence"].unit == "mm"
+
+
+# ── what is kept, and what is never part of a key ───────────────────────────────────────────────────────────────────
+
+
+@given(
+    st.floats(0, 0.09), st.none() | st.floats(1e-3, 1e6), st.none() | st.text(), st.text(),
+    st.none() | st.integers(1, 99), st.sampled_from(["sync", "threads", "processes"]),
+)  # fmt: skip
+def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, workers, executor):
+    told = {
+        "mesh": {"merge": merge},
+        "sequence": {"fps": fps, "unit": unit},
+        "source": {"input": "/scans/[1]", "frames": frames},
+        "output": "/out",
+        "compute": {"workers": workers, "executor": executor},
+    }
+    config = of(told)
+    again = of(yaml.safe_load(yaml.safe_dump(config.saved(), sort_keys=False, allow_unicode=True)))
+    assert again == config
+
+
+def test_saved_configuration_is_read_back_from_the_output_folder(tmp_path):
+    from kinetree.pipeline.output import write_config
+
+    config = of({"output": str(tmp_path / "out"), "source": {"input": "x", "frames": "10:50:2"}, "sequence": {"unit": "no"}})
+    write_config(config)
+    assert of(tmp_path / "out") == config
+
+
+def test_compute_output_and_store_are_never_in_a_key(tmp_path):
+    from kinetree.schemas.source import Source
+
+    keys = set()
+    for number, compute in enumerate([{}, {"workers": 3, "executor": "sync", "memory": "1GB"}, {"scheduler": "tcp://x:1"}]):
+        config = {"output": str(tmp_path / str(number)), "compute": compute}
+        pipeline = Pipeline.of(config)
+        given = {"source": {(t,): Source(content="ab", path=str(tmp_path / str(number))) for t in range(2)}}
+        schedule = configuration_schedule(pipeline, given)
+        keys.add(tuple(sorted(e.key for e in schedule.entries.values() if e.key)))
+    assert len(keys) == 1
+    assert len(next(iter(keys))) == 3  # two meshes, one sequence
+
+
+def configuration_schedule(pipeline, given):
+    from kinetree.pipeline.schedule import Schedule
+
+    return Schedule(pipeline.tasks, pipeline.config.params, pipeline.store, given)
+
+
+def test_compute_is_replaced_where_something_is_said():
+    config = with_compute(of({"compute": {"workers": 3, "executor": "sync"}}), workers=None, executor="processes")
+    assert (config.compute.workers, config.compute.executor) == (3, "processes")
+    with pytest.raises(ConfigError, match=r"compute\.executor: input should be 'sync', 'threads' or 'processes', got 'quick'"):
+        with_compute(config, executor="quick")
+
+
+def test_compute_preset_is_one_of_those_there_are():
+    assert refusal({"compute": "no-such-machine"}).startswith("compute 'no-such-machine'; ")
+
+
+def test_workers_default_to_the_cores_this_process_may_use():
+    assert Compute().worker_count == len(os.sched_getaffinity(0))
+    assert Compute(workers=7).worker_count == 7
