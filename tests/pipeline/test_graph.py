@@ -1,0 +1,297 @@
+"""Laws of the graph: tasks come after what they read, and a graph that cannot work is refused at import, naming both places."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import networkx as nx
+import pytest
+
+from kinetree.pipeline.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
+from kinetree.pipeline.files import Files
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.task import origin, task
+from kinetree.schemas.array import Artifact, Params
+from kinetree.tasks import METHODS
+
+
+class SeedParams(Params):
+    """Nothing to say."""
+
+
+class Seed(Artifact):
+    """One a day."""
+
+
+class Leaf(Artifact):
+    """One a day."""
+
+
+class Branches(Artifact):
+    """Opens branches, and the days of each."""
+
+    opens: ClassVar[tuple[str, ...]] = ("branch", "branch/day")
+
+
+class Fruit(Artifact):
+    """One a branch."""
+
+
+class Harvest(Artifact):
+    """One."""
+
+
+class Order(Artifact):
+    """A traversal."""
+
+
+@origin(over="day")
+def seed(params: SeedParams, files: Files) -> Mapping[int, Seed]:
+    """Sown."""
+    return {}
+
+
+@task(over="day")
+def leaf(seed: Seed) -> Leaf:
+    """Grows (2014, Sec. 2)."""
+    return Leaf()
+
+
+@task()
+def branches(leaf: Mapping[int, Leaf]) -> Branches:
+    """Branch."""
+    return Branches()
+
+
+@task(over="branch")
+def fruit(leaf: tuple[Leaf, ...], branches: Branches) -> Fruit:
+    """Ripens."""
+    return Fruit()
+
+
+@task()
+def harvest(fruit: tuple[Fruit, ...]) -> Harvest:
+    """Gathers."""
+    return Harvest()
+
+
+ALL = (harvest, fruit, branches, leaf, seed)
+
+
+def names(graph):
+    return [t.name for t in graph.tasks]
+
+
+def refusal(error, *tasks):
+    with pytest.raises(GraphError) as refused:
+        Graph.of(tasks)
+    assert type(refused.value) is error
+    return str(refused.value)
+
+
+def test_tasks_come_after_what_they_read_whatever_order_they_were_told_in():
+    assert names(Graph.of(ALL)) == ["seed", "leaf", "branches", "fruit", "harvest"]
+    assert names(Graph.of(ALL[::-1])) == names(Graph.of(ALL))
+
+
+def test_gather_takes_the_members_of_this_index_where_such_a_space_is_opened():
+    graph = Graph.of(ALL)
+    assert graph.gathered_space(fruit, fruit.arguments[0]) == ("branch", "day")
+    assert graph.gathered_space(branches, branches.arguments[0]) == ("day",)
+    assert graph.gathered_space(harvest, harvest.arguments[0]) == ("branch",)
+    assert graph.gathered_space(leaf, leaf.arguments[0]) == ("day",)
+
+
+def test_two_writers_of_one_artifact_are_refused_naming_both():
+    @task(over="day")
+    def weed(seed: Seed) -> Leaf:
+        """Grows too."""
+        return Leaf()
+
+    assert refusal(TwoWritersError, seed, leaf, weed) == f"two tasks write Leaf: {leaf.where} and {weed.where}"
+
+
+def test_two_tasks_of_one_name_are_refused_naming_both():
+    def twin():
+        @task(over="day")
+        def leaf(seed: Seed) -> Fruit:
+            """Another of the name."""
+            return Fruit()
+
+        return leaf
+
+    other = twin()
+    assert refusal(TwoWritersError, seed, leaf, other) == f"two tasks are named leaf: {leaf.where} and {other.where}"
+
+
+def test_missing_writer_is_refused_naming_the_reader_and_the_class():
+    told = refusal(MissingWriterError, leaf)
+    assert told == f"leaf ({leaf.where}): argument seed is Seed ({__name__}), which no task writes"
+
+
+def test_traversal_that_no_task_writes_is_refused():
+    @task(over="day", along=Order)
+    def vine(before: "Fruit | None") -> Fruit:
+        """Climbs."""
+        return Fruit()
+
+    told = refusal(MissingWriterError, seed, vine)
+    assert told == f"vine ({vine.where}): the traversal it goes along is Order ({__name__}), which no task writes"
+
+
+def test_cycle_is_refused_naming_every_place():
+    @task()
+    def egg(harvest: Harvest) -> Order:
+        """First."""
+        return Order()
+
+    @task()
+    def hen(order: Order) -> Harvest:
+        """First."""
+        return Harvest()
+
+    told = refusal(CycleError, egg, hen)
+    assert told.startswith("tasks wait for each other: ")
+    assert f"egg ({egg.where})" in told
+    assert f"hen ({hen.where})" in told
+    assert told.count("→") == 2
+
+
+@pytest.mark.parametrize("form", [Harvest, tuple[Harvest, ...], Mapping[int, Harvest]], ids=str)
+def test_task_that_waits_for_itself_is_refused(form):
+    def snake(tail) -> Harvest:
+        return Harvest()
+
+    snake.__annotations__["tail"] = form
+    made = task()(snake)
+    told = refusal(CycleError, made)
+    assert told.startswith(f"snake ({made.where}) waits for itself: argument tail is Harvest, which it writes; ")
+    assert "write Harvest | None and say along" in told
+
+
+def test_traversal_ordered_by_what_is_traversed_is_refused():
+    @task(over="day", along=Fruit)
+    def vine(before: "Fruit | None") -> Fruit:
+        """Climbs itself."""
+        return Fruit()
+
+    assert "waits for itself: the traversal it goes along is Fruit" in refusal(CycleError, seed, vine)
+
+
+def test_space_whose_members_depend_on_what_runs_over_it_is_a_cycle():
+    @task()
+    def stubs(fruit: tuple[Fruit, ...]) -> Branches:
+        """Branches that are known when their fruit is."""
+        return Branches()
+
+    @task(over="branch")
+    def apple() -> Fruit:
+        """Ripens."""
+        return Fruit()
+
+    assert "apple" in refusal(CycleError, stubs, apple)
+
+
+def test_one_where_there_are_many_is_refused_with_the_remedy():
+    @task()
+    def basket(leaf: Leaf) -> Harvest:
+        """Forgets the tuple."""
+        return Harvest()
+
+    assert refusal(GraphError, seed, leaf, basket) == (
+        f"basket ({basket.where}): argument leaf is one Leaf, but leaf ({leaf.where}) writes one per day;"
+        " write tuple[Leaf, ...] to gather them"
+    )
+
+
+@pytest.mark.parametrize("form", [tuple[Leaf, ...], Mapping[int, Leaf]], ids=str)
+def test_gather_where_there_is_one_is_refused(form):
+    def pick(leaf) -> Fruit:
+        return Fruit()
+
+    pick.__annotations__["leaf"] = form
+    made = task(over="day")(pick)
+    told = refusal(GraphError, seed, leaf, made)
+    assert told == f"pick ({made.where}): argument leaf gathers Leaf, of which there is one at its index"
+
+
+def test_mapping_over_two_dimensions_at_once_is_refused():
+    @task(over="branch/day")
+    def bud(leaf: Leaf) -> Order:
+        """One a day of a branch."""
+        return Order()
+
+    @task()
+    def bouquet(bud: Mapping[int, Order]) -> Harvest:
+        """By which number?"""
+        return Harvest()
+
+    told = refusal(GraphError, seed, leaf, branches, bud, bouquet)
+    assert told.endswith("argument bud maps from one number, but gathers over branch/day; use a tuple")
+
+
+@pytest.mark.parametrize("over", ["night", "branch", "day/hour", "day/", "/day", "day/day"])
+def test_space_that_no_task_opens_is_refused(over):
+    @task(over=over)
+    def owl() -> Fruit:
+        """Where?"""
+        return Fruit()
+
+    told = refusal(MissingWriterError, seed, owl)
+    assert told.startswith(f"owl ({owl.where}) runs over {over}, but no task opens ")
+
+
+def test_space_that_two_tasks_open_is_refused_naming_both():
+    class Twigs(Artifact):
+        """Opens branches too."""
+
+        opens: ClassVar[tuple[str, ...]] = ("branch",)
+
+    @task()
+    def twigs() -> Twigs:
+        """Opens branches too."""
+        return Twigs()
+
+    told = refusal(TwoWritersError, seed, leaf, branches, twigs)
+    assert told == f"two tasks open branch: {branches.where} and {twigs.where}"
+
+
+def test_task_that_opens_a_space_beside_its_own_is_refused():
+    @task(over="day")
+    def grafts(seed: Seed) -> Branches:
+        """Every day opens the same branches."""
+        return Branches()
+
+    told = refusal(GraphError, seed, grafts)
+    assert told == f"grafts ({grafts.where}) runs over day and cannot open branch"
+
+
+def test_until_keeps_what_a_task_needs_and_no_more():
+    graph = Graph.of(ALL)
+    assert names(graph.until(["leaf"])) == ["seed", "leaf"]
+    assert names(graph.until(["branches"])) == ["seed", "leaf", "branches"]
+    assert names(graph.until(["leaf", "harvest"])) == names(graph)
+
+
+def test_unknown_task_is_refused_with_the_nearest():
+    graph = Graph.of(ALL)
+    with pytest.raises(UnknownNodeError, match=r"^no task 'leaff'; did you mean 'leaf'\?$"):
+        graph.until(["leaff"])
+    with pytest.raises(UnknownNodeError, match=r"^no task 'xyz'; there are: branches, fruit, harvest, leaf, seed$"):
+        graph.task("xyz")
+
+
+def test_graph_as_networkx_has_typed_nodes_and_edges():
+    drawn = Graph.of(ALL).networkx()
+    assert nx.is_directed_acyclic_graph(drawn)
+    assert drawn.nodes["leaf"] == {
+        "over": "day", "artifact": "Leaf", "params": None, "paper": "2014, Sec. 2", "summary": "Grows.",
+    }  # fmt: skip
+    assert drawn.edges["leaf", "fruit"] == {"argument": "leaf", "form": "tuple"}
+    assert drawn.edges["seed", "leaf"]["form"] == "one"
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_task_of_kinetree_cites_its_paper_in_one_sentence(method):
+    for each in METHODS[method].tasks:
+        assert each.summary.endswith("."), each.name
+        assert each.paper, f"{each.name} ({each.where}) cites no section"
