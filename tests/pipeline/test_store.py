@@ -1,0 +1,389 @@
+"""Laws of the store: what was published is read back bit for bit, damage is noticed, strangers are refused."""
+
+import errno
+import json
+import os
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import pytest
+import zarr
+
+from kinetree.pipeline import store as stores
+from kinetree.pipeline.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
+from kinetree.pipeline.key import artifact_digest
+from kinetree.pipeline.store import FORMAT, MARKER, Record, Store, artifact_path, group_arrays
+from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints
+from kinetree.schemas.dims import FRAME, VERTEX, XYZ
+
+
+class Field(Artifact):
+    """Every kind of field there is."""
+
+    positions: Annotated[Floats, Array("float64", FRAME, VERTEX, XYZ, unit="length")]
+    """Where."""
+    holes: Annotated[Floats, Array("float64", VERTEX, unit="rad", finite=False)]
+    """May be anything."""
+    label: Annotated[Ints, Array("int32", VERTEX)]
+    """A number each."""
+    kept: Annotated[Bools, Array("bool", VERTEX)]
+    """A flag each."""
+    mean: Annotated[Floats, Array("float64", unit="area")]
+    """One number."""
+    words: tuple[str, ...]
+    """Plain."""
+    rate: float | None
+    """Plain or nothing."""
+
+
+def field(vertices=4, frames=2, **changes):
+    rng = np.random.default_rng(7)
+    held = {
+        "positions": rng.normal(size=(frames, vertices, 3)),
+        "holes": np.where(np.arange(vertices) % 2, np.nan, -np.inf),
+        "label": np.arange(vertices, dtype=np.int32) - 1,
+        "kept": np.arange(vertices) % 3 == 0,
+        "mean": np.array(0.1),
+        "words": ("a\nb", "[red]", "μ", ""),
+        "rate": None,
+    }
+    return Field(**{**held, **changes})
+
+
+def record(key, digest, files):
+    return Record(key, "field", {}, digest, files, {}, {}, [], 0.5, 1, "here", "now")
+
+
+def everything(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture
+def store(tmp_path):
+    made = Store.at(tmp_path / "store")
+    made.create()
+    return made
+
+
+# ── publishing and reading ──────────────────────────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(("vertices", "frames"), [(4, 2), (0, 0), (0, 3), (1, 1), (1000, 1)])
+def test_what_was_published_is_read_back_bit_for_bit(store, vertices, frames):
+    made = field(vertices, frames)
+    digest, _ = store.publish(made)
+    back = store.read(Field, digest)
+    assert back == made
+    assert artifact_digest(back) == digest == artifact_digest(made)
+    assert [(a.dtype, a.shape) for a in back.arrays().values()] == [(a.dtype, a.shape) for a in made.arrays().values()]
+
+
+def test_large_arrays_lie_in_several_chunks_and_come_back(store, monkeypatch):
+    monkeypatch.setattr(stores, "CHUNK_BYTES", 1024)
+    made = field(vertices=100, frames=7)
+    digest, files = store.publish(made)
+    assert len([name for name in files if name.startswith("positions/c/")]) == 7
+    assert store.read(Field, digest) == made
+
+
+def test_arrays_of_zeros_are_written_too_so_that_a_lost_chunk_is_told_from_an_empty_one(store):
+    digest, files = store.publish(field(positions=np.zeros((2, 4, 3)), kept=np.zeros(4, dtype=bool)))
+    assert {"positions/c/0/0/0", "kept/c/0"} <= set(files)
+    assert not store.read(Field, digest).positions.any()
+
+
+def test_group_is_zarr_v3_with_dimension_names_and_units(store):
+    digest, _ = store.publish(field())
+    group = zarr.open_group(Path(store.url) / artifact_path(digest), mode="r")
+    assert group.metadata.zarr_format == 3
+    assert group["positions"].metadata.dimension_names == ("frame", "vertex", "xyz")
+    assert group["mean"].metadata.dimension_names in ((), None)
+    assert {n: a.attrs["unit"] for n, a in group.arrays()} == {
+        "positions": "length", "holes": "rad", "label": "1", "kept": "1", "mean": "area",
+    }  # fmt: skip
+    assert group.attrs["kinetree"]["schema"] == "Field"
+    assert group.attrs["kinetree"]["values"] == {"words": ["a\nb", "[red]", "μ", ""], "rate": None}
+    np.testing.assert_array_equal(group["positions"][...], field().positions)
+
+
+def test_arrays_are_read_when_asked_for_and_once(store, monkeypatch):
+    digest, _ = store.publish(field())
+    back = store.read(Field, digest)
+    asked = []
+    read = Store._array
+    monkeypatch.setattr(Store, "_array", lambda self, digest, name: asked.append(name) or read(self, digest, name))
+    assert back.words == ("a\nb", "[red]", "μ", "")
+    assert "not read yet" in repr(back)
+    assert asked == []
+    assert back.label is back.label
+    assert asked == ["label"]
+    with pytest.raises(ValueError, match="read-only"):
+        back.label[0] = 3
+
+
+def test_equal_artifacts_are_stored_once(store):
+    first = store.publish(field())
+    before = everything(Path(store.url))
+    assert store.publish(field()) == first
+    assert everything(Path(store.url)) == before
+
+
+def test_artifacts_that_differ_in_one_bit_are_two(store):
+    assert store.publish(field())[0] != store.publish(field(mean=np.nextafter(0.1, 1)))[0]
+    assert store.publish(field(rate=1.0))[0] != store.publish(field())[0]
+
+
+def test_no_reader_meets_half_an_artifact(store, monkeypatch):
+    made = field()
+    digest, _ = store.publish(made)
+    store.discard(digest)
+    seen = []
+    rename = Path.rename
+
+    def watched(path, target):
+        seen.append((Path(store.url) / artifact_path(digest)).exists())
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", watched)
+    store.publish(made)
+    assert seen == [False]
+    assert store.read(Field, digest) == made
+
+
+def test_record_is_written_and_read_back(store):
+    digest, files = store.publish(field())
+    made = record("ab" * 20, digest, files)
+    store.write(made)
+    assert store.record("ab" * 20) == made
+    assert list(store.records()) == [made]
+    assert store.holds(made)
+    assert made.bytes == sum(files.values())
+    assert store.record("cd" * 20) is None
+
+
+# ── damage ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def damaged(store, path, change):
+    made = field()
+    digest, files = store.publish(made)
+    file = Path(store.url) / artifact_path(digest) / path
+    change(file)
+    return digest, files
+
+
+def flip(file):
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+
+
+@pytest.mark.parametrize(
+    "change", [flip, Path.unlink, lambda f: f.write_bytes(b""), lambda f: f.write_bytes(f.read_bytes()[:-3])]
+)
+@pytest.mark.parametrize("path", ["positions/c/0/0/0", "kept/c/0", "mean/c", "label/zarr.json"])
+def test_lost_or_altered_arrays_are_noticed_on_reading(store, path, change):
+    digest, _ = damaged(store, path, change)
+    with pytest.raises(DamagedArtifactError) as noticed:
+        store.read(Field, digest).arrays()
+    assert noticed.value.digest == digest
+    assert path.partition("/")[0] in noticed.value.what
+    assert str(noticed.value).endswith("; it will be computed again")
+
+
+@pytest.mark.parametrize(
+    "change", [Path.unlink, lambda f: f.write_bytes(b"{}"), lambda f: f.write_bytes(b"[1]"), lambda f: f.write_bytes(b"\xff")]
+)
+def test_lost_or_altered_metadata_is_noticed(store, change):
+    digest, _ = damaged(store, "zarr.json", change)
+    with pytest.raises(DamagedArtifactError, match=r"it is missing|its metadata cannot be read"):
+        store.read(Field, digest)
+
+
+def test_altered_value_is_noticed(store):
+    digest, _ = damaged(store, "zarr.json", lambda f: f.write_text(f.read_text().replace("[red]", "[blue]")))
+    with pytest.raises(DamagedArtifactError, match="its attributes were altered"):
+        store.read(Field, digest)
+
+
+def test_array_swapped_for_another_valid_one_is_noticed(store):
+    digest, _ = store.publish(field())
+    other, _ = store.publish(field(label=np.arange(4, dtype=np.int32) + 5))
+    top = Path(store.url)
+    shutil.copy(top / artifact_path(other) / "label/c/0", top / artifact_path(digest) / "label/c/0")
+    with pytest.raises(DamagedArtifactError, match="array label was altered"):
+        assert store.read(Field, digest).label is None
+
+
+def test_artifact_of_another_schema_is_not_taken_for_this_one(store):
+    class Other(Artifact):
+        """Something else."""
+
+    digest, _ = store.publish(Other())
+    with pytest.raises(DamagedArtifactError, match="holds Other/1, not Field"):
+        store.read(Field, digest)
+
+
+@pytest.mark.parametrize("change", [Path.unlink, lambda f: f.write_bytes(f.read_bytes() + b"x")])
+def test_record_holds_only_while_every_file_has_its_size(store, change):
+    digest, files = damaged(store, "kept/c/0", change)
+    assert not store.holds(record("ab" * 20, digest, files))
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", "{}", '{"key": "' + "ab" * 20 + '"}'])
+def test_unreadable_record_makes_nothing_fresh(store, text):
+    store.place.put(f"records/ab/{'ab' * 20}.json", text.encode())
+    assert store.record("ab" * 20) is None
+    assert list(store.records()) == []
+
+
+@pytest.mark.parametrize("change", [{"artifact": "../../../victim"}, {"key": "cd" * 20}, {"files": 3}, {"surplus": 1}])
+def test_forged_record_is_not_believed(store, change):
+    told = {**asdict(record("ab" * 20, "cd" * 20, {})), **change}
+    store.place.put(f"records/ab/{'ab' * 20}.json", json.dumps(told).encode())
+    assert store.record("ab" * 20) is None
+
+
+def test_published_again_mends_what_was_lost(store):
+    made = field()
+    digest, files = damaged(store, "positions/c/0/0/0", Path.unlink)
+    store.publish(made)
+    assert store.holds(record("ab" * 20, digest, files))
+    assert store.read(Field, digest) == made
+
+
+# ── what is and what is no store ────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_naming_a_store_writes_nothing(tmp_path):
+    assert not Store.at(tmp_path / "new").exists
+    assert not (tmp_path / "new").exists()
+
+
+def test_folder_with_other_things_is_no_store(tmp_path):
+    (tmp_path / "thesis.tex").write_text("mine")
+    with pytest.raises(StoreError) as refused:
+        Store.at(tmp_path)
+    assert str(refused.value) == (
+        f"store {tmp_path}: this folder holds other things and is no kinetree store; name an empty or a new one"
+    )
+    assert everything(tmp_path) == {"thesis.tex": b"mine"}
+
+
+def test_file_is_no_store(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(StoreError, match="this is a file; a store is a folder, name one with --store"):
+        Store.at(tmp_path / "file")
+
+
+@pytest.mark.parametrize("marker", ['{"format": "kinetree.store/2"}', "{}", "[]", "\x00", "", '"kinetree.store/1"'])
+def test_store_of_another_format_is_refused_with_a_remedy(tmp_path, marker):
+    (tmp_path / MARKER).write_text(marker)
+    with pytest.raises(StoreError) as refused:
+        Store.at(tmp_path)
+    assert f"this version reads {FORMAT!r}; name another folder with --store" in str(refused.value)
+
+
+@pytest.mark.parametrize("url", ["s3://bucket/x", "gs://x", "file:///tmp/x"])
+def test_service_that_is_not_supported_is_refused(url):
+    with pytest.raises(StoreError, match="is not supported yet; give a folder"):
+        Store.at(url)
+
+
+def test_store_whose_first_writer_died_is_still_a_store(tmp_path):
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "tmp" / ".half").write_bytes(b"x")
+    store = Store.at(tmp_path)
+    store.create()
+    assert Store.at(tmp_path).exists
+
+
+# ── runs ────────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("name", ["nothing", "../records/ab", "../../etc/passwd", "", ".", "a/b", "\x1b[31m", "a\nb"])
+def test_run_that_is_not_there_is_refused_by_name(store, name):
+    store.place.put("records/ab.json", b'{"nodes": {}}')
+    with pytest.raises(UnknownNodeError) as refused:
+        store.run(name)
+    assert str(refused.value) == f"no run {name!r} in {store.url}; kinetree runs lists them"
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "3", "{}", '{"nodes": 3}'])
+def test_damaged_run_is_named_with_a_remedy(store, text):
+    store.place.put("runs/one.json", text.encode())
+    with pytest.raises(StoreError, match=r"runs/one\.json is damaged; delete it"):
+        store.run("one")
+
+
+def test_runs_are_listed_oldest_first(store):
+    for name in ("2", "1", "3"):
+        store.write_run(name, {"nodes": {}})
+    store.place.put("runs/notes.txt", b"mine")
+    assert store.run_names() == ["1", "2", "3"]
+
+
+# ── full disk ───────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_full_disk_keeps_what_was_published(store, monkeypatch):
+    digest, files = store.publish(field())
+    store.write(record("ab" * 20, digest, files))
+    before = everything(Path(store.url))
+    write = Path.write_bytes
+
+    def refuse(path, data):
+        write(path, data[:1])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", refuse)
+    with pytest.raises(StoreFullError, match="no space left"):
+        store.publish(field(vertices=9))
+    with pytest.raises(StoreFullError, match="no space left"):
+        store.write(record("cd" * 20, digest, files))
+    assert everything(Path(store.url)) == before
+
+
+# ── the user's own zarr ─────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_arrays_and_attributes_of_any_group_are_read(tmp_path):
+    group = zarr.create_group(tmp_path / "g", attributes={"fps": 25, "unit": "mm"})
+    group.create_array("vertices", data=np.arange(6.0).reshape(2, 3))
+    held = group_arrays(tmp_path / "g")
+    np.testing.assert_array_equal(held["vertices"], np.arange(6.0).reshape(2, 3))
+    assert (held["fps"].item(), held["unit"].item()) == (25, "mm")
+
+
+def test_folder_that_is_no_group_is_refused_by_name(tmp_path):
+    (tmp_path / "zarr.json").write_text("hello")
+    with pytest.raises(StoreError, match="not a readable zarr group"):
+        group_arrays(tmp_path)
+
+
+class Bomb:
+    """Leaves a file where it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return (Path.touch, (self.path,))
+
+
+@pytest.mark.parametrize("filters", [[{"id": "pickle"}], [{"id": "vlen-utf8"}, {"id": "pickle"}]])
+def test_nothing_in_a_users_zarr_is_unpickled(tmp_path, filters):
+    import pickle
+
+    group = tmp_path / "g"
+    (group / "vertices").mkdir(parents=True)
+    (group / ".zgroup").write_text('{"zarr_format": 2}')
+    told = {"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "compressor": None, "fill_value": None, "order": "C"}
+    (group / "vertices" / ".zarray").write_text(json.dumps({**told, "filters": filters}))
+    (group / "vertices" / "0").write_bytes(pickle.dumps(Bomb(tmp_path / "exploded")))
+    with pytest.raises(StoreError, match="not a readable zarr group"):
+        group_arrays(group)
+    assert not (tmp_path / "exploded").exists()
