@@ -1,0 +1,212 @@
+"""Laws of a declaration: every form a signature may have, and every refusal at import in words that name the place."""
+
+from collections.abc import Mapping
+from typing import Annotated, Optional
+
+import pytest
+
+from kinetree.pipeline.errors import GraphError
+from kinetree.pipeline.files import Files
+from kinetree.pipeline.task import Argument, load, origin, space, task
+from kinetree.schemas.array import Artifact, Params
+
+
+class Stone(Artifact):
+    """What is read."""
+
+    weight: float = 1.0
+    """Its weight."""
+
+
+class House(Artifact):
+    """What is written."""
+
+    weight: float
+    """Its weight."""
+
+
+class Row(Artifact):
+    """An order of houses."""
+
+
+class HouseParams(Params):
+    """How to build."""
+
+    floors: int = 1
+    """How many."""
+
+
+def build(*stones, weight=1.0):
+    return House(weight=weight)
+
+
+@task(over="street/house")
+def house(one: Stone, some: tuple[Stone, ...], many: Mapping[int, Stone], params: HouseParams) -> House:
+    """Builds a house (2014, Sec. 4.2, Eq. 7). It stands.
+
+    And more (2009, Sec. 1).
+    """
+    return House(weight=one.weight * params.floors)
+
+
+def test_signature_is_the_place_in_the_graph():
+    assert house.name == "house"
+    assert house.over == ("street", "house")
+    assert house.arguments == (
+        Argument("one", Stone, "one"),
+        Argument("some", Stone, "tuple"),
+        Argument("many", Stone, "mapping"),
+    )
+    assert (house.params, house.returns, house.along, house.is_origin) == (HouseParams, House, None, False)
+    assert house.where.startswith(f"{__file__}:")
+
+
+def test_task_is_called_as_the_plain_function_it_is():
+    assert house(Stone(weight=2), (), {}, HouseParams(floors=3)) == House(weight=6)
+    assert house(one=Stone(), some=(), many={}, params=HouseParams()).weight == 1
+
+
+def test_docstring_tells_summary_and_paper():
+    assert house.summary == "Builds a house. It stands."
+    assert house.paper == "2014, Sec. 4.2, Eq. 7"
+
+    @task()
+    def plain() -> House:
+        return House(weight=1)
+
+    assert (plain.summary, plain.paper) == ("", "")
+
+
+@pytest.mark.parametrize("form", [House | None, None | House, Optional[House], "House | None"], ids=str)  # noqa: UP045
+def test_own_artifact_at_the_previous_member(form):
+    def grown(before) -> House:
+        return before or House(weight=1)
+
+    grown.__annotations__["before"] = form
+    assert task(over="house", along=Row)(grown).arguments == (Argument("before", House, "previous"),)
+
+
+def test_annotations_in_quotes_are_read():
+    @task()
+    def quoted(one: "Stone", some: "tuple[Stone, ...]") -> "House":
+        return build(one, *some)
+
+    assert [a.form for a in quoted.arguments] == ["one", "tuple"]
+
+
+def test_origin_tells_its_members():
+    @origin(over="house")
+    def found(params: HouseParams, files: Files) -> Mapping[int, Stone]:
+        """Finds."""
+        return {}
+
+    assert (found.is_origin, found.returns, found.over, found.arguments) == (True, Stone, ("house",), ())
+
+
+def refusal(function, **declared):
+    declare = origin if declared.pop("as_origin", False) else task
+    with pytest.raises(GraphError) as refused:
+        declare(**declared)(function)
+    message = str(refused.value)
+    assert message.startswith(f"{function.__name__} ({__file__}:{function.__code__.co_firstlineno}): ")
+    return message.partition("): ")[2]
+
+
+FORMS = (
+    "argument x must be an Artifact, tuple[Artifact, ...], Mapping[int, Artifact] or, for the task's own artifact, House | None"
+)
+
+
+@pytest.mark.parametrize(
+    "hint",
+    [int, "str", None, list[Stone], tuple[Stone], tuple[Stone, Stone], tuple[int, ...], dict[int, Stone], Mapping[str, Stone],
+     Mapping, Stone | None, Stone | House, HouseParams, Artifact | int, type[Stone], Annotated[int, "x"], 3],
+    ids=repr,
+)  # fmt: skip
+def test_argument_that_is_no_edge_is_refused(hint):
+    def wrong(x) -> House:
+        return build(x)
+
+    wrong.__annotations__["x"] = hint
+    assert refusal(wrong).startswith(f"{FORMS}; got ")
+
+
+def test_argument_without_a_type_is_refused():
+    def bare(x) -> House:
+        return build(x)
+
+    assert refusal(bare) == f"{FORMS}; got None"
+
+
+@pytest.mark.parametrize("hint", [None, int, tuple[House, ...], House | None, Mapping[int, House]])
+def test_task_that_returns_no_artifact_is_refused(hint):
+    def nothing(one: Stone):
+        return one
+
+    if hint is not None:
+        nothing.__annotations__["return"] = hint
+    assert refusal(nothing).startswith("the return type must be an Artifact, got ")
+
+
+@pytest.mark.parametrize("hint", [None, dict, int, Params | None, Stone, HouseParams | None])
+def test_params_of_a_wrong_type_are_refused(hint):
+    def wrong(params) -> House:
+        return build(params)
+
+    if hint is not None:
+        wrong.__annotations__["params"] = hint
+    assert refusal(wrong).startswith("params must be annotated with a class of Params, got ")
+
+
+def test_previous_without_a_traversal_and_a_traversal_without_previous_are_refused():
+    def grown(before: House | None) -> House:
+        return build(before)
+
+    def alone(one: Stone) -> House:
+        return build(one)
+
+    told = "a task reads its own previous artifact exactly if it says along which traversal"
+    assert refusal(grown, over="house") == told
+    assert refusal(alone, over="house", along=Row) == told
+
+
+def test_arguments_that_cannot_be_given_by_name_are_refused():
+    def starred(*stones: Stone) -> House:
+        return build(*stones)
+
+    def doubled(**stones: Stone) -> House:
+        return build(*stones)
+
+    def hidden(one: Stone, /) -> House:
+        return build(one)
+
+    for function in (starred, doubled, hidden):
+        assert "must have a name of its own; tasks are called by keyword" in refusal(function)
+
+
+def test_origin_that_reads_artifacts_or_lacks_an_argument_is_refused():
+    def reads(params: HouseParams, files: Files, one: Stone) -> Stone:
+        return one
+
+    def deaf(params: HouseParams) -> Stone:
+        return Stone()
+
+    def blind(files: Files) -> Stone:
+        return Stone()
+
+    assert refusal(reads, as_origin=True) == "an origin takes params and files alone, got one"
+    for function in (deaf, blind):
+        assert refusal(function, as_origin=True) == "an origin takes both params and files, one of them is missing"
+
+
+def test_space_is_a_path_of_dimensions():
+    assert space("") == ()
+    assert space("frame") == ("frame",)
+    assert space("interval/cone") == ("interval", "cone")
+
+
+def test_worker_finds_a_task_by_its_name():
+    found = load("kinetree.tasks.mesh:mesh")
+    assert (found.name, found.module) == ("mesh", "kinetree.tasks.mesh")
+    with pytest.raises(GraphError, match=r"^kinetree\.tasks\.mesh:clean is not a task$"):
+        load("kinetree.tasks.mesh:clean")
