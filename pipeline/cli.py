@@ -4,8 +4,10 @@ import contextlib
 import errno
 import io
 import json
+import os
 import signal
 import sys
+import threading
 import traceback
 from collections.abc import Iterator
 from importlib.metadata import version
@@ -286,7 +288,17 @@ def main() -> NoReturn:
         code = 141
     except Exception as error:
         code = _unexpected(error)
+    if code == 130 and threading.active_count() > 1:
+        _leave(code)
     raise SystemExit(code)
+
+
+def _leave(code: int) -> NoReturn:
+    """Ends the process though threads are in the middle of nodes, which may take minutes; the store is whole anyway."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(code)
 
 
 def _unexpected(error: Exception) -> int:

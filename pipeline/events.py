@@ -60,6 +60,10 @@ class Watch:
         for other in skipped:
             self._tell("skipped", node=other.label, task=other.node.task, because=entry.label)
 
+    def damaged(self, entry: Entry, what: str) -> None:
+        """The artifact of a node that was done lost bytes: what was told of the node is taken back, it runs again."""
+        self._tell("damaged", node=entry.label, task=entry.node.task, was=entry.state, what=what)
+
     def end(self, status: str, seconds: float) -> None:
         """The run is over."""
         self._tell("end", status=status, seconds=round(seconds, 3))
@@ -95,6 +99,8 @@ class Account:
         kind = event["event"]
         if kind == "skipped":
             self.skipped += 1
+        if kind == "damaged":
+            self.tasks[event["task"]][event["was"]] -= 1
         if kind not in ("fresh", "finish", "failed"):
             return
         row = self.tasks.setdefault(event["task"], {"ran": 0, "fresh": 0, "failed": 0, "seconds": 0.0, "peak_bytes": 0})

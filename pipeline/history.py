@@ -12,10 +12,13 @@ from kinetree.pipeline.config import Config
 from kinetree.pipeline.events import Account
 from kinetree.pipeline.execute import versions
 from kinetree.pipeline.node import Node, label
+from kinetree.pipeline.reason import Recalled
 from kinetree.pipeline.schedule import Schedule
-from kinetree.pipeline.store import Record, Store
+from kinetree.pipeline.store import Store
 
 FORMAT = "kinetree.run/1"
+TASK_FIELDS = ("ran", "fresh", "failed", "seconds")
+FAILURE_FIELDS = ("node", "error", "message")
 
 
 @dataclass
@@ -26,12 +29,14 @@ class History:
     output: str
     _nodes: dict[str, Any] | None = None
 
-    def recall(self, node: str) -> Record | None:
+    def recall(self, node: str) -> Recalled:
         """What the node computed in the last run that is on record, of the same output folder if there is one."""
         if self._nodes is None:
             self._nodes = self._last_nodes()
         key = (self._nodes.get(node) or {}).get("key")
-        return self.store.record(key) if key else None
+        if not key:
+            return "nothing"
+        return self.store.record(key) or "lost"
 
     def runs(self) -> list[dict[str, Any]]:
         """Every run on record without its nodes, oldest first."""
@@ -78,16 +83,18 @@ def closing(opened: dict[str, Any], schedule: Schedule, account: Account, status
         for index, artifact in found.items():
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()
     told = summary(account, status, seconds)
-    return {**opened, **told, "counts": told["nodes"], "nodes": nodes}
+    more = {"tasks": account.tasks, "failures": account.failures, "counts": told["nodes"], "nodes": nodes}
+    return {**opened, **told, **more}
 
 
 def summary(account: Account, status: str, seconds: float) -> dict[str, Any]:
-    """What run.json holds."""
+    """What run.json holds; the run's record in the store also has peaks of memory, traces and every node."""
+    tasks = {task: {name: row[name] for name in TASK_FIELDS} for task, row in account.tasks.items()}
     return {
         "status": status,
         "nodes": account.nodes(),
-        "tasks": account.tasks,
-        "failures": account.failures,
+        "tasks": tasks,
+        "failures": [{name: failure[name] for name in FAILURE_FIELDS} for failure in account.failures],
         "seconds": round(seconds, 3),
         "versions": versions(),
     }

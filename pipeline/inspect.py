@@ -78,7 +78,7 @@ class Pipeline:
         force: Iterable[str] = (),
         listeners: Iterable[Listener] = (),
     ) -> dict[str, Any]:
-        """Runs what is not fresh and returns the content of run.json; failed nodes are told there, not raised.
+        """Runs what is not fresh; returns the content of run.json and the run's name. Failed nodes are told, not raised.
 
         client : a `distributed.Client` to run on; None runs where the configuration says
         raises : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
@@ -163,7 +163,7 @@ class Pipeline:
 
     def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> None:
         told = closing(opened, schedule, account, status, seconds)
-        write_run_json(self.config, {"run": opened["name"], **summary(account, status, seconds)})
+        write_run_json(self.config, summary(account, status, seconds))
         self.store.write_run(opened["name"], told)
 
     def _given(self, graph: Graph, files: Files) -> Given:

@@ -59,7 +59,11 @@ class Rows:
             for task, total in event["totals"].items():
                 self.rows.setdefault(task, Row()).total = total
         elif "task" in event:
-            self.rows.setdefault(event["task"], Row()).hear(event["event"], event.get("seconds", 0.0))
+            row = self.rows.setdefault(event["task"], Row())
+            row.hear(event["event"], event.get("seconds", 0.0))
+            if event["event"] == "damaged":
+                row.ran -= event["was"] == "ran"
+                row.fresh -= event["was"] == "fresh"
 
     def left(self, row: Row) -> float | None:
         """Seconds until a task is through, from the mean of its nodes so far; None while none ran."""

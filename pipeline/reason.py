@@ -75,5 +75,7 @@ class _Absent:
 
 
 _ABSENT = _Absent()
-Recall = Callable[[str], "Record | None"]
-"""Looks up what a node, by its label, computed in the last run."""
+Recalled = Record | Literal["nothing", "lost"]
+"""What a node computed in the last run: nothing, something whose record is gone or unreadable, or what its record says."""
+Recall = Callable[[str], Recalled]
+"""Looks that up by the node's label."""

@@ -7,6 +7,7 @@ of threads; on workers, distributed does.
 import contextlib
 import itertools
 import queue
+import secrets
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -16,14 +17,14 @@ from typing import Any, Protocol
 from dask.local import SynchronousExecutor
 
 from kinetree.pipeline.config import Compute
-from kinetree.pipeline.errors import ClusterError, InputError, StoreError, StoreFullError
+from kinetree.pipeline.errors import ClusterError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.events import Watch
 from kinetree.pipeline.execute import Input, Ref, Result, Step, execute
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
 
 MENDS = 3
-"""How often a node's inputs are mended before the disk is to blame."""
+"""How often an input of a node is mended before the disk is to blame."""
 
 
 class Future(Protocol):
@@ -64,7 +65,8 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
             yield _on_client(client)
         elif compute.executor == "threads":
             pool = ThreadPoolExecutor(compute.worker_count)
-            stack.callback(pool.shutdown, wait=True, cancel_futures=True)
+            # an interrupted run does not wait for nodes that may take minutes: what they publish is whole or nothing
+            stack.callback(pool.shutdown, wait=False, cancel_futures=True)
             yield Launcher(lambda _, url, steps: pool.submit(execute, url, steps), 2 * compute.worker_count)
         else:
             here = SynchronousExecutor()
@@ -80,6 +82,7 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
     try:
         while loop.send() or loop.out:
             loop.receive()
+        _refuse_rings(schedule)
     except BaseException:
         for future in loop.out.values():
             future.cancel()
@@ -178,22 +181,35 @@ class _Loop:
         makers = self.schedule.holding(result.artifact)
         if not makers:
             raise StoreError(f"{entry.label}: artifact {result.artifact[:12]} {result.message} and nothing here makes it")
-        entry.mends += 1
-        if entry.mends > MENDS:
+        entry.mends[result.artifact] += 1
+        if entry.mends[result.artifact] > MENDS:
             told = f"artifact {result.artifact[:12]} {result.message}, again after it was computed again; check the disk"
             self._tell(entry, Result("failed", error="DamagedArtifactError", message=told))
             return
         for maker in makers:
             if self.schedule.entries[maker].state in DONE:
+                self.watch.damaged(self.schedule.entries[maker], result.message)
                 self.schedule.redo(maker, result.message)
             self.schedule.wait_again(entry.node, maker)
+
+
+def _refuse_rings(schedule: Schedule) -> None:
+    """A traversal that some artifact orders in a ring leaves nodes that wait for themselves."""
+    left = [entry for entry in schedule.entries.values() if entry.state == "waits"]
+    if left:
+        raise GraphError(
+            f"{len(left)} nodes wait for each other, {left[0].label} ({left[0].task.where}) among them: the traversal that"
+            f" {left[0].task.along.__name__ if left[0].task.along else 'an artifact above'} orders goes in a ring"
+        )
 
 
 def _on_client(client: Any) -> Launcher:
     from kinetree.pipeline import clusters
 
+    run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
+
     def submit(name: str, url: str, steps: tuple[Step, ...]) -> Future:
-        future: Future = client.submit(execute, url, steps, key=f"{name}-{id(steps):x}", pure=False)
+        future: Future = client.submit(execute, url, steps, key=f"{name}-{run}", pure=False)
         return future
 
     return Launcher(submit, 3 * clusters.slots(client))

@@ -6,10 +6,10 @@ schedule nobody completes; it computes nothing.
 """
 
 import heapq
-from collections import defaultdict, deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter, defaultdict, deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from kinetree.pipeline.errors import DamagedArtifactError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
@@ -20,6 +20,7 @@ from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Argument, Space
 from kinetree.schemas.array import Artifact, Index, Params
 
+T = TypeVar("T")
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")
 Given = Mapping[str, Mapping[Index, Artifact]]
@@ -43,8 +44,8 @@ class Entry:
     record: Record | None = None
     damaged: str | None = None
     """Digest of an artifact that was found damaged and has to go before it is made again."""
-    mends: int = 0
-    """How often an input of this node had to be computed again."""
+    mends: Counter[str] = field(default_factory=Counter)
+    """How often each input of this node, by its digest, had to be computed again."""
     cause: str = ""
     """What failed, for a failed node; which node failed, for a skipped one."""
 
@@ -60,7 +61,7 @@ class Schedule:
         given: Given,
         *,
         force: Iterable[str] = (),
-        recall: Recall = lambda _: None,
+        recall: Recall = lambda _: "nothing",
     ) -> None:
         self.graph = graph
         self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
@@ -134,7 +135,7 @@ class Schedule:
         fresh = self._settle_all(self._released(node))
         if self._shaping & {node.task, *(n.task for n in fresh)}:
             fresh += self.lay_out()
-        return [self.entries[n] for n in fresh]
+        return [self.entries[n] for n in fresh if self.entries[n].state == "fresh"]
 
     def fail(self, node: Node, cause: str) -> list[Node]:
         """A node failed: everything that waits for it is skipped; returns what was."""
@@ -228,16 +229,16 @@ class Schedule:
         if opener.is_origin and opener.over == space:
             return sorted(i[-1] for i in self.given[opener.name] if i[:-1] == prefix)
         node = Node(opener.name, project(prefix, space[:-1], opener.over))
-        value = self._shape(node)
-        return node if value is None else value.members("/".join(space), prefix)
+        members = self._ask(node, lambda value: value.members("/".join(space), prefix))
+        return node if members is None else members
 
-    def _shape(self, node: Node) -> Artifact | None:
-        """The artifact of an opener or a traversal, None while it is not there (or no longer readable)."""
+    def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
+        """What an opener or a traversal answers, None while it is not there (or no longer readable)."""
         entry = self.entries.get(node)
         if entry is None or entry.state not in DONE:
             return None
         try:
-            return self.value(node)
+            return question(self.value(node))
         except DamagedArtifactError as error:
             self.redo(node, error.what)
             return None
@@ -293,10 +294,10 @@ class Schedule:
         assert entry.task.along is not None  # a declaration without it was refused
         orderer = self.graph.writers[entry.task.along]
         node = Node(orderer.name, project(entry.node.at, entry.task.over, orderer.over))
-        order = self._shape(node)
-        if order is None:
+        answer = self._ask(node, lambda order: (order.previous(entry.node.at[-1]),))
+        if answer is None:
             return (), (node,)
-        member = order.previous(entry.node.at[-1])
+        (member,) = answer
         if member is None:
             return (), ()
         before = Node(entry.task.name, (*entry.node.at[:-1], member))
@@ -345,9 +346,11 @@ class Schedule:
         if entry.node.task in self.force:
             return (Reason("forced"),)
         then = self.recall(entry.label)
-        if then is None:
+        if then == "nothing":
             return (never_ran(),)
-        return differences(work, then) or (Reason("artifact", "its record was removed"),)
+        if then == "lost":
+            return (Reason("artifact", "its record is missing or damaged"),)
+        return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)
 
 
 def key_inputs(inputs: Sequence[tuple[Argument, Sequence[Node]]], told: Sequence[Mapping[str, Any]]) -> list[Any]:

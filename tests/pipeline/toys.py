@@ -17,8 +17,8 @@ import numpy as np
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import origin, task
-from kinetree.schemas.array import Array, Artifact, Floats, Index, Location, Params, PathLike
-from kinetree.schemas.dims import VERTEX
+from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Location, Params, PathLike
+from kinetree.schemas.dims import FRAME, VERTEX
 
 from .toy_sums import parity, rough
 
@@ -142,17 +142,17 @@ class OrderParams(Params):
 class Order(Artifact):
     """Outwards from the reference, to both sides."""
 
-    frames: tuple[int, ...]
+    frames: Annotated[Ints, Array("int32", FRAME)]
     """Frame numbers, ascending."""
     reference: int
     """Position of the first in `frames`."""
 
     def previous(self, member: int) -> int | None:
         """The neighbour towards the reference."""
-        at = self.frames.index(member)
+        at = int(np.searchsorted(self.frames, member))
         if at == self.reference:
             return None
-        return self.frames[at - 1 if at > self.reference else at + 1]
+        return int(self.frames[at - 1 if at > self.reference else at + 1])
 
 
 class Track(Artifact):
@@ -260,7 +260,7 @@ def order(total: Total, params: OrderParams) -> Order:
     """Puts the frames in the order in which they are tracked."""
     executed("order", len(total.frames))
     nearest = min(range(len(total.frames)), key=lambda k: abs(total.frames[k] - params.reference))
-    return Order(frames=total.frames, reference=nearest)
+    return Order(frames=np.array(total.frames), reference=nearest)
 
 
 @task(over="frame", along=Order)
