@@ -111,4 +111,4 @@ def y_pipe(arm: int = 24, half_width: int = 4) -> tuple[Floats, Ints, Ints]:
 def two_components(subdivisions: int = 2) -> Mesh:
     """Two unit spheres, ten apart: the first half of the vertices cannot reach the second."""
     V, F = sphere(subdivisions)
-    return np.concatenate([V, V + [10.0, 0.0, 0.0]]), np.concatenate([F, F + len(V)])
+    return np.concatenate([V, V + np.array([10.0, 0.0, 0.0])]), np.concatenate([F, F + len(V)])

@@ -13,6 +13,7 @@ Ints = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.uint32]
 
 NONE = 0xFFFFFFFF
+BLUNT = np.deg2rad(135)  # 100° is exact on more obtuse grids, costs 10 % and leaves more outliers on bodies
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,8 @@ class Surface:
 
     order       : (vertex,) input number of each renumbered vertex
     ring_start  : (vertex + 1,) where each vertex's ring begins; a closed ring repeats its first neighbour
-    ring        : (entry,) 2 × neighbour + 1 if a face lies between it and the entry before, else 2 × neighbour
+    ring        : (entry,) 8 × neighbour + 1 if a face lies between it and the entry before + 2 if that face's angle at
+                  the entry before is blunt + 4 if it is blunt at this one
     ring_length : (entry,) distance to that neighbour, mesh unit
     ring_rim    : (entry,) length of that face's edge opposite the ring's vertex, mesh unit
     ring_edge   : (entry,) that face's half-edge that leaves the ring's vertex
@@ -67,10 +69,10 @@ class Surface:
         order = _along_a_curve(V)
         rank = np.empty_like(order)
         rank[order] = np.arange(len(order))
-        F = rank[F]
-        F = F[np.argsort(F.min(axis=1), kind="stable")] if len(F) else F.reshape(0, 3)
+        corners: Ints = rank[F].reshape(-1, 3)
+        corners = corners[np.argsort(corners.min(axis=1, initial=len(V)), kind="stable")]
         P = np.ascontiguousarray(V[order], dtype=np.float64)
-        tail, head, apex = F.ravel(), F[:, [1, 2, 0]].ravel(), F[:, [2, 0, 1]].ravel()
+        tail, head, apex = corners.ravel(), corners[:, [1, 2, 0]].ravel(), corners[:, [2, 0, 1]].ravel()
         length = np.linalg.norm(P[head] - P[tail], axis=1)
         twin = _twins(tail, head, len(P))
         angle = _angles(length)
@@ -79,14 +81,16 @@ class Surface:
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
         inside = kind > 0
-        before, after = _before(edge), _after(edge)
-        doubled_area = np.linalg.norm(np.cross(P[F[:, 1]] - P[F[:, 0]], P[F[:, 2]] - P[F[:, 0]]), axis=1)
+        before, after, blunt = _before(edge), _after(edge), angle > BLUNT
+        doubled_area = np.linalg.norm(np.cross(P[head[::3]] - P[tail[::3]], P[apex[::3]] - P[tail[::3]]), axis=1)
         area = np.zeros(len(P))
         area[order] = np.bincount(tail, np.repeat(doubled_area / 6, 3), len(P))
         return cls(
             order=order,
             ring_start=ring_start.astype(np.uint32),
-            ring=(2 * np.where(inside, apex[edge], head[edge]) + inside).astype(np.uint32),
+            ring=(8 * np.where(inside, apex[edge], head[edge]) + inside * (1 + 2 * blunt[after] + 4 * blunt[before])).astype(
+                np.uint32
+            ),
             ring_length=np.where(inside, length[before], length[edge]).astype(np.float32),
             ring_rim=length[after].astype(np.float32),
             ring_edge=edge.astype(np.uint32),

@@ -82,7 +82,9 @@ def unfold_next(count: np.uint64, code: Indices, length: Lengths, W: Floats) -> 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def leave_first(count: np.uint64, code: Indices, ring_edge: Indices, opening: Indices, W: Floats, passing: Indices) -> np.uint64:
+def leave_first(
+    count: np.uint64, code: Indices, ring_edge: Indices, opening: Indices, W: Floats, passing: Indices
+) -> np.uint64:
     """Triangles whose line passes beside the edge go on to the neighbour it enters; how many there are.
 
     code    : (i,) 2 × ring entry + 1 if the edge's OTHER end is the entry before
