@@ -14,7 +14,7 @@ from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.numerics.descriptions import suggestion, triple
 from kinetree.tasks.numerics.figures import Figure
 from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import values
+from kinetree.tasks.numerics.implicit import Cones, values
 from kinetree.tasks.numerics.motion import forward_kinematics
 
 Floats = npt.NDArray[np.float64]
@@ -118,6 +118,23 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
         step = Rotation.from_matrix(np.swapaxes(R[busy, j], 1, 2) @ bent[:, j]).as_rotvec()
         blended[busy, j] = R[busy, j] @ Rotation.from_rotvec(weight[busy, None] * step).as_matrix()
     return blended
+
+
+def merging(figure: Figure, flesh: Flesh, contact: Contact, cones: Cones) -> Cones:
+    """The limbs in a frame of the contact: the one that touches now blends with all that it may touch.
+
+    Soft skins close the wedge beside a contact; without that, a grid would see tunnels where the wedge is thinner
+    than a voxel. The blend is twice as wide as the limb's end and closes gaps of up to half its width.
+    """
+    touching_limb = int(np.flatnonzero(flesh.child == contact.limb)[0])
+    own = sorted(figure.below(bending_chain(figure, contact.limb)[-1]))
+    others = np.flatnonzero(~np.isin(flesh.parent, own))
+    pairs = np.stack([np.full_like(others, touching_limb), others], axis=1)
+    return cones._replace(
+        first=np.concatenate([cones.first, cones.first[-1] + 2 * np.arange(1, len(others) + 1)]),
+        members=np.concatenate([cones.members, pairs.ravel()]),
+        reach=np.concatenate([cones.reach, np.full(len(others), 2.0 * figure.joints[contact.limb].radii[-1])]),
+    )
 
 
 def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floats, chain: list[int]) -> tuple[Floats, Floats]:

@@ -16,6 +16,8 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _KNOTS = 17
+# A limb shorter than this multiple of its radius is a link: the limbs at its two ends meet in one crease.
+_SHORT = 1.5
 
 
 @dataclass(frozen=True)
@@ -90,12 +92,12 @@ def _across(side: tuple[float, float, float], D: Floats) -> Floats:
 
 
 def _blends(parent: Ints, child: Ints, length: Floats, table: Floats) -> list[tuple[int, list[int]]]:
-    """Limbs that blend, per joint: those that meet there, and across a limb shorter than it is thick those behind it.
+    """Limbs that blend, per joint: those that meet there, and across a short link those behind it.
 
     The second rule lets a thigh blend with the belly through the short link to the hip, but not with the other thigh.
     """
     ends = np.stack([parent, child], axis=1)
-    short = length < table.max(axis=1)
+    short = length < _SHORT * table.max(axis=1)
     groups = []
     for j in range(int(child.max()) + 1):
         here = [int(b) for b in np.flatnonzero((ends == j).any(axis=1))]

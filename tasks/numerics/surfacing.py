@@ -40,25 +40,24 @@ def surface(cones: Cones, spacing: float, rng: np.random.Generator, vertices: in
             spacing *= coarseness * float(np.sqrt(max(_crossings(coarse), 1) / vertices))
     field, origin = _sampled(turned, spacing, shift)
     V, F, _, _ = marching_cubes(_clear_of_zero(field, _SNAP * spacing), 0.0, gradient_direction="descent")
-    V, F = without_cavities(V.astype(np.float64), F.astype(np.int64))
+    V, F = largest_component(V.astype(np.float64), F.astype(np.int64))
     return _turned(origin + spacing * V, turn.T), F
 
 
-def without_cavities(V: Floats, F: Ints) -> tuple[Floats, Ints]:
-    """The mesh without the components that bound a cavity: where limbs touch they enclose pockets that no one sees.
+def largest_component(V: Floats, F: Ints) -> tuple[Floats, Ints]:
+    """The component that encloses the largest volume: a figure is one solid, and the rest is an artefact of sampling.
 
-    A component around a cavity faces inwards, so that its signed volume is negative.
+    Where limbs touch they enclose pockets that no one sees (their components face inwards, their volume is negative),
+    and a tip thinner than a voxel may come off between grid points.
 
     V       : (vertex, xyz), F : (face, corner) counter-clockwise seen from outside the solid
     returns : the same, vertices renumbered in their order
     """
     links = coo_matrix((np.ones(2 * len(F)), (F[:, :2].ravel(), F[:, 1:].ravel())), shape=(len(V), len(V)))
     count, component = connected_components(links, directed=False)
-    if count == 1:
-        return V, F
     a, b, c = (V[F[:, k]] - V[0] for k in range(3))
     volume = np.bincount(component[F[:, 0]], np.einsum("fi,fi->f", a, np.cross(b, c)), minlength=count)
-    kept = volume[component] > 0.0
+    kept = component == np.argmax(volume)
     renamed = np.cumsum(kept, dtype=np.int64) - 1
     return V[kept], renamed[F[kept[F[:, 0]]]]
 

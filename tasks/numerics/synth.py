@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.numerics.cameras import Cameras, camera_ring, silhouettes
-from kinetree.tasks.numerics.contacts import Contact, touching
+from kinetree.tasks.numerics.contacts import Contact, merging, touching
 from kinetree.tasks.numerics.defects import punctured, roughened
 from kinetree.tasks.numerics.descriptions import suggestion
 from kinetree.tasks.numerics.figures import Figure
@@ -115,8 +115,7 @@ class Body:
         if self.connectivity == "fixed":
             V, F = self.skin.posed(self.flesh, self.figure.rest, self.X[t], self.G[t]), self.skin.F
         else:
-            cones = self.flesh.at(self.X[t], self.G[t], self._missing(t))
-            V, F = surface(cones, self._first_spacing, self._rng(_SURFACE, t), self.vertices)
+            V, F = surface(self._cones(t), self._first_spacing, self._rng(_SURFACE, t), self.vertices)
         if self.noise:
             height = self.figure.height
             V = roughened(V, F, self.noise * height, 0.1 * height, self._rng(_NOISE, t))
@@ -201,7 +200,11 @@ class Body:
         return spacing_for(self.flesh.at(self.X[0], self.G[0]), self.vertices)
 
     def _cones(self, t: int) -> Cones:
-        return self.flesh.at(self.X[t], self.G[t], self._missing(t))
+        cones = self.flesh.at(self.X[t], self.G[t], self._missing(t))
+        for contact in self.contacts:
+            if contact.begin <= t <= contact.end:
+                cones = merging(self.figure, self.flesh, contact, cones)
+        return cones
 
     def _missing(self, t: int) -> npt.NDArray[np.bool_] | None:
         lost = [d.limbs for d in self.dropped if d.begin <= t <= d.end]

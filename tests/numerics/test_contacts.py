@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.contacts import Contact, bending_chain, touching
+from kinetree.tasks.numerics.contacts import Contact, bending_chain, merging, touching
 from kinetree.tasks.numerics.figures import Figure
 from kinetree.tasks.numerics.flesh import Flesh
 from kinetree.tasks.numerics.implicit import values
@@ -98,3 +98,17 @@ def test_a_contact_without_its_target_is_refused_in_words():
 def test_a_limb_that_is_too_short_is_refused_with_the_length_it_lacks():
     with pytest.raises(ConfigError, match=r"turning elbow, shoulder leaves the limb [\d.]+ unknown short of it"):
         bent(gripper(reach=0.8), {"limb": "hand", "target": "top", "begin": 8, "end": 12})
+
+
+def test_touching_skins_blend_where_the_limbs_end_meets_the_body_and_nowhere_else():
+    figure = gripper()
+    flesh, X, G = bent(figure, {"limb": "hand", "target": "top", "begin": 8, "end": 12, "ramp": 3})
+    contact = Contact(figure.names.index("hand"), figure.names.index("top"), 8, 12, 3, None)
+    cones = flesh.at(X[10], G[10])
+    P = X[10].mean(axis=0) + np.random.default_rng(0).uniform(-6.0, 6.0, (20000, 3))
+    apart, together = values(cones, P)[0], values(merging(figure, flesh, contact, cones), P)[0]
+    changed = together < apart - 1e-9
+    assert (together <= apart + 1e-9).all()
+    near_skin = changed & (np.abs(apart) < 0.2)
+    assert near_skin.any()
+    assert np.linalg.norm(P[near_skin] - X[10, contact.limb], axis=1).max() < 4.0 * 0.4

@@ -23,7 +23,7 @@ FIGURES = {
     for path in files("kinetree.configs").joinpath("figures").iterdir()
 }
 MOTIONS = [(name, motion) for name in sorted(FIGURES) for motion in FIGURES[name]["motions"]]
-HAND_ON_HIP = {"limb": "hand_r", "target": "hip_r", "begin": 12, "end": 26, "direction": [-1.0, -0.5, 0.0]}
+HAND_ON_HIP = {"limb": "hand_r", "target": "hip_r", "begin": 12, "end": 26}
 
 
 def body(name="human", **settings):
