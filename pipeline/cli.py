@@ -281,15 +281,16 @@ def main() -> NoReturn:
         _print_error(error)
         code = 1
     except (KeyboardInterrupt, typer.Abort):
-        err.print("kinetree: interrupted; what is finished is kept, run again to go on", markup=False)
         code = 130
     except BrokenPipeError:
         sys.stderr.close()
         code = 141
     except Exception as error:
         code = _unexpected(error)
-    if code == 130 and threading.active_count() > 1:
-        _leave(code)
+    if code == 130:
+        err.print("kinetree: interrupted; what is finished is kept, run again to go on", markup=False)
+        if threading.active_count() > 1:
+            _leave(code)
     raise SystemExit(code)
 
 

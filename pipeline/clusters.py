@@ -1,12 +1,14 @@
 """Where parcels are computed on dask's distributed scheduler: workers of this machine, or any scheduler's address."""
 
+import asyncio
 import contextlib
 import logging
+import signal
 from collections.abc import Iterator
 from typing import Any
 
 from dask.utils import parse_bytes
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, WorkerPlugin
 
 from kinetree.pipeline.errors import ClusterError, ConfigError
 
@@ -31,7 +33,13 @@ def local(workers: int, memory: str | None) -> Iterator[Client]:
                 silence_logs=logging.CRITICAL,
             )
         )
-        yield stack.enter_context(Client(cluster))
+        client = stack.enter_context(Client(cluster))
+        client.register_plugin(_Deaf())
+        try:
+            yield client
+        except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
+            cluster.sync(_kill, cluster)
+            raise
 
 
 @contextlib.contextmanager
@@ -53,6 +61,18 @@ def at(address: str) -> Iterator[Client]:
 def slots(client: Client) -> int:
     """How many parcels the workers compute at the same time."""
     return max(1, sum(int(n) for n in client.nthreads().values()))
+
+
+class _Deaf(WorkerPlugin):  # type: ignore[misc]
+    """Ctrl-C reaches every process of the terminal; what becomes of the workers is for the run to say."""
+
+    def setup(self, worker: Any) -> None:
+        """Called in a worker when it starts, and in one that takes its place."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+async def _kill(cluster: Any) -> None:
+    await asyncio.gather(*(nanny.kill(timeout=0.1) for nanny in cluster.workers.values()))
 
 
 @contextlib.contextmanager
