@@ -68,7 +68,7 @@ ENVIRONMENT = (
 """What a system refuses for reasons that lie in it and not in kinetree."""
 GATHERS = {"one": "", "tuple": " of all", "mapping": " of all", "previous": " before it"}
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-out = Console(soft_wrap=True, highlight=False)
+out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
 err = Console(stderr=True, soft_wrap=True, highlight=False)
 
 
@@ -182,7 +182,7 @@ def show(node: Annotated[str, typer.Argument(help="A node, e.g. mesh[frame=3].")
     out.print(printable(told["why"]), markup=False)
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("field", "type", "value", "what"):
-        table.add_column(name)
+        table.add_column(name, overflow="fold")
     for name, field in told["schema"]["fields"].items():
         table.add_row(name, escape(field["type"]), escape(printable(_value(told, name))), escape(field["what"]))
     out.print(table)
@@ -199,7 +199,7 @@ def runs(config: Target = None, as_json: AsJson = False) -> None:
         return
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("run", "status", "ran", "fresh", "failed", "seconds", "output"):
-        table.add_column(name)
+        table.add_column(name, overflow="fold")
     for row in found:
         told = [str(row.get("counts", {}).get(name, "")) for name in ("ran", "fresh", "failed")]
         fields = [row["name"], row["status"], *told, row.get("seconds", ""), row["output"]]
@@ -207,7 +207,7 @@ def runs(config: Target = None, as_json: AsJson = False) -> None:
     out.print(table)
 
 
-@app.command(epilog="Example: kinetree diff 20250301-081500-ab12 20250302-081500-0c4e walk/")
+@app.command(epilog="Example: kinetree diff 20250301-081500-123ab 20250302-081500-4560c walk/")
 def diff(run_a: Annotated[str, typer.Argument(help="A run, as kinetree runs names it.")],
          run_b: Annotated[str, typer.Argument(help="Another run.")], config: Target = None,
          as_json: AsJson = False) -> None:  # fmt: skip
