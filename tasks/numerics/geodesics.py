@@ -2,8 +2,8 @@
 
 A triangle is unfolded when two of its vertices have their distance (`unfolding`). Beside that every edge is a path, so
 that a distance exists wherever there is a connection, and paths may bend at saddles and borders. Distances do not
-depend on the order of vertices and faces, nor on any number of threads, but they are approximate: 0.3 % from the exact
-ones in the mean, and up to half an edge at single vertices behind thin parts, where fronts meet.
+depend on any number of threads, but they are approximate: 0.3 to 0.4 % from the exact ones in the mean over bodies of
+12,000 vertices, and up to one mean edge at single vertices behind thin parts, where fronts meet.
 """
 
 import numpy as np

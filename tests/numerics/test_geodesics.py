@@ -1,6 +1,7 @@
 """Laws of geodesic distance on shapes whose distances are known in closed form."""
 
 import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -166,6 +167,14 @@ def test_each_source_is_alone_whatever_else_is_asked() -> None:
     together = geodesic_distance(surface, [3, 100, 3, 641])
     for row, source in zip(together, [3, 100, 3, 641], strict=True):
         assert np.array_equal(row, geodesic_distance(surface, [source])[0])
+
+
+def test_threads_at_the_same_time_get_the_same_bits() -> None:
+    surface = Surface.of(*shapes.sphere(4))
+    alone = geodesic_distance(surface, np.arange(40))
+    with ThreadPoolExecutor(4) as pool:
+        at_once = list(pool.map(lambda s: geodesic_distance(surface, [s])[0], range(40)))
+    assert np.array_equal(np.array(at_once), alone)
 
 
 def test_another_component_is_infinitely_far() -> None:
