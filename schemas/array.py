@@ -11,7 +11,7 @@ when an artifact is made; arrays leave read-only. `length` as a unit is the unit
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,9 +182,14 @@ class Params(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
 
     @classmethod
-    def path_fields(cls) -> frozenset[str]:
-        """The parameters that are paths."""
-        return frozenset(n for n, f in cls.model_fields.items() if any(isinstance(m, PathLike) for m in f.metadata))
+    def path_fields(cls) -> frozenset[tuple[str, ...]]:
+        """The parameters that are paths, each as the keys that lead to it."""
+        found: set[tuple[str, ...]] = {(n,) for n, f in cls.model_fields.items() if any(isinstance(m, PathLike) for m in f.metadata)}
+        for name, field in cls.model_fields.items():
+            for inner in (field.annotation, *get_args(field.annotation)):
+                if isinstance(inner, type) and issubclass(inner, Params):
+                    found |= {(name, *rest) for rest in inner.path_fields()}
+        return frozenset(found)
 
 
 def _castable(given: NDArray[Any], dtype: np.dtype[Any]) -> bool:

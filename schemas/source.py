@@ -3,6 +3,7 @@
 from typing import Annotated, Literal
 
 from kinetree.schemas.array import Artifact, Location, Params, PathLike
+from kinetree.schemas.synth import SynthParams
 
 
 class SourceParams(Params):
@@ -10,6 +11,8 @@ class SourceParams(Params):
 
     input: Annotated[str, PathLike()] = ""
     """A folder or glob of mesh files, one a frame, or one .npz or zarr file that holds all frames."""
+    synth: SynthParams | None = None
+    """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"
     """The frames wanted, as start:stop:step over the sequence's own numbering, e.g. 10:60:2."""
 
@@ -22,8 +25,10 @@ class Source(Artifact):
     path: Annotated[str, Location()]
     """The file, or the folder of a zarr group."""
     part: Annotated[int | None, Location()] = None
-    """Position in a file that holds all frames; None for one file a frame."""
-    kind: Literal["file", "npz", "zarr"] = "file"
+    """Position in a file that holds all frames, or in a synthetic sequence; None for one file a frame."""
+    recipe: Annotated[str, Location()] = ""
+    """What a synthetic frame is made by, as JSON; its digest is in `content`."""
+    kind: Literal["file", "npz", "zarr", "synth"] = "file"
     """How to read it."""
     fps: float | None = None
     """Frames a second as the file states it; None where it does not."""

@@ -1,9 +1,11 @@
-"""Where the frames are: a folder or glob of mesh files, or one npz or zarr file that holds them all."""
+"""Where the frames are: a folder or glob of mesh files, one npz or zarr file that holds them all, or a synthetic body."""
 
 import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+
+import numpy as np
 
 from kinetree.pipeline.errors import SourceError, StoreError
 from kinetree.pipeline.files import Files
@@ -14,23 +16,45 @@ from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.source import Source, SourceParams
 from kinetree.tasks.numerics.formats import read_mesh
 from kinetree.tasks.numerics.source import Frames, mesh_files, read_npz
+from kinetree.tasks.synth import body, recipe
 
 
 @origin(over="frame")
 def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     """Finds the frames of a sequence and the digest of each one's bytes (2014, Sec. 3)."""
+    if params.synth is not None:
+        if params.input:
+            raise SourceError(f"source.input ({params.input}) and source.synth exclude each other; leave one out")
+        return _chosen(_generated(recipe(params.synth), params.synth.frames), params.frames, "the synthetic sequence")
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
-    path = _spoken(Path(params.input))
+    return _chosen(_found(params.input, files), params.frames, params.input)
+
+
+def _found(where: str, files: Files) -> list[Source]:
+    """Every frame at a path, a pattern or in a packed sequence."""
+    path = _spoken(Path(where))
     if path.suffix == ".npz" or _is_zarr(path):
-        found = _packed(path, "npz" if path.suffix == ".npz" else "zarr", files)
-    else:
-        paths = [_spoken(p) for p in mesh_files(params.input)]
-        contents = files.digests(paths)
-        found = [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
-    chosen = _selected(params.frames, len(found), params.input)
+        return _packed(path, "npz" if path.suffix == ".npz" else "zarr", files)
+    paths = [_spoken(p) for p in mesh_files(where)]
+    contents = files.digests(paths)
+    return [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
+
+
+def _generated(written: str, frames: int) -> list[Source]:
+    told = body(written)
+    unit, fps = told.figure.unit, told.fps
+    return [
+        Source(content=digest(["synth", written, t]), path="synth", part=t, kind="synth", recipe=written, fps=fps, unit=unit)
+        for t in range(frames)
+    ]
+
+
+def _chosen(found: Sequence[Source], frames: str, where: str) -> dict[int, Source]:
+    """The frames wanted, by number."""
+    chosen = _selected(frames, len(found), where)
     if len(chosen) < 2:
-        held = f"frames {params.frames!r} selects" if len(found) > 1 else f"{params.input}: there is"
+        held = f"frames {frames!r} selects" if len(found) > 1 else f"{where}: there is"
         raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
     return {frame: found[frame] for frame in chosen}
 
@@ -41,7 +65,11 @@ def surface(found: Source) -> tuple[Floats, Ints]:
     raises : MeshError, SourceError where they cannot be read, or are not the bytes that were there when planning
     """
     path = Path(found.path)
-    if found.part is None:
+    if found.part is not None and found.kind == "synth":
+        V, corners = body(found.recipe).frame(found.part)
+        F = corners.astype(np.int32)
+        now = digest(["synth", found.recipe, found.part])
+    elif found.part is None:
         V, F = read_mesh(path)
         now = file_digest(path)
     else:
