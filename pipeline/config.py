@@ -39,7 +39,7 @@ class Compute(BaseModel):
     """How many at the same time; None takes one per core."""
     memory: str | None = None
     """Memory limit of one worker process, e.g. 4GB; None sets none."""
-    scheduler: str | None = None
+    scheduler: str | None = Field(default=None, min_length=1)
     """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
 
     @property
@@ -93,7 +93,10 @@ def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Gr
 
 def with_compute(config: Config, **changes: Any) -> Config:
     """The configuration with some of its compute settings replaced; None leaves one as it is."""
-    told = {**config.compute.model_dump(), **{k: v for k, v in changes.items() if v is not None}}
+    given = {k: v for k, v in changes.items() if v is not None}
+    if "executor" in given:
+        given.setdefault("scheduler", None)  # a scheduler that only the file names gives way to what is asked for now
+    told = {**config.compute.model_dump(), **given}
     return replace(config, compute=checked(Compute, told, "compute"))
 
 

@@ -1,0 +1,64 @@
+"""`@compiled`: a function compiled by numba, kept on disk, run without the interpreter's lock.
+
+Numba keeps compiled code beside the digest of the file it stands in, but compiled code holds what it calls in other files
+too: after an edit there, or an upgrade, the old code would run on. So the place where it is kept is named by the digest
+of the file and of every numeric file it imports.
+"""
+
+import hashlib
+import importlib.util
+import os
+import re
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+PACKAGE = "kinetree.tasks.numerics"
+
+
+def compiled(function: Function) -> Function:
+    """Numba's `njit` without the lock and without checks for division by nought, kept where only this code can find it."""
+    home, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _kept_at(function.__module__)
+    try:
+        made: Function = numba.njit(cache=bool(numba.config.CACHE_DIR), nogil=True, error_model="numpy")(function)
+    finally:
+        numba.config.CACHE_DIR = home
+    return made
+
+
+@cache
+def _kept_at(module: str) -> str:
+    """A folder of the user's own cache; "" where none can be written, and code is compiled anew in every process."""
+    root = os.environ.get("NUMBA_CACHE_DIR") or os.path.join(  # noqa: PTH118 - a path given by the environment stays as it is
+        os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "kinetree"
+    )
+    folder = Path(root) / _digest(module)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return ""
+    return str(folder) if os.access(folder, os.W_OK) else ""
+
+
+@cache
+def _digest(module: str) -> str:
+    """Digest of the module's text and of every numeric module it imports, transitively."""
+    texts: dict[str, str] = {}
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts:
+            texts[name] = _text(name)
+            waiting += re.findall(rf"^\s*(?:from|import) ({PACKAGE}\.\w[\w.]*)", texts[name], re.MULTILINE)
+    told = "\0".join(f"{name}\0{texts[name]}" for name in sorted(texts))
+    return hashlib.blake2b(told.encode(), digest_size=10).hexdigest()
+
+
+def _text(module: str) -> str:
+    spec = getattr(sys.modules.get(module), "__spec__", None) or importlib.util.find_spec(module)
+    return Path(spec.origin).read_text(encoding="utf-8") if spec is not None and spec.origin else ""
