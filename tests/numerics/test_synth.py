@@ -13,7 +13,7 @@ import trimesh
 import yaml
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.defects import vertex_normals
+from kinetree.tasks.numerics.defects import punctured, vertex_normals
 from kinetree.tasks.numerics.figures import named
 from kinetree.tasks.numerics.implicit import values
 from kinetree.tasks.numerics.synth import Body
@@ -161,6 +161,14 @@ def test_holes_open_the_surface_that_often_and_leave_no_loose_vertex():
     assert not mesh(V, F).is_watertight
     assert boundary_loops(F) == 3
     np.testing.assert_array_equal(np.unique(F), np.arange(len(V)))
+
+
+def test_a_hole_takes_the_cap_of_its_radius_off_a_ball():
+    ball = trimesh.creation.icosphere(subdivisions=5)
+    V, F = punctured(np.array(ball.vertices), np.array(ball.faces), 1, 0.5, np.random.default_rng(3))
+    # A cap of chord r has the area πr² on every sphere.
+    assert ball.area - mesh(V, F).area == pytest.approx(np.pi * 0.5**2, rel=0.12)
+    assert boundary_loops(F) == 1
 
 
 def test_a_dropped_limb_is_missing_in_exactly_its_frames():
