@@ -35,7 +35,7 @@ class Summary(NamedTuple):
 
 
 def dimensionless(mu: Floats, area: Floats) -> Floats:
-    """x = μ / A^{3/2}, the mean distance from a vertex to the surface in units of √A; no unit, the same at any scale.
+    """Mean distance x = μ / A^{3/2} from a vertex to the surface in units of √A: no unit, the same at any scale.
 
     mu      : (vertex,) ∫ g dA, mesh unit³
     area    : (vertex,) mesh unit², summing to A

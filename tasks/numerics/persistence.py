@@ -40,7 +40,7 @@ def superlevel_peaks(f: Floats, F: npt.NDArray[np.integer], least: float = 0.0) 
     returns : Peaks; a component on which f is constant has none
     """
     order = np.argsort(-f, kind="stable").astype(np.int64)
-    peak, saddle, into, low = _merges(order, *_neighbours(F, len(f)))
+    peak, saddle, into, low = _merges(order, *neighbours(F, len(f)))
     persistence = f[peak] - f[np.where(saddle >= 0, saddle, low)]
     kept = np.flatnonzero((persistence >= least) & (persistence > 0.0))
     kept = kept[np.lexsort((peak[kept], -persistence[kept]))]
@@ -69,18 +69,61 @@ def loop_counts(f: Floats, F: npt.NDArray[np.integer], levels: int = 200) -> Int
     low, high = float(f[used].min()), float(f[used].max())
     # the levels below each vertex: a vertex exactly on a level lies above it, for all three counts
     step = np.searchsorted(low + (high - low) * np.arange(1, levels + 1) / (levels + 1), f, side="right").astype(np.int64)
-    start, ring = _neighbours(F, len(f))
+    start, ring = neighbours(F, len(f))
     above = _components(step, start, ring, levels)
     below = _components(levels - step, start, ring, levels)
     return _contours(*_face_edges(F, step), levels) - above[1:] - below[:0:-1] + above[0]
 
 
-def _neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
-    """Neighbours of every vertex in one array: v's are ring[start[v] : start[v + 1]], repeated where faces share them."""
+def loop_spans(counts: Ints) -> Floats:
+    """How far loops reach: lengths of the runs of levels crossed by at least one loop, by at least two, and so on.
+
+    counts  : (level,) see `loop_counts`
+    returns : (loop,) shares of the range of f, longest first; a finger fused to its neighbour has little, a hand on the
+              hip as much as the arm between them
+    """
+    spans: list[float] = []
+    for k in range(1, int(counts.max(initial=0)) + 1):
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], counts >= k, [False]])))
+        spans += list((edges[1::2] - edges[::2]) / len(counts))
+    return np.array(sorted(spans, reverse=True))
+
+
+def neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
+    """Neighbours of every vertex in one array: v's are ring[start[v] : start[v + 1]], repeated where faces share them.
+
+    F       : (face, corner)
+    returns : start (vertex + 1,), ring (entry,)
+    """
     tail = F[:, [0, 1, 2, 1, 2, 0]].ravel().astype(np.int64)
     head = F[:, [1, 2, 0, 0, 1, 2]].ravel().astype(np.int64)
     start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=vertices))]).astype(np.int64)
     return start, head[np.argsort(tail, kind="stable")]
+
+
+@njit(cache=True, nogil=True)
+def region_above(f: Floats, level: float, seed: int, start: Ints, ring: Ints) -> Ints:
+    """Vertices connected to `seed` through vertices with f > level, the seed first.
+
+    f           : (vertex,)
+    start, ring : see `neighbours`
+    returns     : (region vertex,) at least the seed
+    """
+    seen = np.zeros(len(f), np.bool_)
+    region = np.empty(len(f), np.int64)
+    region[0] = seed
+    seen[seed] = True
+    done, count = 0, 1
+    while done < count:
+        v = region[done]
+        done += 1
+        for q in range(start[v], start[v + 1]):
+            u = ring[q]
+            if not seen[u] and f[u] > level:
+                seen[u] = True
+                region[count] = u
+                count += 1
+    return region[:count].copy()
 
 
 def _face_edges(F: npt.NDArray[np.integer], step: Ints) -> tuple[Ints, Ints, Ints]:
