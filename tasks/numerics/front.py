@@ -6,8 +6,8 @@ and the inner loops hardly branch, which is where a heap spends its time.
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.surface import Surface
 from kinetree.tasks.numerics.unfolding import (
     BASE,
@@ -52,7 +52,7 @@ def topology(surface: Surface) -> Topology:
     )  # fmt: skip
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def workspace(vertices: int, entries: int) -> tuple[npt.NDArray, ...]:  # type: ignore[type-arg]
     """Memory for one propagation at a time; the first array is the distance in the surface's own numbering."""
     return (
@@ -71,7 +71,7 @@ def workspace(vertices: int, entries: int) -> tuple[npt.NDArray, ...]:  # type: 
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: tuple[npt.NDArray, ...]) -> None:  # type: ignore[type-arg]
     """Distances from one source into room[0]; the only state is `room`."""
     start, ring, ring_length, ring_rim, ring_edge, apex, twin, opening, length, bends = mesh
@@ -118,7 +118,7 @@ def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, roo
             distance[v] = np.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _advance(
     now: np.uint64, per_band: float, distance: Floats, band: Indices, waiting: Indices, filled: Indices, front: Indices
 ) -> np.uint64:
@@ -145,7 +145,7 @@ def _advance(
     return size
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _meet(
     size: np.uint64, front: Indices, passed: float, start: Indices, ring: Indices, ring_length: Lengths,
     distance: Floats, codes: Codes, results: Floats,
@@ -181,7 +181,7 @@ def _meet(
     return pairs, edges
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _load(
     first: np.uint64, count: np.uint64, codes: Codes, start: Indices, ring: Indices, ring_length: Lengths,
     ring_rim: Lengths, distance: Floats, bend: Floats, W: Floats, small: Indices,
@@ -204,7 +204,7 @@ def _load(
         W[i + SIGMA] = sigma
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _collect(count: np.uint64, apex: Indices, W: Floats, found: np.uint64, reached: Indices, results: Floats) -> np.uint64:
     """Append the vertices that see their virtual source through the edge: where, how far, and the bend behind it."""
     for i in range(count):
@@ -215,7 +215,7 @@ def _collect(count: np.uint64, apex: Indices, W: Floats, found: np.uint64, reach
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def _lower(
     count: np.uint64, vertex: Indices, value: Floats, origin: Floats, now: np.uint64, per_band: float, least: float,
     distance: Floats, bend: Floats, band: Indices, waiting: Indices, filled: Indices,

@@ -8,9 +8,9 @@ depend on any number of threads, but they are approximate: 0.3 to 0.4 % from the
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from kinetree.pipeline.errors import MeshError
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.front import Topology, propagate, topology, workspace
 from kinetree.tasks.numerics.surface import Surface
 
@@ -54,7 +54,7 @@ def checked_sources(surface: Surface, source: npt.ArrayLike) -> Ints:
     return rank[asked]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def fields(mesh: Topology, source: Ints, order: Ints, edge: float, radius: float) -> Floats:
     """Distances (source, vertex) in the input's numbering from sources in the surface's own, in one compiled call."""
     vertices = len(order)

@@ -7,13 +7,13 @@ and faces turned inside out. Thresholds are relative to the mesh's own size, so 
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinetree.pipeline.errors import MeshError
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.orientation import area_vectors, half_edges, lexicographic, oriented, winding
 
 Floats = NDArray[np.float64]
@@ -236,7 +236,7 @@ def _volume(X: Floats, F: Ints) -> float:
     return float(np.einsum("fx,fx->", X[F[:, 0]] - X[F[0, 0]], area_vectors(X, F)) / 3)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _needles(X: Floats, F: Ints, area: Floats) -> int:
     """How many faces are lower than a millionth of their longest edge."""
     count = 0

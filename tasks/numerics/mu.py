@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from kinetree.pipeline.errors import ConfigError, DisconnectedMeshError
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.front import Topology, propagate, topology, workspace
 from kinetree.tasks.numerics.surface import Surface
 
@@ -94,7 +94,7 @@ def _disconnected(unreached: int, vertices: int, source: int) -> str:
     )
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _spread(mesh: Topology, rank: Ints, order: Ints, edge: float, first: int, count: int) -> tuple[Ints, Floats, Ints]:
     """Farthest-point sampling: (base,) vertices, (base, vertex) distances and (vertex,) nearest base, all as input."""
     vertices = len(order)
@@ -119,7 +119,7 @@ def _spread(mesh: Topology, rank: Ints, order: Ints, edge: float, first: int, co
     return vertex, distance, cell
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _weighted_sum(distance: Floats, weight: Floats) -> Floats:
     """Row by row in a fixed order: a library's product may split the sum by its number of threads."""
     total = np.zeros(distance.shape[1])
@@ -129,7 +129,7 @@ def _weighted_sum(distance: Floats, weight: Floats) -> Floats:
     return total
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _streamed_sum(mesh: Topology, order: Ints, edge: float, weight: Floats) -> tuple[Floats, int, int]:
     """Σ_u w_u g(u, ·) and, if some vertex is out of reach, how many are and from which source."""
     vertices = len(order)

@@ -1,8 +1,9 @@
 """Which side of a surface is out: neighbouring faces made to agree, closed patches turned outwards, winding numbers."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -64,7 +65,7 @@ def _numbered(root: Longs) -> Longs:
     return (np.cumsum(root == np.arange(len(root))) - 1)[root]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def area_vectors(X: Floats, F: Ints) -> Floats:
     """(face, xyz) normals as long as the faces' areas."""
     N = np.empty((len(F), 3))
@@ -77,7 +78,7 @@ def area_vectors(X: Floats, F: Ints) -> Floats:
     return N
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def lexicographic(rows: Ints, n: int) -> Longs:
     """Stable order of the rows of integers in [0, n): a counting sort per column, linear in rows + n."""
     order = np.arange(len(rows))
@@ -94,7 +95,7 @@ def lexicographic(rows: Ints, n: int) -> Longs:
     return order
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find(parent: Longs, flip: Flags, f: int) -> int:
     """Root of face f; afterwards f hangs from it directly and flip[f] is relative to it."""
     root, relative = f, False
@@ -106,7 +107,7 @@ def _find(parent: Longs, flip: Flags, f: int) -> int:
     return root
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
     """Per face: root of its patch, flip relative to it, whether it has an open end, root of its component.
 
@@ -147,7 +148,7 @@ def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
     return patch, flip, is_open, component
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _winding(P: Floats, X: Floats, F: Ints) -> Floats:
     out = np.zeros(len(P))
     for i in range(len(P)):

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Lengths = npt.NDArray[np.float32]
@@ -155,7 +156,7 @@ def _bends(angle: Floats, tail: Ints, head: Ints, twin: Ints, vertices: int) -> 
     return bends.astype(np.uint8)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _rings(start: Ints, corner: Ints, twin: Ints) -> tuple[Ints, npt.NDArray[np.uint8], Ints]:
     """Fans of faces around every vertex, in order: where each ring starts, whether an entry ends a face, its edge."""
     seen = np.zeros(len(twin), np.uint8)

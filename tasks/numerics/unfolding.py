@@ -13,7 +13,8 @@ access against counting from the end.
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Lengths = npt.NDArray[np.float32]
@@ -31,7 +32,7 @@ AX, AY, BX, BY, WIDTH = (np.uint64(row * BLOCK) for row in range(13, 18))
 ROWS = 18
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def unfold_first(count: np.uint64, W: Floats) -> None:
     """Virtual source and third vertex of `count` triangles, from rows NEAR … SIGMA to rows X … FROM_RIGHT of W.
 
@@ -52,7 +53,7 @@ def unfold_first(count: np.uint64, W: Floats) -> None:
         W[i + FROM_RIGHT] = base * (y + cy) - foot
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def unfold_next(count: np.uint64, code: Indices, length: Lengths, W: Floats) -> None:
     """Third vertex of the triangle beyond each edge A B, seen from the same virtual source through the first edge.
 
@@ -81,7 +82,7 @@ def unfold_next(count: np.uint64, code: Indices, length: Lengths, W: Floats) -> 
         W[i + FROM_RIGHT] = (W[i + WIDTH] - x) * (cy + y) - y * (cx - x)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def leave_first(
     count: np.uint64, code: Indices, ring_edge: Indices, opening: Indices, W: Floats, passing: Indices
 ) -> np.uint64:
@@ -115,7 +116,7 @@ def leave_first(
     return going
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def leave_next(count: np.uint64, twin: Indices, W: Floats, passing: Indices) -> np.uint64:
     """The same after `unfold_next`: lines that still miss go on through the edge they cross; how many there are."""
     going, borders = _0, np.uint64(twin.size)

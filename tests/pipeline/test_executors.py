@@ -47,6 +47,17 @@ def test_a_killed_worker_costs_its_node_another_try_and_nothing_else(toys, tmp_p
     assert {**toys.artifacts(), "report": calm["report"]} == calm
 
 
+def test_a_node_that_kills_every_worker_fails_alone(toys):
+    """Frames go on being read while the workers that take one node die under it, until nobody gets it any more."""
+    toys.flag("slay-total-210")
+    run = toys.run(compute={"executor": "processes", "workers": 1}, until=("total", "intervals"))
+    (failure,) = run.told["failures"]
+    assert (failure["node"], failure["error"]) == ("total", "KilledWorker")
+    assert failure["message"].startswith("the worker was lost")
+    assert run.counts == {"points": 6, "smooth": 6, "intervals": 1}
+    assert toys.executions().count("total-210") > 1
+
+
 def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, cluster, tmp_path):
     with Client(cluster) as client:
         assert len(toys.run(client, until=("smooth",)).ran) == 12

@@ -22,10 +22,21 @@ def calm(toys, tmp_path):
     return toys.artifacts(store=store)
 
 
+def place_of(toys, digest):
+    """Where an artifact lies."""
+    return toys.output / "store" / artifact_path(digest)
+
+
 def place(toys, node, name=""):
-    """Where the artifact of a node lies."""
-    store = toys.output / "store"
-    return store / artifact_path(toys.artifacts()[node]) / name
+    """Where a file of the artifact of a node lies."""
+    return place_of(toys, toys.artifacts()[node]) / name
+
+
+def flip(file):
+    """Alters one byte."""
+    data = bytearray(file.read_bytes())
+    data[-1] ^= 0xFF
+    file.write_bytes(data)
 
 
 def terminal(events):
@@ -145,10 +156,7 @@ def remove_chunk(toys):
 
 
 def alter_chunk(toys):
-    chunk = place(toys, "points[frame=2]", "x/c/0")
-    data = bytearray(chunk.read_bytes())
-    data[-1] ^= 0xFF
-    chunk.write_bytes(data)
+    flip(place(toys, "points[frame=2]", "x/c/0"))
 
 
 def alter_array_metadata(toys):
@@ -209,6 +217,31 @@ def test_a_damaged_opener_is_noticed_when_planning_and_mended(toys, calm):
     assert [r.kind for r in plan["intervals"].reasons] == ["artifact"]
     assert toys.run().ran == {"intervals"}
     assert toys.artifacts() == calm
+
+
+def test_a_damaged_traversal_is_noticed_when_planning_and_mended(toys, calm):
+    toys.run()
+    flip(place(toys, "order", "frames/c/0"))
+    toys.clear()
+    plan = toys.pipeline().plan()
+    assert str(plan["order"]) == "order: stale (artifact: array frames was altered)"
+    assert str(plan["track[frame=0]"]) == "track[frame=0]: waits (on order)"
+    assert toys.run().ran == {"order"}
+    assert toys.artifacts() == calm
+
+
+@pytest.mark.parametrize("executor", ["sync", "threads"])
+def test_an_artifact_that_many_nodes_made_is_mended_once(toys, executor):
+    """All frames are smoothed to nothing: one artifact, six keys, and several tasks that read it at the same time."""
+    told = {"smooth": {"grain": 100.0}, "compute": {"executor": executor, "workers": 4}}
+    toys.run(**told)
+    head = place_of(toys, toys.artifacts(**told)["smooth[frame=0]"]) / "zarr.json"
+    assert '"value":0.0' in head.read_text().replace(" ", "")
+    head.write_text(head.read_text().replace("0.0", "0.5"))
+    run = toys.run(**told, force=("total", "intervals", "centred"))
+    assert run.told["status"] == "done"
+    assert run.counts == {"smooth": 6, "total": 1, "intervals": 1, "centred": 6}
+    assert toys.run(**told).ran == set()
 
 
 def test_a_truncated_record_is_as_good_as_none(toys, calm):

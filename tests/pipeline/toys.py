@@ -180,6 +180,8 @@ def executed(name: str, number: float) -> None:
     if (flags / f"die-{told}").exists():
         (flags / f"die-{told}").unlink()
         os.kill(os.getpid(), signal.SIGKILL)
+    if (flags / f"slay-{told}").exists():
+        os.kill(os.getpid(), signal.SIGKILL)
     if (flags / f"wait-{told}").exists():
         (flags / f"waiting-{told}").write_text(str(os.getpid()))
         while (flags / f"wait-{told}").exists():

@@ -1,0 +1,191 @@
+"""Fan-outs that depend on data, and chains along a traversal."""
+
+import pytest
+
+from kinetree.pipeline.errors import GraphError
+from kinetree.pipeline.run import Launcher, run
+
+CHAIN = '''"""Frames without files, linked in a row."""
+
+from collections.abc import Mapping
+
+from kinetree.pipeline.files import Files
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.task import origin, task
+from kinetree.schemas.array import Artifact, Params
+
+
+class SourceParams(Params):
+    """Nothing of interest."""
+
+    input: str = ""
+    """Not read."""
+
+
+class Source(Artifact):
+    """One frame."""
+
+    number: int
+    """Its number."""
+
+
+class RowParams(Params):
+    """Which end is first."""
+
+    first: int = 0
+    """Frame number."""
+
+
+class Row(Artifact):
+    """From one end to the other."""
+
+    first: int
+    """Where it starts."""
+
+    def previous(self, member):
+        return None if member == self.first else member - 1 if self.first == 0 else member + 1
+
+
+class Link(Artifact):
+    """The chain up to a frame."""
+
+    length: int
+    """Links."""
+    number: int
+    """The frame's."""
+
+
+@origin(over="frame")
+def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
+    return {n: Source(number=n) for n in range(2000)}
+
+
+@task()
+def row(source: tuple[Source, ...], params: RowParams) -> Row:
+    return Row(first=params.first)
+
+
+@task(over="frame", along=Row)
+def link(source: Source, before: "Link | None") -> Link:
+    return Link(length=before.length + 1 if before else 1, number=source.number)
+
+
+GRAPH = Graph.of((source, row, link))
+'''
+
+
+def nodes(plan, task):
+    return [n.node for n in plan.nodes if n.task == task]
+
+
+def test_what_an_opener_opens_appears_when_it_has_run(toys):
+    plan = toys.pipeline().plan()
+    assert nodes(plan, "cones") == nodes(plan, "piece") == nodes(plan, "local") == []
+    (row,) = [t for t in plan.tasks if t.task == "cones"]
+    assert row.unknown == ("intervals",)
+    assert not plan.is_done
+    toys.run(until=("intervals",))
+    plan = toys.pipeline().plan()
+    assert nodes(plan, "cones") == [f"cones[interval={n}]" for n in range(3)]
+    assert nodes(plan, "piece") == []
+    assert nodes(plan, "local") == [f"local[interval={n // 2},frame={n}]" for n in range(6)]
+    toys.run(until=("cones",))
+    # the sums 30, 70 and 110 have odd tens: two cones each
+    assert nodes(toys.pipeline().plan(), "piece") == [f"piece[interval={i},cone={c}]" for i in range(3) for c in range(2)]
+
+
+def test_another_number_of_intervals_lays_out_other_nodes(toys):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    plan = toys.pipeline(intervals={"length": 3}).plan()
+    assert nodes(plan, "cones") == ["cones[interval=0]", "cones[interval=1]"]
+    # the sum 60 has even tens, the sum 150 odd ones
+    assert nodes(plan, "piece") == ["piece[interval=0,cone=0]", "piece[interval=1,cone=0]", "piece[interval=1,cone=1]"]
+    assert nodes(plan, "local") == [f"local[interval={n // 3},frame={n}]" for n in range(6)]
+    assert plan.is_done
+
+
+def test_a_task_over_intervals_gathers_the_frames_of_its_own(toys):
+    toys.run()
+    values = [toys.pipeline().artifact("cones", interval=n).value for n in range(3)]
+    assert values == [30.0, 70.0, 110.0]
+    reads = toys.pipeline().lineage("cones[1]").predecessors("cones[interval=1]")
+    assert set(reads) == {"smooth[frame=2]", "smooth[frame=3]"}
+    reads = toys.pipeline().lineage("local[interval=1,frame=3]").predecessors("local[interval=1,frame=3]")
+    assert set(reads) == {"smooth[frame=3]", "cones[interval=1]"}
+
+
+def test_a_second_pass_over_the_frames_reads_the_gather(toys):
+    toys.run(until=("centred",))
+    assert [toys.pipeline().artifact("centred", frame=n).value for n in range(6)] == [-25, -15, -5, 5, 15, 25]
+
+
+def test_a_chain_goes_outwards_from_the_reference_to_both_sides(toys):
+    toys.run(until=("track",))
+    way = {n: toys.pipeline().artifact("track", frame=n).way for n in range(6)}
+    assert way[2] == (-5.0,)
+    assert way[1] == (-5.0, -15.0)
+    assert way[0] == (-5.0, -15.0, -25.0)
+    assert way[5] == (-5.0, 5.0, 15.0, 25.0)
+    reads = toys.pipeline().lineage("track[4]").predecessors("track[frame=4]")
+    assert set(reads) == {"centred[frame=4]", "track[frame=3]"}
+
+
+def test_a_chain_over_selected_frames_goes_from_one_to_the_next_of_them(toys):
+    toys.run(until=("track",), source={"frames": "::2"})
+    assert toys.pipeline(source={"frames": "::2"}).artifact("track", frame=4).way == (0.0, 20.0)
+
+
+def test_another_reference_reruns_the_chain_and_nothing_else(toys):
+    toys.run()
+    assert toys.run(order={"reference": 3}).counts == {"order": 1, "track": 6, "report": 1}
+
+
+def test_a_broken_link_stops_its_side_of_the_chain_alone(toys):
+    toys.flag("fail-track-5")
+    run = toys.run(until=("track",))
+    assert run.heard.nodes("failed") == ["track[frame=3]"]
+    assert run.heard.nodes("skipped") == ["track[frame=4]", "track[frame=5]"]
+    assert {"track[frame=0]", "track[frame=1]", "track[frame=2]"} <= run.ran
+
+
+def test_a_traversal_that_goes_in_a_ring_is_refused(toys):
+    toys.edit("if at == self.reference:\n            return None", "if at == self.reference:\n            return member + 1")
+    with pytest.raises(GraphError, match=r"6 nodes wait for each other, track\[frame=0\] .* Order orders goes in a ring"):
+        toys.run(until=("track",))
+    assert toys.run(until=("centred",)).ran == set()
+
+
+def test_a_traversal_that_leaves_the_sequence_is_refused(toys):
+    toys.edit("if at == self.reference:\n            return None", "if at == self.reference:\n            return 99")
+    with pytest.raises(GraphError, match=r"track\[frame=2\]: Order puts track\[frame=99\] before it"):
+        toys.run(until=("track",))
+
+
+def test_a_long_chain_needs_no_stack(toys):
+    """Two thousand frames in a row, each of which reads the one before it, planned, run and found fresh."""
+    (toys.folder / toys.name / "chain.py").write_text(CHAIN)
+    toys.main = "chain"
+    assert toys.run().counts == {"row": 1, "link": 2000}
+    assert toys.pipeline().artifact("link", frame=1999).length == 2000
+    assert toys.run().ran == set()
+
+
+def test_frames_travel_whole_and_the_deepest_go_first(toys):
+    """With one parcel out at a time, a frame's nodes are sent together, not task by task."""
+    sent = []
+    schedule = toys.pipeline().schedule(until=["smooth"])
+    schedule.store.create()
+
+    def submit(name, url, steps):
+        from dask.local import SynchronousExecutor
+
+        from kinetree.pipeline.execute import execute
+
+        sent.append([step.label for step in steps])
+        return SynchronousExecutor().submit(execute, url, steps)
+
+    from kinetree.pipeline.events import Watch
+
+    run(schedule, Launcher(submit, 1), Watch())
+    assert sent == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]

@@ -1,0 +1,125 @@
+"""What a collection frees, and what it must not."""
+
+import os
+import signal
+
+import pytest
+
+from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.pipeline.gc import collect
+from kinetree.pipeline.store import Store
+
+
+def store(toys):
+    return Store.at(toys.output / "store")
+
+
+def names(toys):
+    return [run["name"] for run in toys.pipeline().runs()]
+
+
+def test_what_the_last_run_used_stays(toys):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    freed = collect(store(toys))
+    # of the first run only what the second does not use: its intervals, cones, cuts and report
+    assert len(freed.runs) == 1
+    assert len(freed.records) == 1 + 3 + 3 + 6 + 1
+    assert toys.run(intervals={"length": 3}).ran == set()
+    assert toys.run().counts == {"intervals": 1, "cones": 3, "piece": 3, "local": 6, "report": 1}
+
+
+def test_the_last_runs_and_named_runs_keep_what_they_used(toys):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    toys.run(intervals={"length": 4})
+    first, *_ = names(toys)
+    assert collect(store(toys), last=3, dry=True).artifacts == ()
+    collect(store(toys), keep=[first], last=1)
+    assert toys.run().ran == set()
+    assert toys.run(intervals={"length": 4}).ran == set()
+    assert toys.run(intervals={"length": 3}).counts["intervals"] == 1
+
+
+def test_a_named_run_alone_is_kept_where_only_it_is_named(toys):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    collect(store(toys), keep=names(toys)[:1])
+    assert toys.run().ran == set()
+    with pytest.raises(UnknownNodeError, match="no run 'yesterday'"):
+        collect(store(toys), keep=["yesterday"])
+
+
+def test_a_dry_collection_frees_nothing_and_says_what_a_real_one_then_frees(toys):
+    toys.run()
+    toys.run(points={"scale": 1.3})
+    before = toys.stored()
+    told = collect(store(toys), dry=True)
+    assert toys.stored() == before
+    assert collect(store(toys)) == told
+    after = toys.stored()
+    artifacts = {path for path in before if path.startswith("artifacts/")} - set(after)
+    assert {path.split("/")[2] for path in artifacts} == set(told.artifacts)
+    assert sum(len(before[path]) for path in artifacts) == told.bytes
+    assert {path for path in before if path.startswith("records/")} - set(after) == {
+        f"records/{key[:2]}/{key}.json" for key in told.records
+    }
+    assert set(after) <= set(before)
+    assert collect(store(toys), dry=True).artifacts == ()
+
+
+def test_an_artifact_two_runs_share_stays_with_either(toys):
+    toys.run()
+    toys.run(smooth={"grain": 5.0})
+    # the second run's own records name the first one's artifacts
+    freed = collect(store(toys))
+    assert len(freed.records) == 6
+    assert freed.artifacts == ()
+    assert toys.run(smooth={"grain": 5.0}).ran == set()
+
+
+def test_every_output_folder_keeps_its_last_run(toys, tmp_path):
+    shared = {"store": str(toys.output / "store")}
+    toys.run()
+    toys.run(**shared, output=str(tmp_path / "other"), intervals={"length": 3})
+    assert collect(store(toys)).artifacts == ()
+    assert toys.run(**shared).ran == set()
+
+
+def test_a_run_under_way_is_safe(toys):
+    toys.run(points={"scale": 1.3})
+    toys.flag("wait-total-210")
+    process = toys.start("run", str(toys.yaml()), "--quiet")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    freed = collect(store(toys), last=0)
+    assert len(freed.records) == 40
+    assert len(list(store(toys).records())) >= 12
+    (toys.flags / "wait-total-210").unlink()
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    toys.clear()
+    assert toys.run().ran == set()
+
+
+def test_work_of_a_killed_run_is_kept_until_a_later_one_has_taken_it_over(toys):
+    toys.flag("wait-total-210")
+    process = toys.start("run", str(toys.yaml()), "--quiet")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    (toys.flags / "wait-total-210").unlink()
+    assert collect(store(toys)).records == ()
+    assert not {"points", "smooth"} & set(toys.run().counts)
+    assert collect(store(toys)).records == ()
+    assert toys.run().ran == set()
+
+
+def test_half_written_leftovers_go_when_nobody_can_be_writing_them(toys):
+    toys.run(until=("points",))
+    leftover = toys.output / "store" / "tmp" / ".half"
+    leftover.mkdir(parents=True)
+    (leftover / "zarr.json").write_text("{}")
+    assert collect(store(toys)).leftovers == ()
+    os.utime(leftover, (1, 1))
+    assert collect(store(toys)).leftovers == (".half",)
+    assert not leftover.exists()

@@ -1,0 +1,147 @@
+"""Runs on record: what they used, where two of them differ, and why a node would run again."""
+
+import pytest
+
+from kinetree.pipeline.errors import UnknownNodeError
+
+
+def why(toys, node, **blocks):
+    return str(toys.pipeline(**blocks).why(node))
+
+
+def test_a_node_that_never_ran_says_so(toys):
+    assert why(toys, "points[0]") == "points[frame=0]: stale (never ran)"
+    assert why(toys, "total") == "total: waits (on smooth[frame=0], smooth[frame=1], smooth[frame=2] and 3 more)"
+    assert why(toys, "track[5]") == "track[frame=5]: waits (on order)"
+
+
+def test_a_changed_parameter_is_told_old_and_new(toys):
+    toys.run()
+    changed = {"intervals": {"length": 3}}
+    assert why(toys, "intervals", **changed) == "intervals: stale (params: length 2 → 3)"
+    assert why(toys, "points[1]", **changed) == "points[frame=1]: fresh"
+    assert why(toys, "report", **changed) == "report: waits (on intervals)"
+
+
+def test_a_changed_input_is_named(toys):
+    toys.run()
+    toys.write(44, start=3)
+    assert why(toys, "points[3]") == "points[frame=3]: stale (input: source[frame=3] changed)"
+    toys.run(until=("smooth",))
+    toys.write(70, start=6)
+    toys.run(until=("smooth",))
+    assert why(toys, "total") == "total: stale (input: smooth[frame=6] added)"
+    assert why(toys, "intervals") == "intervals: stale (input: smooth[frame=6] added)"
+    toys.run()
+    for n in range(4):
+        (toys.frames / f"{n + 3:05d}.txt").unlink()
+    assert why(toys, "total").startswith("total: stale (input: smooth[frame=3], smooth[frame=4], smooth[frame=5] and 1 more gone")
+
+
+def test_changed_code_is_named_by_module(toys):
+    toys.run()
+    toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
+    assert why(toys, "points[0]") == f"points[frame=0]: stale (code: {toys.name}.toy_sums)"
+
+
+def test_all_that_changed_is_told(toys):
+    toys.run()
+    toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
+    toys.write(11)
+    assert why(toys, "points[0]", points={"scale": 2.0}) == (
+        f"points[frame=0]: stale (params: scale 1.0 → 2.0; code: {toys.name}.toy_sums; input: source[frame=0] changed)"
+    )
+
+
+def test_a_plan_counts_by_task(toys):
+    toys.run()
+    rows = {row.task: str(row) for row in toys.pipeline(smooth={"grain": 20.0}).plan().tasks}
+    assert rows["points"] == "points ×6: 6 fresh"
+    assert rows["smooth"] == "smooth ×6: 6 stale — params: grain 10.0 → 20.0 ×6"
+    assert rows["cones"] == "cones ×0: more when intervals is there"
+    assert rows["total"].startswith("total: waits — waits on smooth[frame=0]")
+
+
+def test_reasons_are_told_against_the_last_run_into_the_same_folder(toys, tmp_path):
+    shared = {"store": str(toys.output / "store")}
+    toys.run()
+    toys.run(**shared, output=str(tmp_path / "other"), intervals={"length": 3})
+    assert why(toys, "intervals", intervals={"length": 4}) == "intervals: stale (params: length 2 → 4)"
+    other = {**shared, "output": str(tmp_path / "other"), "intervals": {"length": 4}}
+    assert why(toys, "intervals", **other) == "intervals: stale (params: length 3 → 4)"
+
+
+def test_reasons_survive_a_run_that_stopped_early(toys):
+    toys.run()
+    toys.run(until=("points",))
+    assert why(toys, "intervals", intervals={"length": 4}) == "intervals: stale (params: length 2 → 4)"
+
+
+def test_every_run_is_on_record_with_its_counts(toys):
+    toys.flag("fail-total-210")
+    toys.run()
+    (toys.flags / "fail-total-210").unlink()
+    toys.run()
+    toys.run()
+    runs = toys.pipeline().runs()
+    assert [run["status"] for run in runs] == ["failed", "done", "done"]
+    assert [run["counts"]["ran"] for run in runs][1:] == [15, 0]
+    assert runs[0]["failures"][0]["node"] == "total"
+    assert len({run["name"] for run in runs}) == 3
+    assert "nodes" in toys.pipeline().store.run(runs[0]["name"])
+
+
+def difference(toys):
+    return toys.pipeline().diff(*[run["name"] for run in toys.pipeline().runs()][-2:])
+
+
+def test_a_run_does_not_differ_from_its_repetition(toys):
+    toys.run()
+    toys.run()
+    told = difference(toys)
+    assert (told["only_a"], told["only_b"], told["changed"], told["begins"]) == ([], [], [], {})
+
+
+def test_a_difference_begins_at_the_parameter_that_differs(toys):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    told = difference(toys)
+    assert told["begins"] == {"intervals": ["params: length 2 → 3"]}
+    assert set(told["only_a"]) == {"cones[interval=2]", "piece[interval=2,cone=0]", "piece[interval=2,cone=1]",
+                                   "piece[interval=0,cone=1]", *(f"local[interval={n // 2},frame={n}]" for n in (2, 4, 5))}  # fmt: skip
+    assert {"intervals", "cones[interval=0]", "report"} <= set(told["changed"])
+    assert not any(n.startswith(("points", "smooth", "track")) for n in told["changed"])
+
+
+def test_a_difference_begins_at_the_frame_that_was_replaced(toys):
+    toys.run()
+    toys.write(88, start=2)
+    toys.run()
+    told = difference(toys)
+    assert list(told["begins"]) == ["source[frame=2]"]
+    assert told["begins"]["source[frame=2]"][0].startswith("input: ")
+    assert "report" in told["changed"]
+
+
+def test_a_difference_begins_at_the_code_that_was_edited(toys):
+    toys.run()
+    toys.edit("return Centred(value=smooth.value -", "return Centred(value=2.0 * smooth.value -")
+    toys.run()
+    told = difference(toys)
+    assert told["begins"]["centred[frame=0]"] == [f"code: {toys.name}.toys"]
+    assert {"centred[frame=0]", "track[frame=0]", "report"} <= set(told["changed"])
+    assert "total" not in told["changed"]
+
+
+def test_other_parameters_with_equal_results_are_told_though_nothing_changed(toys):
+    toys.run()
+    toys.run(smooth={"grain": 5.0})
+    told = difference(toys)
+    assert told["changed"] == []
+    assert told["begins"] == {f"smooth[frame={n}]": ["params: grain 10.0 → 5.0"] for n in range(6)}
+
+
+def test_a_run_nobody_knows_is_refused(toys):
+    toys.run(until=("points",))
+    with pytest.raises(UnknownNodeError, match="no run 'yesterday'"):
+        toys.pipeline().diff("yesterday", "today")
