@@ -78,6 +78,7 @@ def _toy(folder: Path, nodes: int) -> Iterator[tuple[str, str]]:
     (folder / "chain_of_three.py").write_text(CHAIN)
     sys.path.insert(0, str(folder))
     import chain_of_three as toys  # type: ignore[import-not-found]
+
     from kinetree.pipeline.graph import Graph
     from kinetree.pipeline.inspect import Pipeline
 

@@ -266,6 +266,15 @@ def _root(show_version: Annotated[bool, typer.Option("--version", help="Print th
         raise typer.Exit
 
 
+def command_line() -> typer.Typer:
+    """The whole command line: the loom's commands and those of the tasks."""
+    from kinetree.tasks.commands import register
+
+    if not any(command.callback is not None and command.callback.__name__ == "synth" for command in app.registered_commands):
+        register(app)
+    return app
+
+
 def main() -> NoReturn:
     """The console script: every refusal is one message and an exit code, never a traceback."""
     signal.signal(signal.SIGTERM, _interrupt)
@@ -273,7 +282,7 @@ def main() -> NoReturn:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal that cannot show × must not end a run
     try:
-        code = int(app(standalone_mode=False) or 0)  # the command returns the code of a typer.Exit
+        code = int(command_line()(standalone_mode=False) or 0)  # the command returns the code of a typer.Exit
     except InputError as error:
         _print_error(error)
         code = 2

@@ -17,11 +17,12 @@ from typing import Any, Protocol
 from dask.local import SynchronousExecutor
 
 from kinetree.pipeline.config import Compute
-from kinetree.pipeline.errors import ClusterError, GraphError, InputError, StoreError, StoreFullError
+from kinetree.pipeline.errors import ClusterError, DamagedArtifactError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.events import Watch
 from kinetree.pipeline.execute import Input, Ref, Result, Step, execute
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
+from kinetree.pipeline.store import Store
 
 MENDS = 3
 """How often an input of a node is mended before the disk is to blame."""
@@ -136,7 +137,8 @@ class _Loop:
 
     def _send(self, entry: Entry) -> None:
         if entry.damaged is not None:
-            self.schedule.store.discard(entry.damaged)
+            if not _is_whole(self.schedule.store, entry):  # another node that makes the same may have mended it already
+                self.schedule.store.discard(entry.damaged)
             entry.damaged = None
         parcel = self.schedule.travelling_with(entry)
         number = next(self._numbers)
@@ -191,6 +193,15 @@ class _Loop:
                 self.watch.damaged(self.schedule.entries[maker], result.message)
                 self.schedule.redo(maker, result.message)
             self.schedule.wait_again(entry.node, maker)
+
+
+def _is_whole(store: Store, entry: Entry) -> bool:
+    """Whether the artifact that was found damaged can be read by now."""
+    try:
+        store.read(entry.task.returns, str(entry.damaged)).arrays()
+    except DamagedArtifactError:
+        return False
+    return True
 
 
 def _refuse_rings(schedule: Schedule) -> None:

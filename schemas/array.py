@@ -184,7 +184,8 @@ class Params(BaseModel):
     @classmethod
     def path_fields(cls) -> frozenset[tuple[str, ...]]:
         """The parameters that are paths, each as the keys that lead to it."""
-        found: set[tuple[str, ...]] = {(n,) for n, f in cls.model_fields.items() if any(isinstance(m, PathLike) for m in f.metadata)}
+        fields = cls.model_fields.items()
+        found: set[tuple[str, ...]] = {(n,) for n, f in fields if any(isinstance(m, PathLike) for m in f.metadata)}
         for name, field in cls.model_fields.items():
             for inner in (field.annotation, *get_args(field.annotation)):
                 if isinstance(inner, type) and issubclass(inner, Params):

@@ -2,17 +2,22 @@
 
 import importlib.resources
 import json
+import os
+import shutil
+from dataclasses import fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import trimesh
 import yaml
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.schemas.synth import SynthParams
-from kinetree.tasks.numerics.figures import Figure, named
-from kinetree.tasks.numerics.synth import Body
-from kinetree.tasks.numerics.trees import random_tree
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.numerics.synth.figures import Figure, named
+from kinetree.tasks.numerics.synth.trees import random_tree
 
 FIGURES = importlib.resources.files("kinetree.configs") / "figures"
 
@@ -35,6 +40,44 @@ def body(written: str) -> Body:
     figure = options.pop("figure")
     made = random_tree(figure["random"]) if "random" in figure else Figure.of(figure)
     return Body.of(made, **options)
+
+
+def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, cameras: int = 0) -> None:
+    """Writes a sequence as a person would have it: one PLY a frame, and truth.json beside them.
+
+    volumes : also volume_0000.npz …: signed distance on a grid, negative inside, with origin and voxel
+    cameras : also silhouettes_0000.npz …, from a ring of so many cameras, and cameras.npz with their 3×4 matrices
+    raises  : ConfigError where the figure is not known or the folder holds something already
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ConfigError(f"{folder}: not an empty folder; name a new one, so that no frame of another sequence stays in it")
+    made = body(recipe(params))
+    beside = folder.absolute().with_name(f".{folder.name}.{os.getpid()}")
+    try:
+        beside.mkdir(parents=True)
+        _write_frames(made, beside, volumes, cameras)
+        (beside / "truth.json").write_text(json.dumps(made.truth()))
+        if folder.is_dir():
+            folder.rmdir()
+        beside.rename(folder)
+    except OSError as error:
+        raise ConfigError(f"{folder}: cannot be written: {error.strerror}") from error
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def _write_frames(made: Body, folder: Path, volumes: bool, cameras: int) -> None:
+    ring = made.cameras(cameras) if cameras else None
+    if ring is not None:
+        np.savez_compressed(folder / "cameras.npz", **{f.name: getattr(ring, f.name) for f in fields(ring)})
+    for t in range(len(made.X)):
+        V, F = made.frame(t)
+        ply = trimesh.Trimesh(V, F, process=False).export(file_type="ply", vertex_normal=False)
+        (folder / f"frame_{t:04d}.ply").write_bytes(ply)
+        if volumes:
+            np.savez_compressed(folder / f"volume_{t:04d}.npz", **made.volume(t)._asdict())
+        if ring is not None:
+            np.savez_compressed(folder / f"silhouettes_{t:04d}.npz", silhouettes=made.silhouettes(t, ring))
 
 
 def figure_names() -> list[str]:

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 import typer
 
-from kinetree.pipeline.cli import app
+from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.draw import draw
 from kinetree.pipeline.inspect import Pipeline
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
-COMMANDS = typer.main.get_command(app)
+COMMANDS = typer.main.get_command(command_line())
 
 
 def test_drawn_graph_is_the_graph_of_the_code() -> None:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -101,7 +102,7 @@ def neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
     return start, head[np.argsort(tail, kind="stable")]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def region_above(f: Floats, level: float, seed: int, start: Ints, ring: Ints) -> Ints:
     """Vertices connected to `seed` through vertices with f > level, the seed first.
 
@@ -138,7 +139,7 @@ def _face_edges(F: npt.NDArray[np.integer], step: Ints) -> tuple[Ints, Ints, Int
     return edge.reshape(F.shape).astype(np.int64), np.minimum(a, b), np.maximum(a, b)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _root(parent: Ints, v: int) -> int:
     while parent[v] != v:
         parent[v] = parent[parent[v]]
@@ -146,7 +147,7 @@ def _root(parent: Ints, v: int) -> int:
     return v
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _merges(order: Ints, start: Ints, ring: Ints) -> tuple[Ints, Ints, Ints, Ints]:
     """Every peak in falling order, the vertex where it ends (−1: never), the older peak there, the last vertex it has."""
     n = len(order)
@@ -180,7 +181,7 @@ def _merges(order: Ints, start: Ints, ring: Ints) -> tuple[Ints, Ints, Ints, Int
     return peak[:count], saddle[:count], into[:count], last[peak[:count]]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _components(step: Ints, start: Ints, ring: Ints, levels: int) -> Ints:
     """(levels + 1,) components of the vertices with at least k levels below them, for k = 0 to `levels`."""
     n = len(step)
@@ -206,7 +207,7 @@ def _components(step: Ints, start: Ints, ring: Ints, levels: int) -> Ints:
     return counts
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _contours(edges: Ints, first: Ints, end: Ints, levels: int) -> Ints:
     """(level,) components of each level set: crossings of edges, joined where a face has two of them."""
     offset = np.zeros(len(first) + 1, np.int64)

@@ -127,7 +127,7 @@ def test_noise_shifts_a_loop_by_no_more_than_its_size():
 
 def test_two_holes_side_by_side_are_two_loops_at_the_same_levels():
     V, F = torus()
-    second = V + [0.0, 0.0, 8.0]
+    second = V + np.array([0.0, 0.0, 8.0])
     both, faces = np.concatenate([V, second]), np.concatenate([F, F + len(V)])
     assert loop_counts(both[:, 0], faces).max() == 2
     np.testing.assert_allclose(loop_spans(loop_counts(both[:, 0], faces)), [0.6, 0.6], atol=0.01)

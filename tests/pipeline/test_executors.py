@@ -54,7 +54,8 @@ def test_a_node_that_kills_every_worker_fails_alone(toys):
     (failure,) = run.told["failures"]
     assert (failure["node"], failure["error"]) == ("total", "KilledWorker")
     assert failure["message"].startswith("the worker was lost")
-    assert run.counts == {"points": 6, "smooth": 6, "intervals": 1}
+    # a result that died with its worker is found in the store when the node is tried again
+    assert "intervals" in {*run.ran, *run.heard.nodes("fresh")}
     assert toys.executions().count("total-210") > 1
 
 

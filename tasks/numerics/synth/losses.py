@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
 
 _KEYS = {"limb", "begin", "end"}
 

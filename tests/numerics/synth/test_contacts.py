@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.contacts import Contact, bending_chain, merging, touching
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import values
-from kinetree.tasks.numerics.motion import forward_kinematics, joint_rotations
+from kinetree.tasks.numerics.synth.contacts import Contact, bending_chain, merging, touching
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.implicit import values
+from kinetree.tasks.numerics.synth.motion import forward_kinematics, joint_rotations
 
 
 def gripper(reach=3.0):

@@ -15,17 +15,17 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.cameras import Cameras, camera_ring, silhouettes
-from kinetree.tasks.numerics.contacts import Contact, merging, touching
-from kinetree.tasks.numerics.defects import punctured, roughened
-from kinetree.tasks.numerics.descriptions import suggestion
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import Cones, extent, grid_values, limb_distances
-from kinetree.tasks.numerics.losses import Dropped
-from kinetree.tasks.numerics.motion import forward_kinematics, joint_rotations, true_joints
-from kinetree.tasks.numerics.skins import Skin
-from kinetree.tasks.numerics.surfacing import spacing_for, surface
+from kinetree.tasks.numerics.synth.cameras import Cameras, camera_ring, silhouettes
+from kinetree.tasks.numerics.synth.contacts import Contact, merging, touching
+from kinetree.tasks.numerics.synth.defects import punctured, roughened
+from kinetree.tasks.numerics.synth.descriptions import suggestion
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.implicit import Cones, extent, grid_values, limb_distances
+from kinetree.tasks.numerics.synth.losses import Dropped
+from kinetree.tasks.numerics.synth.motion import forward_kinematics, joint_rotations, true_joints
+from kinetree.tasks.numerics.synth.skins import Skin
+from kinetree.tasks.numerics.synth.surfacing import spacing_for, surface
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -13,10 +13,10 @@ import trimesh
 import yaml
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.defects import punctured, vertex_normals
-from kinetree.tasks.numerics.figures import named
-from kinetree.tasks.numerics.implicit import values
-from kinetree.tasks.numerics.synth import Body
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.numerics.synth.defects import punctured, vertex_normals
+from kinetree.tasks.numerics.synth.figures import named
+from kinetree.tasks.numerics.synth.implicit import values
 
 FIGURES = {
     path.name.removesuffix(".yaml"): yaml.safe_load(path.read_text("utf-8"))
@@ -118,8 +118,8 @@ def test_a_frame_is_the_same_bytes_in_any_order_and_in_another_process():
     here = digest(body("starfish", **settings), (0, 1, 2))
     assert here == digest(body("starfish", **settings), (2, 0, 1))
     script = (
-        "import hashlib, json, sys; from kinetree.tasks.numerics.figures import Figure\n"
-        "from kinetree.tasks.numerics.synth import Body\n"
+        "import hashlib, json, sys; from kinetree.tasks.numerics.synth.figures import Figure\n"
+        "from kinetree.tasks.numerics.synth.body import Body\n"
         "figure, settings = json.load(sys.stdin); clip = Body.of(Figure.of(figure), **settings)\n"
         "frames = [clip.frame(t) for t in range(3)]\n"
         "print(json.dumps([hashlib.sha256(V.tobytes() + F.tobytes()).hexdigest() for V, F in frames]))"

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.descriptions import Curve, Motion
-from kinetree.tasks.numerics.figures import Figure
+from kinetree.tasks.numerics.synth.descriptions import Curve, Motion
+from kinetree.tasks.numerics.synth.figures import Figure
 
 Floats = npt.NDArray[np.float64]
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinetree.tasks.numerics.clearance import clearance
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.synth import Body
-from kinetree.tasks.numerics.trees import random_tree
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.numerics.synth.clearance import clearance
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.trees import random_tree
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import limb_distances, values
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.implicit import limb_distances, values
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

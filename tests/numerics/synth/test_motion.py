@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.descriptions import Curve
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.motion import (
+from kinetree.tasks.numerics.synth.descriptions import Curve
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.motion import (
     curve_values,
     forward_kinematics,
     joint_rotations,

@@ -5,9 +5,9 @@ import pytest
 import trimesh
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.cameras import camera_ring, silhouettes
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.synth import Body
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.numerics.synth.cameras import camera_ring, silhouettes
+from kinetree.tasks.numerics.synth.figures import Figure
 
 CENTRE = np.array([10.0, -4.0, 2.0])
 

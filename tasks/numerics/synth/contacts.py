@@ -11,11 +11,11 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.descriptions import suggestion, triple
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import Cones, values
-from kinetree.tasks.numerics.motion import forward_kinematics
+from kinetree.tasks.numerics.synth.descriptions import suggestion, triple
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.implicit import Cones, values
+from kinetree.tasks.numerics.synth.motion import forward_kinematics
 
 Floats = npt.NDArray[np.float64]
 

@@ -5,7 +5,7 @@ import copy
 import pytest
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.figures import Figure
+from kinetree.tasks.numerics.synth.figures import Figure
 
 HINGE = {
     "name": "hinge",

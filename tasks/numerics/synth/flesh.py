@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
-from kinetree.tasks.numerics.descriptions import Joint
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.implicit import Cones
+from kinetree.tasks.numerics.synth.descriptions import Joint
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.implicit import Cones
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

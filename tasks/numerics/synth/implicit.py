@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -81,7 +82,7 @@ def extent(cones: Cones) -> tuple[Floats, Floats]:
     return (ends - grow).min(axis=(0, 1)), (ends + grow).max(axis=(0, 1))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _limb(cones, b, x, y, z, seen):  # type: ignore[no-untyped-def]
     """Value of limb b and its unit gradient into seen[b]."""
     ax, ay, az = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
@@ -104,7 +105,7 @@ def _limb(cones, b, x, y, z, seen):  # type: ignore[no-untyped-def]
     seen[b, 1], seen[b, 2], seen[b, 3] = x / length, y / length, z / length
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
     """Value and gradient of the blended union of the limbs marked in `near` into out."""
     out[0] = np.inf
@@ -136,7 +137,7 @@ def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
             out[0], out[1], out[2], out[3] = d, gx, gy, gz
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _values(cones, P, near):  # type: ignore[no-untyped-def]
     f, g = np.empty(len(P)), np.empty((len(P), 3))
     seen, out = np.empty((len(cones.A), 4)), np.empty(4)
@@ -147,7 +148,7 @@ def _values(cones, P, near):  # type: ignore[no-untyped-def]
     return f, g
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
     d, seen = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
     for b in range(len(cones.A)):
@@ -159,7 +160,7 @@ def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
     return d
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _grid_values(cones, origin, spacing, shape, band):  # type: ignore[no-untyped-def]
     """Blocks whose centre proves them far from the surface are filled with ±band; the others see only near limbs."""
     field = np.empty(shape)

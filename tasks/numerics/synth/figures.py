@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.numerics.descriptions import (
+from kinetree.tasks.numerics.synth.descriptions import (
     Joint,
     Motion,
     mapping,

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.implicit import values
-from kinetree.tasks.numerics.synth import Body
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.implicit import values
 
 KNEE = {
     "name": "knee",

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.clearance import clearance
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.motion import forward_kinematics, joint_rotations
+from kinetree.tasks.numerics.synth.clearance import clearance
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.motion import forward_kinematics, joint_rotations
 
 Floats = npt.NDArray[np.float64]
 

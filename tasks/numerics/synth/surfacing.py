@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 from skimage.measure import marching_cubes
 
-from kinetree.tasks.numerics.implicit import Cones, extent, grid_values
+from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.synth.implicit import Cones, extent, grid_values
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -87,7 +87,7 @@ def _sampled(cones: Cones, spacing: float, shift: Floats) -> tuple[Floats, Float
     return grid_values(cones, origin, spacing, (nx, ny, nz), 2.0 * spacing), origin
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _crossings(field):  # type: ignore[no-untyped-def]
     """Grid edges whose ends lie on different sides of the surface."""
     count = 0
@@ -101,7 +101,7 @@ def _crossings(field):  # type: ignore[no-untyped-def]
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _clear_of_zero(field, least):  # type: ignore[no-untyped-def]
     """The field with magnitudes below `least` raised to it, signs kept."""
     flat = field.reshape(-1)

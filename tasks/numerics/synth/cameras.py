@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from kinetree.pipeline.errors import ConfigError
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -68,7 +68,7 @@ def silhouettes(V: Floats, F: Ints, cameras: Cameras) -> npt.NDArray[np.bool_]:
     return np.stack([_filled(np.ascontiguousarray(image), F, *cameras.size) for image in images])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _filled(uv, F, rows, columns):  # type: ignore[no-untyped-def]
     """Union of triangles in a raster; a pixel on a shared edge belongs to both."""
     image = np.zeros((rows, columns), dtype=np.bool_)

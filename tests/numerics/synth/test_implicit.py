@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
-from kinetree.tasks.numerics.implicit import extent, grid_values, limb_distances, values
-from kinetree.tasks.numerics.surfacing import largest_component, spacing_for, surface
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
+from kinetree.tasks.numerics.synth.implicit import extent, grid_values, limb_distances, values
+from kinetree.tasks.numerics.synth.surfacing import largest_component, spacing_for, surface
 
 
 def chain(*places, radius=1.0, **more):

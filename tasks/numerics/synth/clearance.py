@@ -7,8 +7,8 @@ import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import shortest_path
 
-from kinetree.tasks.numerics.figures import Figure
-from kinetree.tasks.numerics.flesh import Flesh
+from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.tasks.numerics.synth.flesh import Flesh
 
 Floats = npt.NDArray[np.float64]
 
