@@ -162,13 +162,17 @@ class Toys:
         return subprocess.CompletedProcess(arguments, process.returncode, out, err)
 
     @staticmethod
-    def until(condition: Callable[[], Any], what: str) -> None:
-        """Waits for a fact that another process makes true; gives up only where it never will."""
+    def until(condition: Callable[[], Any], what: str, *processes: "subprocess.Popen[str]") -> None:
+        """Waits for a fact that other processes make true; gives up only where they ended without it."""
         for _ in range(6000):
+            ended = all(process.poll() is not None for process in processes)
             if condition():
                 return
+            if processes and ended:
+                break
             threading.Event().wait(0.01)
-        raise AssertionError(f"never happened: {what}")
+        told = [process.communicate()[1] for process in processes if process.poll() is not None]
+        raise AssertionError(f"never happened: {what} {told}")
 
 
 @pytest.fixture

@@ -285,7 +285,7 @@ def test_an_artifact_that_cannot_be_mended_fails_what_reads_it(toys, monkeypatch
 def test_after_kill_9_of_the_whole_run_the_next_goes_on(toys, calm, executor):
     toys.flag("wait-total-210")
     process = toys.start("run", str(toys.yaml()), "--executor", executor, "--workers", "2", "--quiet")
-    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     assert process.returncode == -signal.SIGKILL
@@ -306,7 +306,7 @@ def test_two_runs_at_once_share_a_store(toys, calm):
         )
         for n in (1, 2)
     ]
-    toys.until(lambda: toys.executions().count("points-10") == 2, "both compute the first frame")
+    toys.until(lambda: toys.executions().count("points-10") == 2, "both compute the first frame", *runs)
     (toys.flags / "wait-points-10").unlink()
     for run in runs:
         _, err = run.communicate(timeout=60)

@@ -90,7 +90,7 @@ def test_a_run_under_way_is_safe(toys):
     toys.run(points={"scale": 1.3})
     toys.flag("wait-total-210")
     process = toys.start("run", str(toys.yaml()), "--quiet")
-    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     freed = collect(store(toys), last=0)
     assert len(freed.records) == 40
     assert len(list(store(toys).records())) >= 12
@@ -104,7 +104,7 @@ def test_a_run_under_way_is_safe(toys):
 def test_work_of_a_killed_run_is_kept_until_a_later_one_has_taken_it_over(toys):
     toys.flag("wait-total-210")
     process = toys.start("run", str(toys.yaml()), "--quiet")
-    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     (toys.flags / "wait-total-210").unlink()

@@ -7,15 +7,23 @@ import signal
 import pytest
 
 
-@pytest.mark.parametrize("executor", ["sync", "threads", "processes"])
-@pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_says_so_and_the_next_goes_on(toys, tmp_path, executor, blow):
+@pytest.mark.parametrize(
+    ("blow", "executor"),
+    [
+        (signal.SIGINT, "sync"),
+        (signal.SIGINT, "threads"),
+        (signal.SIGINT, "processes"),
+        (signal.SIGTERM, "threads"),
+        (signal.SIGTERM, "processes"),
+    ],
+)
+def test_an_interrupted_run_says_so_and_the_next_goes_on(toys, tmp_path, blow, executor):
     store = str(tmp_path / "calm")
     toys.run(store=store)
     toys.clear()
     toys.flag("wait-total-210")
     process = toys.start("run", str(toys.yaml()), "--executor", executor, "--workers", "2", "--quiet")
-    toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     # Ctrl-C reaches every process of the terminal's group, kill only the one it names
     (os.killpg if blow == signal.SIGINT else os.kill)(process.pid, blow)
     _, err = process.communicate(timeout=60)
