@@ -7,10 +7,9 @@ import signal
 from collections.abc import Iterator
 from typing import Any
 
-from dask.utils import parse_bytes
 from distributed import Client, LocalCluster, WorkerPlugin
 
-from kinetree.pipeline.errors import ClusterError, ConfigError
+from kinetree.pipeline.errors import ClusterError
 
 CONNECT_SECONDS = 10
 
@@ -19,16 +18,12 @@ CONNECT_SECONDS = 10
 def local(workers: int, memory: str | None) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends."""
     with _quiet(), contextlib.ExitStack() as stack:
-        try:
-            limit = parse_bytes(memory) if memory else 0
-        except ValueError:
-            raise ConfigError(f"compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}") from None
         cluster = stack.enter_context(
             LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
-                memory_limit=limit,
+                memory_limit=memory or 0,
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
             )

@@ -37,7 +37,7 @@ class Compute(BaseModel):
     """sync: in this thread, for debugging; threads: in this process; processes: worker processes of this machine."""
     workers: int | None = Field(default=None, ge=1, le=4096)
     """How many at the same time; None takes one per core."""
-    memory: str | None = None
+    memory: str | None = Field(default=None, pattern=r"^[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B$")
     """Memory limit of one worker process, e.g. 4GB; None sets none."""
     scheduler: str | None = Field(default=None, min_length=1)
     """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
