@@ -1,0 +1,105 @@
+"""Laws of every schema there is: each field has a sentence, each parameter a default, each dimension one name."""
+
+import importlib
+import json
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.schemas import dims
+from kinetree.schemas.array import Artifact, Params
+from kinetree.schemas.dims import Dim
+from kinetree.tasks import METHODS
+
+STEMS = sorted(p.stem for p in Path(dims.__file__).parent.glob("*.py") if p.stem not in ("__init__", "array", "dims"))
+MODULES = [importlib.import_module(f"kinetree.schemas.{stem}") for stem in STEMS]
+MODELS = sorted(
+    {m for module in MODULES for m in vars(module).values() if isinstance(m, type) and issubclass(m, BaseModel)}
+    - {Artifact, Params},
+    key=lambda m: m.__name__,
+)
+ARTIFACTS = [m for m in MODELS if issubclass(m, Artifact)]
+SETTINGS = [m for m in MODELS if issubclass(m, Params)]
+TASKS = {task.name: task for graph in METHODS.values() for task in graph.tasks}
+DIMS = {dim.name: dim for dim in vars(dims).values() if isinstance(dim, Dim)}
+
+
+def named(model):
+    return model.__name__
+
+
+def test_there_are_schemas():
+    assert {"Mesh", "Source", "Sequence", "Connectivity"} <= {m.__name__ for m in ARTIFACTS}
+
+
+@pytest.mark.parametrize("model", MODELS, ids=named)
+def test_every_field_and_schema_has_a_sentence(model):
+    for name, told in [(model.__name__, model.__doc__), *((n, f.description) for n, f in model.model_fields.items())]:
+        assert told, f"{model.__name__}.{name} has no docstring"
+        assert told.strip().endswith("."), f"{model.__name__}.{name}: {told!r} is no sentence"
+
+
+@pytest.mark.parametrize("model", [t.params for t in TASKS.values() if t.params], ids=named)
+def test_every_parameter_of_a_task_has_a_default_that_is_valid(model):
+    made = model()
+    assert model.model_validate(made.model_dump(mode="json")) == made
+    json.dumps(made.model_dump(mode="json"), allow_nan=False)
+
+
+@pytest.mark.parametrize("model", SETTINGS, ids=named)
+def test_unknown_parameters_are_refused(model):
+    with pytest.raises(ValueError, match="Extra inputs are not permitted"):
+        model.model_validate({"no_such_parameter_anywhere": 1})
+
+
+@pytest.mark.parametrize("model", ARTIFACTS, ids=named)
+def test_every_array_has_dimensions_of_the_one_list_and_a_unit(model):
+    for name, spec in model.array_fields().items():
+        assert spec.unit, f"{model.__name__}.{name} has no unit"
+        for dim in spec.dims:
+            assert DIMS[dim.name] is dim, f"{model.__name__}.{name}: {dim.name} is not the one of dims.py"
+        assert len({d.name for d in spec.dims}) == len(spec.dims), f"{model.__name__}.{name} has one dimension twice"
+
+
+@pytest.mark.parametrize("model", ARTIFACTS, ids=named)
+def test_every_other_field_is_plain_json(model):
+    schema = model.model_json_schema if not model.array_fields() else None
+    if schema is not None:
+        assert json.dumps(schema())
+    for name in model.location_fields():
+        assert name not in model.array_fields()
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_task_artifact_and_params_share_one_stem(name):
+    task = TASKS[name]
+    artifact = task.returns.__name__
+    assert artifact.lower() == name.replace("_", "")
+    assert task.returns.__module__ == f"kinetree.schemas.{name}"
+    assert task.module == f"kinetree.tasks.{name}"
+    if task.params is not None:
+        assert task.params.__name__ == f"{artifact}Params"
+        assert task.params.__module__ == f"kinetree.schemas.{name}"
+
+
+@pytest.mark.parametrize("model", ARTIFACTS, ids=named)
+def test_every_schema_is_written_by_a_task(model):
+    assert model in {task.returns for task in TASKS.values()}
+
+
+def test_version_is_a_number_from_one_on():
+    for model in ARTIFACTS:
+        assert isinstance(model.version, int)
+        assert model.version >= 1
+
+
+def test_dimensions_have_one_name_each():
+    names = [dim.name for dim in vars(dims).values() if isinstance(dim, Dim)]
+    assert len(names) == len(set(names))
+    assert all(constant == dim.name.upper() for constant, dim in vars(dims).items() if isinstance(dim, Dim))
+
+
+def test_defaults_make_a_configuration():
+    assert set(Pipeline.of().config.params) == {n for n, t in TASKS.items() if t.params is not None}
