@@ -1,0 +1,68 @@
+"""Laws of the output folder: configuration and account are left whole or not at all, whatever they hold."""
+
+import errno
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+
+from kinetree.pipeline.config import load
+from kinetree.pipeline.errors import StoreError, StoreFullError
+from kinetree.pipeline.output import write_config, write_run_json
+from kinetree.tasks import METHODS
+
+
+@pytest.fixture
+def config(tmp_path):
+    return load({"output": str(tmp_path / "deep" / "out"), "sequence": {"unit": "µm: #1"}}, METHODS)
+
+
+def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
+    write_config(config)
+    text = (config.output / "config.yaml").read_text()
+    assert text.startswith("# The configuration of the last run into this folder; what is not here is the default.\n")
+    assert yaml.safe_load(text) == config.saved()
+    assert load(config.output, METHODS) == config
+
+
+def test_account_is_left_as_json(config):
+    told = {"status": "failed", "failures": [{"message": "a\nb\x1b[31m µ"}]}
+    write_run_json(config, told)
+    text = (config.output / "run.json").read_text()
+    assert json.loads(text) == told
+    assert text.endswith("}\n")
+
+
+def test_message_that_is_no_text_is_left_all_the_same(config):
+    write_run_json(config, {"message": "name\udcff.ply"})
+    assert json.loads((config.output / "run.json").read_text()) == {"message": "name\udcff.ply"}
+
+
+def test_nothing_else_is_left_in_the_folder(config):
+    write_config(config)
+    write_run_json(config, {})
+    assert sorted(p.name for p in config.output.iterdir()) == ["config.yaml", "run.json"]
+
+
+@pytest.mark.parametrize(("code", "error"), [(errno.ENOSPC, StoreFullError), (errno.EACCES, StoreError)])
+def test_refused_write_names_the_output_folder_and_keeps_what_was_there(config, monkeypatch, code, error):
+    write_config(config)
+    before = (config.output / "config.yaml").read_bytes()
+
+    def refuse(path, data):
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(Path, "write_bytes", refuse)
+    with pytest.raises(error, match=f"^output folder {config.output}: "):
+        write_config(config)
+    assert [p.name for p in config.output.iterdir()] == ["config.yaml"]
+    assert (config.output / "config.yaml").read_bytes() == before
+
+
+def test_file_in_place_of_the_folder_is_refused(config, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(StoreError, match=r"^output folder .*/file: cannot write run\.json: "):
+        write_run_json(replace(config, output=tmp_path / "file"), {})
