@@ -40,6 +40,11 @@ def local(workers: int, memory: str | None) -> Iterator[Client]:
 @contextlib.contextmanager
 def at(address: str) -> Iterator[Client]:
     """A scheduler that somebody else runs; raises ClusterError where nobody answers or it has no workers."""
+    with _quiet():
+        yield from _at(address)
+
+
+def _at(address: str) -> Iterator[Client]:
     try:
         client = Client(address, timeout=CONNECT_SECONDS)
     except (OSError, TimeoutError, ValueError) as error:
@@ -73,7 +78,7 @@ async def _kill(cluster: Any) -> None:
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
     """A worker that was killed is our message to give, not a page of the library's log."""
-    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.nanny", "distributed.scheduler")]
+    loggers = [logging.getLogger(f"distributed{part}") for part in ("", ".client", ".nanny", ".scheduler")]
     before: list[Any] = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)

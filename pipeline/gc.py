@@ -1,15 +1,12 @@
 """Frees what no kept run needs: records, artifacts, and what writers that died left half-written."""
 
-import os
-import socket
 import time
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from kinetree.pipeline.history import ABANDONED_SECONDS, is_under_way
 from kinetree.pipeline.store import Store, artifact_path
-
-ABANDONED_SECONDS = 24 * 3600.0
 
 
 @dataclass(frozen=True)
@@ -41,16 +38,17 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     keep   : names of runs; raises UnknownNodeError for one that is not on record
     last   : how many runs of each output folder to keep; None keeps 1 where `keep` is empty, else none
     dry    : only says what would go
-    A run that is under way, here or on another machine, keeps everything that was made since it began; so does one that
-    was killed, until a later run into the same folder has taken its work over.
+    A run that is under way, here or on another machine, keeps what it found fresh when it began and everything that was
+    made since; so does one that was killed, until a later run into the same folder has taken its work over.
     """
     runs = {name: store.run(name) for name in store.run_names()}
     for name in keep:
         store.run(name)
     count = last if last is not None else (0 if keep else 1)
-    unfinished = [run for run in _latest(runs) if not run["nodes"]] + [run for run in runs.values() if _is_under_way(run)]
+    unfinished = [run for run in _latest(runs) if not run["nodes"]] + [run for run in runs.values() if is_under_way(run)]
     kept = {*keep, *_last(runs, count), *(run["name"] for run in unfinished)}
     keys = {told["key"] for name in kept for told in runs[name]["nodes"].values() if told.get("key")}
+    keys.update(key for name in kept for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
     garbage = _garbage(store, tuple(name for name in runs if name not in kept), keys, since)
     if not dry:
@@ -63,26 +61,12 @@ def _last(runs: dict[str, dict[str, Any]], count: int) -> list[str]:
     for name, run in runs.items():
         if run["nodes"]:
             by_output.setdefault(run["output"], []).append(name)
-    return [name for names in by_output.values() for name in names[len(names) - count if count else len(names) :]]
+    return [name for names in by_output.values() for name in (names[-count:] if count else ())]
 
 
 def _latest(runs: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     """The last run of each output folder."""
     return list({run["output"]: run for run in runs.values()}.values())
-
-
-def _is_under_way(run: dict[str, Any]) -> bool:
-    if run["status"] != "running":
-        return False
-    if run["host"] == socket.gethostname():
-        try:
-            os.kill(int(run["pid"]), 0)
-        except ProcessLookupError:
-            return False
-        except PermissionError:
-            return True
-        return True
-    return time.time() - float(run["epoch"]) < ABANDONED_SECONDS
 
 
 def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], since: float) -> Garbage:

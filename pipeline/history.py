@@ -17,6 +17,8 @@ from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
 
 FORMAT = "kinetree.run/1"
+ABANDONED_SECONDS = 24 * 3600.0
+"""After this a run on another machine, of which nothing is known, counts as killed."""
 TASK_FIELDS = ("ran", "fresh", "failed", "seconds")
 FAILURE_FIELDS = ("node", "error", "message")
 
@@ -39,8 +41,12 @@ class History:
         return self.store.record(key) or "lost"
 
     def runs(self) -> list[dict[str, Any]]:
-        """Every run on record without its nodes, oldest first."""
-        return [{k: v for k, v in self.store.run(n).items() if k != "nodes"} for n in self.store.run_names()]
+        """Every run on record without its nodes, oldest first; one that never ended and is not under way was killed."""
+        runs = [self.store.run(name) for name in self.store.run_names()]
+        for run in runs:
+            if run["status"] == "running" and not is_under_way(run):
+                run["status"] = "killed"
+        return [{name: value for name, value in run.items() if name not in ("nodes", "uses")} for run in runs]
 
     def _last_nodes(self) -> dict[str, Any]:
         runs = [self.store.run(name) for name in reversed(self.store.run_names())]
@@ -58,8 +64,23 @@ def new_name() -> str:
     return f"{now:%Y%m%d-%H%M%S}-{now.microsecond // 1000:03d}{secrets.token_hex(1)}"
 
 
-def opening(name: str, config: Config) -> dict[str, Any]:
-    """The record of a run that has begun."""
+def is_under_way(run: dict[str, Any]) -> bool:
+    """Whether a run on record is still being computed, as far as this machine can know."""
+    if run["status"] != "running":
+        return False
+    if run["host"] == socket.gethostname():
+        try:
+            os.kill(int(run["pid"]), 0)
+        except ProcessLookupError:
+            return False
+        except PermissionError:
+            return True
+        return True
+    return time.time() - float(run["epoch"]) < ABANDONED_SECONDS
+
+
+def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
+    """The record of a run that has begun; `uses` are the keys it found fresh, so that nobody frees them meanwhile."""
     return {
         "format": FORMAT,
         "name": name,
@@ -70,6 +91,7 @@ def opening(name: str, config: Config) -> dict[str, Any]:
         "pid": os.getpid(),
         "output": str(config.output),
         "config": config.saved(),
+        "uses": [entry.key for entry in schedule.entries.values() if entry.state == "fresh" and entry.key],
         "nodes": {},
     }
 
@@ -85,7 +107,7 @@ def closing(opened: dict[str, Any], schedule: Schedule, account: Account, status
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()
     told = summary(account, status, seconds)
     more = {"tasks": account.tasks, "failures": account.failures, "counts": told["nodes"], "nodes": nodes}
-    return {**opened, **told, **more}
+    return {**{name: value for name, value in opened.items() if name != "uses"}, **told, **more}
 
 
 def summary(account: Account, status: str, seconds: float) -> dict[str, Any]:

@@ -89,7 +89,7 @@ class Pipeline:
         self.store.create()
         files.save()
         write_config(self.config)
-        opened = opening(new_name(), self.config)
+        opened = opening(new_name(), self.config, schedule)
         self.store.write_run(opened["name"], opened)
         account = Account()
         watch = Watch((account, *listeners))

@@ -113,6 +113,19 @@ def test_a_worker_derives_the_planners_keys(toys, tmp_path):
     assert toys.run(until=("smooth",)).ran == set()
 
 
+def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
+    toys.flag("wait-total-210")
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        process = toys.start("run", str(toys.yaml()), "--scheduler", cluster.scheduler_address, "--quiet")
+        toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
+        assert [run["status"] for run in toys.pipeline().runs()] == ["running"]
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert err.strip() == "kinetree: the scheduler cancelled the work; was it stopped? Run again to go on"
+    (toys.flags / "wait-total-210").unlink()
+    assert not {"points", "smooth"} & set(toys.run().counts)
+
+
 def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):
     from kinetree.pipeline import clusters
     from kinetree.pipeline.errors import ClusterError

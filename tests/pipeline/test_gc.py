@@ -35,6 +35,7 @@ def test_the_last_runs_and_named_runs_keep_what_they_used(toys):
     toys.run(intervals={"length": 4})
     first, *_ = names(toys)
     assert collect(store(toys), last=3, dry=True).artifacts == ()
+    assert collect(store(toys), last=5, dry=True).artifacts == ()
     collect(store(toys), keep=[first], last=1)
     assert toys.run().ran == set()
     assert toys.run(intervals={"length": 4}).ran == set()
@@ -101,12 +102,28 @@ def test_a_run_under_way_is_safe(toys):
     assert toys.run().ran == set()
 
 
+def test_what_a_run_under_way_found_fresh_is_safe(toys):
+    toys.run()
+    toys.clear()
+    toys.flag("wait-cones-60")
+    process = toys.start("run", str(toys.yaml(intervals={"length": 3})), "--quiet")
+    toys.until((toys.flags / "waiting-cones-60").exists, "cones begin", process)
+    # the old run's own results go, what both use stays
+    collect(store(toys), last=0)
+    (toys.flags / "wait-cones-60").unlink()
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert not [told for told in toys.executions() if told.startswith(("points", "smooth", "centred"))]
+    assert toys.run().counts["intervals"] == 1
+
+
 def test_work_of_a_killed_run_is_kept_until_a_later_one_has_taken_it_over(toys):
     toys.flag("wait-total-210")
     process = toys.start("run", str(toys.yaml()), "--quiet")
     toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
+    assert [run["status"] for run in toys.pipeline().runs()] == ["killed"]
     (toys.flags / "wait-total-210").unlink()
     assert collect(store(toys)).records == ()
     assert not {"points", "smooth"} & set(toys.run().counts)
