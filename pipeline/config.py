@@ -5,13 +5,15 @@ A value comes from, last wins: the schema's default, the preset a file `extends`
 
 import importlib.resources
 import os
+import re
 import reprlib
+import typing
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.graph import Graph
@@ -37,10 +39,17 @@ class Compute(BaseModel):
     """sync: in this thread, for debugging; threads: in this process; processes: worker processes of this machine."""
     workers: int | None = Field(default=None, ge=1, le=4096)
     """How many at the same time; None takes one per core."""
-    memory: str | None = Field(default=None, pattern=r"^[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B$")
+    memory: str | None = None
     """Memory limit of one worker process, e.g. 4GB; None sets none."""
     scheduler: str | None = Field(default=None, min_length=1)
     """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
+
+    @field_validator("memory")
+    @classmethod
+    def _is_a_size(cls, told: str | None) -> str | None:
+        if told is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", told):
+            raise ValueError("expected a size such as 4GB or 512MiB")
+        return told
 
     @property
     def worker_count(self) -> int:
@@ -119,8 +128,22 @@ def preset_names() -> list[str]:
 def _told(where: str, cls: type[BaseModel], fault: Any) -> str:
     key = ".".join(str(part) for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
-        return f"{where}.{key}: no such key; {nearest(key, cls.model_fields)}"
-    return f"{where}.{key}: {fault['msg'][:1].lower()}{fault['msg'][1:]}, got {_short(fault['input'])}"
+        return f"{where}.{key}: no such key; {nearest(str(fault['loc'][-1]), _keys_at(cls, fault['loc'][:-1]))}"
+    what = fault["msg"].removeprefix("Value error, ")
+    return f"{where}.{key}: {what[:1].lower()}{what[1:]}, got {_short(fault['input'])}"
+
+
+def _keys_at(cls: type[BaseModel], place: Iterable[str | int]) -> Iterable[str]:
+    """The keys of the model that lies at a place within another."""
+    for part in place:
+        waiting: list[Any] = [cls.model_fields[part].annotation] if part in cls.model_fields else []
+        while waiting:
+            kind = waiting.pop()
+            if isinstance(kind, type) and issubclass(kind, BaseModel):
+                cls = kind
+                break
+            waiting.extend(typing.get_args(kind))
+    return cls.model_fields
 
 
 def _path_fields(methods: Mapping[str, Graph]) -> Paths:

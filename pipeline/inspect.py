@@ -6,6 +6,7 @@ pipeline.run()                            does it
 pipeline.artifact("mesh", frame=3)        typed, arrays read when asked for
 """
 
+import html
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -54,6 +55,21 @@ class Pipeline:
         known = methods if methods is not None else _methods()
         checked = config if isinstance(config, Config) else configuration.load(config, known, sets)
         return Pipeline(checked, known[checked.method], Store.at(checked.store))
+
+    def __repr__(self) -> str:
+        """What it runs on and where it leaves things."""
+        names = ", ".join(task.name for task in self.tasks.tasks)
+        return f"Pipeline({self.config.method}: {names}; output {self.config.output}, store {self.store.url})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{html.escape(task.name)}</td><td>{html.escape('/'.join(task.over))}</td>"
+            f"<td>{html.escape(task.summary)}</td><td>{html.escape(task.paper)}</td></tr>"
+            for task in self.tasks.tasks
+        )
+        head = "".join(f"<th>{name}</th>" for name in ("task", "per", "what", "paper"))
+        where = f"output {self.config.output}, store {self.store.url}"
+        return f"<p>{html.escape(where)}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
     def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Plan:
         """Every node with its state and the reason for it; looks at the input, computes nothing."""

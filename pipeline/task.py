@@ -61,6 +61,12 @@ class Task(Generic[P, R]):
         """The function itself."""
         return self.function(*args, **kwargs)
 
+    def __repr__(self) -> str:
+        """The signature in one line, e.g. Task(mesh: Source → Mesh per frame)."""
+        reads = ", ".join(a.artifact.__name__ for a in self.arguments) or "the world outside"
+        per = f" per {'/'.join(self.over)}" if self.over else ""
+        return f"Task({self.name}: {reads} → {self.returns.__name__}{per})"
+
     @property
     def module(self) -> str:
         """The module that defines the function; a worker imports it by this name."""
