@@ -70,6 +70,7 @@ def surface(found: Source) -> tuple[Floats, Ints]:
         F = corners.astype(np.int32)
         now = digest(["synth", found.recipe, found.part])
     elif found.part is None:
+        _refuse_closed(path)
         V, F = read_mesh(path)
         now = file_digest(path)
     else:
@@ -135,7 +136,20 @@ def _spoken(path: Path) -> Path:
 
 
 def _is_zarr(path: Path) -> bool:
-    return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
+    try:
+        return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
+    except OSError as error:
+        raise SourceError(f"{path}: cannot be read: {error.strerror}; check its name and its permissions") from None
+
+
+def _refuse_closed(path: Path) -> None:
+    """A file that may not be read is not a damaged one."""
+    try:
+        path.open("rb").close()
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise SourceError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
 
 
 def _selected(text: str, count: int, where: str) -> range:
