@@ -166,6 +166,18 @@ def test_wrong_frames(refused, scans, frames, told):
     assert refused("-i", "scans", f"--frames={frames}").startswith(told.format(scans=scans))
 
 
+def test_folder_that_may_not_be_entered(refused, scans, monkeypatch):
+    is_file = Path.is_file
+
+    def closed(path):
+        if path.parent == scans:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return is_file(path)
+
+    monkeypatch.setattr(Path, "is_file", closed)
+    assert refused("-i", "scans") == f"{scans}: cannot be read: Permission denied; check its name and its permissions"
+
+
 def test_name_that_is_no_text(refused, kinetree, scans, tmp_path):
     broken = os.fsdecode(os.fsencode(scans) + b"/\xff.off")
     Path(broken).write_text(off())
@@ -231,7 +243,7 @@ def test_frame_that_cannot_be_opened_fails_alone(failed, scans, monkeypatch):
     monkeypatch.setattr(
         Path, "open", lambda path, *rest, **named: refuse(path, *rest, call=lambda p, *r: open_(p, *r, **named))
     )
-    assert "Permission denied" in failed()
+    assert failed() == "cannot be read: Permission denied; check its permissions"
 
 
 @pytest.mark.parametrize("claim", [10**9, 2**31, 2**64, -1], ids=str)
@@ -554,4 +566,4 @@ def test_memory_that_is_no_size(kinetree, scans):
     code, _, complained = kinetree(
         "run", "-i", "scans", "-o", "out", "--until", "mesh", "--executor", "processes", "--set", "compute.memory=lots", "-q"
     )
-    assert (code, complained) == (2, "kinetree: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'\n")
+    assert (code, complained) == (2, "kinetree: config: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'\n")
