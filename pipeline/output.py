@@ -15,7 +15,13 @@ RUN_JSON = "run.json"
 def write_config(config: Config) -> None:
     """Leaves the configuration, so that every command can name the output folder instead of the file."""
     head = "# The configuration of the last run into this folder; what is not here is the default.\n"
-    _write(config.output, SAVED, head + yaml.safe_dump(config.saved(), sort_keys=False, allow_unicode=True))
+    _write(config.output, SAVED, head + as_yaml(config.saved()))
+
+
+def as_yaml(saved: dict[str, Any]) -> str:
+    """YAML that is read back as the same: in the user's own letters, or in escapes where a line separator is among them."""
+    text = yaml.safe_dump(saved, sort_keys=False, allow_unicode=True)
+    return text if yaml.safe_load(text) == saved else yaml.safe_dump(saved, sort_keys=False)
 
 
 def write_run_json(config: Config, told: dict[str, Any]) -> None:

@@ -3,13 +3,14 @@
 import os
 
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
 from kinetree.pipeline.config import Compute, load, preset_names, with_compute
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.output import as_yaml
+from kinetree.pipeline.yaml_text import parsed
 from kinetree.tasks import METHODS
 
 
@@ -143,6 +144,17 @@ def test_wrong_key_or_value_is_refused_with_file_key_and_what_was_expected(write
     path = write("walk.yaml", text)
     message = refusal(path)
     assert message.startswith(f"{path}: {told}")
+
+
+def test_wrong_key_within_a_key_is_refused_with_the_nearest_there(write):
+    path = write("walk.yaml", "source: {synth: {frmes: 3}}")
+    assert refusal(path) == f"{path}: source.synth.frmes: no such key; did you mean 'frames'?"
+
+
+@pytest.mark.parametrize("memory", ["lots", "4", "4 gb", "-1GB", ""])
+def test_memory_that_is_no_size_is_refused(memory):
+    told = f"config: compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}"
+    assert refusal({"compute": {"memory": memory}}) == told
 
 
 def test_every_wrong_key_is_told_at_once(write):
@@ -297,7 +309,7 @@ def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, worke
         "compute": {"workers": workers, "executor": executor},
     }
     config = of(told)
-    again = of(yaml.safe_load(yaml.safe_dump(config.saved(), sort_keys=False, allow_unicode=True)))
+    again = of(parsed(as_yaml(config.saved()), ""))
     assert again == config
 
 
