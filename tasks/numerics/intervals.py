@@ -31,7 +31,7 @@ class Cue(NamedTuple):
     """What stays the same while nothing touches.
 
     profile : (frame, rank) the quantity, such as the persistences of the leaves, highest first, padded with zeros
-    least   : a step of any rank by this much counts
+    least   : a step of any rank by this much counts, see `steps`
     """
 
     profile: Floats
@@ -147,8 +147,8 @@ def drops(H: Floats, z: Floats, high: float, low: float, drop: float) -> Flags:
 def steps(profile: Floats, least: float) -> Flags:
     """Transitions at which a profile steps and does not return, one for each run of transitions that it is felt at.
 
-    A step lasts if the medians of the three frames on either side differ by `least`; it is sharp if one transition in the
-    run of lasting ones moves as far by itself. Motion moves as far only slowly, noise only for a frame.
+    What lasts is the difference between the medians of the three frames on either side, what is sharp the difference
+    between the two frames next to it; their mean must reach `least`. Motion is not sharp, noise does not last.
 
     profile : (frame, rank); values sorted within a frame need no matching, since sorting never widens a difference
     returns : (transition,) True at the sharpest transition of each run
@@ -161,7 +161,7 @@ def steps(profile: Floats, least: float) -> Flags:
         lasting[t] = np.abs(np.median(profile[t + 1 : t + 1 + _WINDOW], axis=0) - before).max(initial=0.0)
     for a, b in _runs(lasting >= least):
         top = a + int(np.argmax(sharp[a:b]))
-        cuts[top] = sharp[top] >= least
+        cuts[top] = 0.5 * (sharp[top] + lasting[top]) >= least
     return cuts
 
 
