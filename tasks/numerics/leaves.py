@@ -31,23 +31,24 @@ class Leaves(NamedTuple):
 def leaves(mu: Floats, F: npt.NDArray[np.integer], threshold: float = 0.10, roundness: float = 0.05) -> Leaves:
     """Local maxima of μ with persistence of at least `threshold` · (max μ − min μ).
 
-    mu        : (vertex,) finite, any unit
+    mu        : (vertex,) finite at all vertices with a face, any unit
     F         : (face, corner)
     threshold : tips of free limbs have 0.3 and more, the elbow of an arm whose hand rests on the hip less than 0.1
     roundness : a body on which μ varies by less than this share of its maximum is round and has no leaves
     returns   : Leaves; the highest maximum of each component has that component's whole range as its persistence
     """
-    used = mu[np.unique(F)]
-    span = float(np.ptp(used)) if len(used) else 0.0
-    if span <= roundness * float(np.abs(used).max(initial=0.0)):
+    used = mu[np.unique(F)] if len(F) else np.zeros(1)
+    low, high = float(used.min()), float(used.max())
+    span = high - low
+    if span <= roundness * max(abs(low), abs(high)):
         return Leaves(np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
     peaks = superlevel_peaks(mu, F, threshold * span)
-    level = np.where(peaks.saddle >= 0, mu[peaks.saddle], -np.inf)
+    level = np.where(peaks.saddle >= 0, mu[peaks.saddle], low)
     for row in range(len(level)):
         # a limb ends where the first other limb joins it, whichever of the two is higher
         if peaks.into[row] >= 0:
             level[peaks.into[row]] = max(level[peaks.into[row]], mu[peaks.saddle[row]])
-    return Leaves(peaks.vertex, peaks.persistence / span, np.maximum(level, used.min()))
+    return Leaves(peaks.vertex, peaks.persistence / span, level)
 
 
 def stems(V: Floats, F: npt.NDArray[np.integer], mu: Floats, area: Floats, found: Leaves, stations: int = 4) -> Floats:

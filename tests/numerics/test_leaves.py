@@ -105,3 +105,13 @@ def test_a_band_without_area_stands_at_the_next_one_towards_the_tip():
     S = stems(V, F, mu, np.ones(len(V)), leaves(mu, F), stations=9)
     assert np.isfinite(S).all()
     assert (np.diff(np.abs(S[:, :, 2]), axis=1) >= -1e-9).all()
+
+
+def test_values_of_vertices_without_a_face_mean_nothing():
+    V, F, mu = star([1.0, 0.8, 0.5])
+    more, area = np.append(mu, np.nan), np.append(np.ones(len(V)), 0.0)
+    found, expected = leaves(more, F), leaves(mu, F)
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(one, other)
+    wide = np.vstack([V, np.zeros(3)])
+    np.testing.assert_array_equal(stems(wide, F, more, area, found), stems(V, F, mu, np.ones(len(V)), expected))
