@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinetree.tasks.numerics.correlation import correlations
-from kinetree.tasks.numerics.intervals import Cue, fixed_intervals, intervals, stacked, steps, z_scores
+from kinetree.tasks.numerics.intervals import Cue, drops, fixed_intervals, intervals, stacked, steps, z_scores
 
 
 def bodies(shapes, seed=0, noise=0.002):
@@ -59,6 +59,17 @@ def test_both_sides_of_a_contact_are_cut():
     place = swaying(40)
     place[12:27] += 12.0
     assert pairs(intervals(bodies(place), {})) == [(0, 11), (12, 26), (27, 39)]
+
+
+def test_a_drop_reaches_as_far_as_the_score_stays_above_the_lower_threshold():
+    place = np.repeat([30.0, 42.0, 55.0], [10, 2, 10])
+    H = bodies(place, noise=0.0)
+    z = np.zeros(21)
+    z[[9, 10, 11]] = [3.0, 1.7, 4.0]
+    assert np.flatnonzero(drops(H, z, high=2.0, low=1.5, drop=0.02)).tolist() == [11]
+    assert np.flatnonzero(drops(H, z, high=2.0, low=1.8, drop=0.02)).tolist() == [9, 11]
+    assert not drops(H, z, high=5.0, low=1.5, drop=0.02).any()
+    assert not drops(H, z, high=2.0, low=1.5, drop=0.9).any()
 
 
 def test_a_small_drop_counts_for_nothing_even_where_all_else_is_still():

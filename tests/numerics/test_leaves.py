@@ -2,12 +2,23 @@
 
 import numpy as np
 import pytest
+import shapes
 import trimesh
 
 from kinetree.tasks.numerics.leaves import leaves, stems
+from kinetree.tasks.numerics.mu import farthest_bases
+from kinetree.tasks.numerics.mu import mu as mu_of
+from kinetree.tasks.numerics.surface import Surface
 
 DIRECTIONS = np.array([[0.0, 0.0, 1.0], [0.9, 0.1, -0.42], [-0.6, 0.7, -0.39], [-0.2, -0.9, -0.38]])
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
+
+
+def integral(V, F):
+    """μ as it is computed, and the area of every vertex."""
+    surface = Surface.of(V, F)
+    bases = farthest_bases(surface, 60)
+    return mu_of(bases.distance, bases.weight), surface.area
 
 
 def star(arms):
@@ -115,3 +126,36 @@ def test_values_of_vertices_without_a_face_mean_nothing():
         np.testing.assert_array_equal(one, other)
     wide = np.vstack([V, np.zeros(3)])
     np.testing.assert_array_equal(stems(wide, F, more, area, found), stems(V, F, mu, np.ones(len(V)), expected))
+
+
+def test_the_three_arms_of_a_pipe_have_three_equal_leaves_at_their_ends():
+    V, F, turned = shapes.y_pipe()
+    mu, _ = integral(V, F)
+    found = leaves(mu, F)
+    assert len(found.vertex) == 3
+    np.testing.assert_allclose(mu[found.vertex], mu.max(), rtol=0.005)
+    # the arms join at the edge of the middle, a little above the smallest μ, to which only the first one reaches down
+    np.testing.assert_allclose(found.level, found.level[0], rtol=0.005)
+    np.testing.assert_allclose(found.persistence[1:], found.persistence[1], atol=0.01)
+    assert found.persistence[1] > 0.9
+    reach = np.linalg.norm(V[found.vertex], axis=1)
+    assert reach.min() > 0.9 * np.linalg.norm(V, axis=1).max()
+    carried = V[turned[found.vertex]]
+    nearest = np.linalg.norm(carried[:, None] - V[found.vertex][None], axis=2).argmin(axis=1)
+    assert sorted(nearest.tolist()) == [0, 1, 2]
+    assert (nearest != np.arange(3)).all()
+
+
+def test_stations_climb_from_the_middle_of_a_pipe_to_its_ends():
+    V, F, _ = shapes.y_pipe()
+    mu, area = integral(V, F)
+    found = leaves(mu, F)
+    S = stems(V, F, mu, area, found)
+    assert (np.diff(np.linalg.norm(S, axis=2), axis=1) > 0).all()
+    direction = V[found.vertex] / np.linalg.norm(V[found.vertex], axis=1, keepdims=True)
+    assert (np.einsum("lsk,lk->ls", S, direction) / np.linalg.norm(S, axis=2) > 0.9).all()
+
+
+def test_a_measured_sphere_has_no_leaves():
+    V, F = shapes.sphere()
+    assert len(leaves(integral(V, F)[0], F).vertex) == 0
