@@ -146,18 +146,20 @@ class Pipeline:
         kept = nx.ancestors(nodes, name) | nx.descendants(nodes, name) | {name}
         return nx.DiGraph(nodes.subgraph(kept))
 
-    def artifact(self, name: str, **index: int) -> Artifact:
+    def artifact(self, name: str, *, within: Schedule | None = None, **index: int) -> Artifact:
         """The artifact of a task at an index, with arrays that are read when asked for.
 
+        within : a schedule to ask, for who asks often; None lays out a new one
         raises : UnknownNodeError where there is no such node or it has not been computed
         """
-        schedule = self.schedule(until=[name])
+        schedule = within or self.schedule(until=[name])
         over = self.tasks.task(name).over
         if set(index) != set(over):
             raise UnknownNodeError(f"{name} runs over {'/'.join(over) or 'nothing'}; got {', '.join(index) or 'no index'}")
         node = found(schedule, label(Node(name, tuple(index[d] for d in over)), over))
         if schedule.entries[node].artifact is None:
-            raise UnknownNodeError(f"{schedule.entries[node].label} has not been computed; kinetree why says what is missing")
+            planned = Plan.of(schedule)[schedule.entries[node].label]
+            raise UnknownNodeError(f"{planned}; it has no artifact until kinetree run computes it")
         return schedule.value(node)
 
     def runs(self) -> list[dict[str, Any]]:

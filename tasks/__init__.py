@@ -8,17 +8,27 @@ if __name__ != "kinetree.tasks":
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.correlation import correlation
+from kinetree.tasks.distribution import distribution
 from kinetree.tasks.geodesics import geodesics
+from kinetree.tasks.intervals import intervals
+from kinetree.tasks.leaves import leaves
 from kinetree.tasks.mesh import mesh
 from kinetree.tasks.sequence import sequence
 from kinetree.tasks.source import source
+from kinetree.tasks.tips import tips
 
 MESOSCOPIC = (
     source,  # Sec. 3
     sequence,
     mesh,
     connectivity,  # Sec. 7
-    geodesics,  # Sec. 4
+    geodesics,  # Sec. 4, Eq. 1
+    distribution,
+    correlation,  # Eq. 2
+    tips,  # Sec. 5.1
+    intervals,  # Sec. 4
+    leaves,  # Sec. 5.1, Eq. 3
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}

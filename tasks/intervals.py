@@ -1,0 +1,46 @@
+"""Where the sequence is cut, and by what."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.correlation import Correlation
+from kinetree.schemas.intervals import Intervals, IntervalsParams
+from kinetree.schemas.tips import Tips
+from kinetree.tasks.numerics import intervals as numerics
+
+
+@task()
+def intervals(correlation: Correlation, tips: Mapping[int, Tips], params: IntervalsParams) -> Intervals:
+    """Cuts the sequence at sharp drops of the correlation and where limbs join or part for good (2014, Sec. 4)."""
+    if params.rule == "fixed":
+        found = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
+    else:
+        found = numerics.intervals(
+            correlation.histograms,
+            {name: cue for name, cue in _cues(tuple(tips.values()), params.step).items() if name in params.cues},
+            high=params.high,
+            low=params.low,
+            drop=params.drop,
+            minimum=params.minimum,
+            correlation="correlation" in params.cues,
+        )
+    return Intervals(
+        frames=tuple(tips),
+        begin=found.begin,
+        end=found.end,
+        z=found.z,
+        cues=found.cues,
+        threshold=params.threshold if params.rule == "fixed" else params.high,
+    )
+
+
+def _cues(tips: tuple[Tips, ...], step: float) -> dict[str, numerics.Cue]:
+    """What stays the same while nothing touches; the first peak reaches over the whole range and tells nothing."""
+    return {
+        "leaves": numerics.Cue(numerics.stacked([t.peaks[1:] for t in tips]), step),
+        "loops": numerics.Cue(numerics.stacked([t.loops for t in tips]), step),
+        "components": numerics.Cue(np.array([[float(t.components)] for t in tips]), 1.0),
+        "euler": numerics.Cue(np.array([[float(t.euler)] for t in tips]), 1.0),
+    }

@@ -1,0 +1,130 @@
+"""Pictures for people: μ on the body with its leaves, C(t) with the cuts (2014, Fig. 5)."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.schemas.array import Artifact, Floats, Ints
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Fetch = Callable[..., Any]
+"""Gives the artifact of a task at an index, as `Pipeline.artifact` does."""
+FORMATS = (".png", ".svg", ".pdf")
+LEAF_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+"""Okabe and Ito's eight, which the colour-blind can tell apart."""
+
+
+def correlation(fetch: Fetch, frames: list[int]) -> "Figure":
+    """C(t) over the frames, the cuts with what made them, the intervals shaded in turn (2014, Fig. 5)."""
+    series, cut = fetch("correlation"), fetch("intervals")
+    figure, axes = _figure(9.0, 3.6)
+    t = np.array(cut.frames)
+    for number, (begin, end) in enumerate(zip(cut.begin, cut.end, strict=True)):
+        axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color="#0072B2" if number % 2 else "#E69F00", alpha=0.12, lw=0)
+    axes.plot((t[:-1] + t[1:]) / 2, series.correlation, color="black", marker=".", lw=1)
+    for end, cues in zip(cut.end[:-1], cut.cues, strict=True):
+        axes.axvline(t[end] + 0.5, color="#D55E00", lw=1)
+        axes.annotate(" + ".join(cues), (t[end] + 0.5, 0.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7)
+    axes.set(xlabel="frame", ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
+    count = len(cut.begin)
+    axes.set_title(f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
+    return figure
+
+
+def mu(fetch: Fetch, frames: list[int]) -> "Figure":
+    """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
+    followed = fetch("leaves")
+    figure, row = _figure(3.2 * len(frames), 4.2, len(frames))
+    view = _view(fetch("mesh", frame=frames[0]).vertices)
+    for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
+        mesh, found = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
+        _surface(axes, mesh.vertices @ view, mesh.faces, found.mu)
+        _leaves(axes, followed, frame, view)
+        axes.set_title(f"frame {frame}", fontsize=9)
+    return figure
+
+
+WHAT: Mapping[str, Callable[[Fetch, list[int]], "Figure"]] = {"correlation": correlation, "mu": mu}
+"""What can be drawn, by the word of the command line."""
+
+
+def draw(what: str, fetch: Fetch, frames: list[int], path: Path) -> None:
+    """Draws into a file, complete or not at all.
+
+    raises : ConfigError where `what` is not known, the file's ending is none of FORMATS or it cannot be written
+    """
+    if what not in WHAT:
+        raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
+    if path.suffix.lower() not in FORMATS:
+        raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
+    figure = WHAT[what](fetch, frames)
+    beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        figure.savefig(beside, dpi=150, bbox_inches="tight")
+        beside.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _figure(width: float, height: float, columns: int = 1) -> "tuple[Figure, Any]":
+    """A figure that belongs to no window, so that no display is needed."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(1, columns)
+
+
+def _view(V: Floats) -> Floats:
+    """(xyz, 3) axes across, up and towards the eye: the body's longest extent upright, its shortest towards the eye."""
+    values, axes = np.linalg.eigh(np.cov((V - V.mean(axis=0)).T))
+    order = np.argsort(values)
+    up, across = axes[:, order[2]], axes[:, order[1]]
+    up, across = (a * np.sign(a[np.argmax(np.abs(a))]) for a in (up, across))
+    return np.stack([across, up, np.cross(across, up)], axis=1)
+
+
+def _surface(axes: "Axes", X: Floats, F: Ints, values: Floats) -> None:
+    """Faces from the farthest to the nearest, coloured by μ and shaded by how they face the eye; grey where μ is not."""
+    from matplotlib import colormaps
+    from matplotlib.collections import PolyCollection
+
+    corners = X[F]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    towards = normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+    order = np.argsort(corners[:, :, 2].mean(axis=1))
+    order = order[towards[order] > 0] if (towards > 0).any() else order
+    level = values[F].mean(axis=1)
+    low, high = np.nanmin(values), np.nanmax(values)
+    colour = colormaps["viridis"](np.nan_to_num((level - low) / max(high - low, 1e-300)))
+    colour[np.isnan(level)] = (0.7, 0.7, 0.7, 1.0)
+    colour[:, :3] *= (0.45 + 0.55 * np.clip(towards, 0, 1))[:, None]
+    flat = list(corners[order, :, :2])
+    axes.add_collection(PolyCollection(flat, facecolors=colour[order], edgecolors="face", linewidths=0.1))
+    axes.set(aspect="equal", xlim=_range(X[:, 0]), ylim=_range(X[:, 1]))
+    axes.set_axis_off()
+
+
+def _leaves(axes: "Axes", followed: Artifact, frame: int, view: Floats) -> None:
+    told: Any = followed
+    at = told.frames.index(frame)
+    for leaf, position in enumerate(told.positions[:, at]):
+        if not np.isnan(position).any():
+            x, y, _ = position @ view
+            seen = told.rows[leaf, at] >= 0
+            colour = LEAF_COLOURS[leaf % len(LEAF_COLOURS)]
+            axes.plot(x, y, "o", ms=7, color=colour if seen else "none", mec=colour if not seen else "white")
+            axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour)
+
+
+def _range(x: NDArray[np.float64]) -> tuple[float, float]:
+    margin = 0.06 * float(np.ptp(x))
+    return float(x.min()) - margin, float(x.max()) + margin

@@ -1,0 +1,42 @@
+"""Pictures: drawn whole or not at all."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kinetree.pipeline import Pipeline
+from kinetree.pipeline.errors import ConfigError
+from kinetree.tasks.plots import WHAT, draw
+
+MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+
+
+@pytest.fixture(scope="module")
+def fetch(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    out = tmp_path_factory.mktemp("plots")
+    touch = {"limb": "hand_r", "target": "hip_r", "begin": 4, "end": 8}
+    synth = {"figure": "human", "frames": 12, "vertices": 900, "contacts": [touch]}
+    told = {"output": str(out), "source": {"synth": synth}, "geodesics": {"bases": 30}, "compute": {"executor": "sync"}}
+    pipeline = Pipeline.of(told)
+    assert pipeline.run()["status"] == "done"
+    schedule = pipeline.schedule()
+    return lambda name, **index: pipeline.artifact(name, within=schedule, **index)
+
+
+@pytest.mark.parametrize("what", sorted(WHAT))
+@pytest.mark.parametrize("ending", sorted(MAGIC))
+def test_every_picture_is_drawn_in_every_format(fetch: Any, tmp_path: Path, what: str, ending: str) -> None:
+    draw(what, fetch, [0, 6], tmp_path / f"a{ending}")
+    assert [p.name for p in tmp_path.iterdir()] == [f"a{ending}"]
+    assert (tmp_path / f"a{ending}").read_bytes().startswith(MAGIC[ending])
+
+
+def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(fetch: Any, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="there are: correlation, mu"):
+        draw("skeleton", fetch, [0], tmp_path / "a.png")
+    with pytest.raises(ConfigError, match=r"pictures end in \.png"):
+        draw("mu", fetch, [0], tmp_path / "a.gif")
+    with pytest.raises(ConfigError, match="cannot be written"):
+        draw("mu", fetch, [0], tmp_path / "missing" / "a.png")
+    assert list(tmp_path.iterdir()) == []
