@@ -13,6 +13,7 @@ from kinetree.pipeline.inspect import Pipeline
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
+SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README, re.DOTALL))
 COMMANDS = typer.main.get_command(command_line())
 
 
@@ -23,7 +24,7 @@ def test_drawn_graph_is_the_graph_of_the_code() -> None:
     assert drawn.group(1) == now, "the drawing is stale: kinetree graph --format mermaid prints the new one"
 
 
-@pytest.mark.parametrize("line", list(re.findall(r"^kinetree .*$", README, re.MULTILINE)))
+@pytest.mark.parametrize("line", re.findall(r"^kinetree .*$", SHELL, re.MULTILINE))
 def test_every_command_in_it_exists_with_its_options(line: str) -> None:
     words = shlex.split(line, comments=True)
     command = COMMANDS.commands[words[1]]  # type: ignore[attr-defined]
@@ -38,7 +39,7 @@ def test_every_link_in_it_leads_somewhere(path: str) -> None:
 
 @pytest.mark.parametrize("command", sorted(COMMANDS.commands))  # type: ignore[attr-defined]
 def test_every_command_is_told_in_it(command: str) -> None:
-    assert re.search(rf"^kinetree {command}\b", README, re.MULTILINE)
+    assert re.search(rf"^kinetree {command}\b", SHELL, re.MULTILINE)
 
 
 def test_test_command_is_the_one_ci_runs() -> None:
