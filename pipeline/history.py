@@ -19,6 +19,8 @@ from kinetree.pipeline.store import Store
 FORMAT = "kinetree.run/1"
 ABANDONED_SECONDS = 24 * 3600.0
 """After this a run on another machine, of which nothing is known, counts as killed."""
+LOOKED_BACK = 50
+"""Runs whose records a plan reads to say what changed."""
 TASK_FIELDS = ("ran", "fresh", "failed", "seconds")
 FAILURE_FIELDS = ("node", "error", "message")
 
@@ -33,9 +35,7 @@ class History:
 
     def recall(self, node: str) -> Recalled:
         """What the node computed in the last run that is on record, of the same output folder if there is one."""
-        if self._nodes is None:
-            self._nodes = self._last_nodes()
-        key = (self._nodes.get(node) or {}).get("key")
+        key = (self.last_nodes().get(node) or {}).get("key")
         if not key:
             return "nothing"
         return self.store.record(key) or "lost"
@@ -48,14 +48,15 @@ class History:
                 run["status"] = "killed"
         return [{name: value for name, value in run.items() if name not in ("nodes", "uses")} for run in runs]
 
-    def _last_nodes(self) -> dict[str, Any]:
-        runs = [self.store.run(name) for name in reversed(self.store.run_names())]
-        mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]
-        nodes: dict[str, Any] = {}
-        for run in mine or runs:
-            known: dict[str, Any] = run.get("nodes", {})
-            nodes = {**{name: told for name, told in known.items() if told.get("key")}, **nodes}
-        return nodes
+    def last_nodes(self) -> dict[str, Any]:
+        """Every node that one of the last runs into this folder computed, as its newest did; of any folder if none is of this."""
+        if self._nodes is None:
+            runs = [self.store.run(name) for name in self.store.run_names()[-LOOKED_BACK:]]
+            mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]
+            self._nodes = {}
+            for run in mine or runs:
+                self._nodes |= {name: told for name, told in run.get("nodes", {}).items() if told.get("key")}
+        return self._nodes
 
 
 def new_name() -> str:
@@ -96,8 +97,13 @@ def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
     }
 
 
-def closing(opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> dict[str, Any]:
-    """The record of a run that is over."""
+def closing(
+    opened: dict[str, Any], schedule: Schedule, before: dict[str, Any], account: Account, status: str, seconds: float
+) -> dict[str, Any]:
+    """The record of a run that is over; nodes of tasks that it was not asked for are carried on as "left".
+
+    before : the nodes on record before it began
+    """
     nodes: dict[str, dict[str, Any]] = {
         e.label: {"state": e.state, "key": e.key, "artifact": e.artifact} for e in schedule.entries.values()
     }
@@ -105,6 +111,9 @@ def closing(opened: dict[str, Any], schedule: Schedule, account: Account, status
         over = schedule.graph.by_name[task].over
         for index, artifact in found.items():
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()
+    asked = {task.name for task in schedule.graph.tasks}
+    left = {name: {**node, "state": "left"} for name, node in before.items() if name.partition("[")[0] not in asked}
+    nodes = {**left, **nodes}
     told = summary(account, status, seconds)
     more = {"tasks": account.tasks, "failures": account.failures, "counts": told["nodes"], "nodes": nodes}
     return {**{name: value for name, value in opened.items() if name != "uses"}, **told, **more}

@@ -180,7 +180,8 @@ class Pipeline:
             run(schedule, launch, watch)
 
     def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> None:
-        told = closing(opened, schedule, account, status, seconds)
+        before = History(self.store, str(self.config.output)).last_nodes()
+        told = closing(opened, schedule, before, account, status, seconds)
         write_run_json(self.config, summary(account, status, seconds))
         self.store.write_run(opened["name"], told)
 

@@ -140,3 +140,13 @@ def test_half_written_leftovers_go_when_nobody_can_be_writing_them(toys):
     os.utime(leftover, (1, 1))
     assert collect(store(toys)).leftovers == (".half",)
     assert not leftover.exists()
+
+
+def test_run_of_a_part_of_the_graph_does_not_give_the_rest_away(toys):
+    toys.run()
+    whole = {record.key for record in store(toys).records()}
+    toys.run(until=["points"])
+    toys.run(until=["smooth"])
+    collect(store(toys))
+    assert {record.key for record in store(toys).records()} == whole
+    assert toys.run().ran == set()
