@@ -87,7 +87,7 @@ def test_constant_values_have_a_histogram_and_correlate_fully(value, normalisati
 
 def test_a_sphere_whose_values_are_only_noise_does_not_change():
     rng = np.random.default_rng(7)
-    rows = columns([summary(0.443 * (1 + rng.normal(0, 0.003, 3000) + rng.normal(0, 0.002))) for _ in range(6)])
+    rows = columns([summary(0.443 * (1 + rng.normal(0, 0.0005, 3000) + rng.normal(0, 0.001))) for _ in range(6)])
     assert correlations(histograms(*rows)).min() > 0.9
 
 

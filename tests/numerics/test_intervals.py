@@ -122,6 +122,8 @@ def test_a_step_must_be_sharp_and_must_last():
     assert np.flatnonzero(steps(level, 0.1)).tolist() == [9]
     ramp = np.clip(np.arange(30) - 5, 0, 10)[:, None] * 0.03
     assert not steps(ramp, 0.1).any()
+    assert not steps(ramp, 0.07).any()
+    assert steps(ramp, 0.05).any()
     spike = np.zeros((30, 1))
     spike[10] = 0.3
     assert not steps(spike, 0.1).any()
@@ -137,6 +139,13 @@ def test_a_step_below_the_threshold_is_none():
 def test_scores_do_not_change_when_all_changes_are_scaled_together():
     change = np.exp(np.random.default_rng(1).normal(-4.0, 1.0, 50))
     np.testing.assert_allclose(z_scores(1 - change), z_scores(1 - 2 * change), atol=1e-9)
+
+
+def test_differences_too_small_to_see_have_no_score():
+    change = np.full(30, 1e-9)
+    change[[4, 11]] = 1e-4
+    assert z_scores(1.0 - change).tolist() == [0.0] * 30
+    assert z_scores(np.zeros(0)).shape == (0,)
 
 
 def test_the_fixed_threshold_cuts_wherever_the_correlation_is_below_it():
