@@ -49,7 +49,7 @@ class History:
         return [{name: value for name, value in run.items() if name not in ("nodes", "uses")} for run in runs]
 
     def last_nodes(self) -> dict[str, Any]:
-        """Every node that one of the last runs into this folder computed, as its newest did; of any folder if none is of this."""
+        """Every node that the last runs into this folder computed, as the newest of them did; of any folder if none did."""
         if self._nodes is None:
             runs = [self.store.run(name) for name in self.store.run_names()[-LOOKED_BACK:]]
             mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]

@@ -13,7 +13,7 @@ import importlib.util
 import math
 import struct
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from kinetree.schemas.array import Artifact
 
 DIGEST_BYTES = 20
+_LENGTH = struct.Struct(">Q").pack
 CODE_ROOTS = ("kinetree.tasks", "kinetree.schemas")
 """Packages whose modules can change a result; `kinetree.pipeline` is not among them because it may not. For a task that
 somebody else's package defines, that package counts too."""
@@ -36,8 +37,7 @@ def digest(value: Any) -> str:
     raises  : TypeError for anything else, so that nothing is ever identified by its address or its repr
     """
     h = _hasher()
-    for piece in _encode(value):
-        h.update(piece)
+    h.update(_encoded(value))
     return h.hexdigest()
 
 
@@ -45,8 +45,7 @@ def array_digest(array: NDArray[Any]) -> str:
     """Digest of an array's dtype, shape and little-endian C-order bytes."""
     stored = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
     h = _hasher()
-    for piece in _encode(("array", stored.dtype.str, list(array.shape))):
-        h.update(piece)
+    h.update(_encoded(("array", stored.dtype.str, list(array.shape))))
     h.update(stored.reshape(-1).view(np.uint8).data)
     return h.hexdigest()
 
@@ -91,45 +90,59 @@ def code_closure(module: str) -> dict[str, str]:
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        if name in found:
-            continue
-        tree = ast.parse(_source(name))
-        found[name] = digest(["kinetree.module/1", *_syntax(tree)])
-        waiting.extend(_imports(tree, name, roots))
+        if name not in found:
+            found[name], imports = _module(name, roots)
+            waiting.extend(imports)
     return dict(sorted(found.items()))
+
+
+@cache
+def _module(name: str, roots: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+    """Digest of one module's code, and the modules below `roots` that it imports."""
+    tree = ast.parse(_source(name))
+    return digest(["kinetree.module/1", *_syntax(tree)]), tuple(dict.fromkeys(_imports(tree, name, roots)))
 
 
 def _hasher() -> "hashlib.blake2b":
     return hashlib.blake2b(digest_size=DIGEST_BYTES)
 
 
-def _encode(value: Any) -> Iterator[bytes]:
-    """Yields tag, length and content of a value, so that every value has exactly one encoding and no two share it."""
-    if value is None:
-        yield b"N"
-    elif isinstance(value, bool):
-        yield b"T" if value else b"F"
-    elif isinstance(value, int) and type(value) is int:
-        text = str(value).encode()
-        yield b"i" + struct.pack(">Q", len(text)) + text
-    elif isinstance(value, float) and type(value) is float:
-        yield b"f" + struct.pack(">d", value if value == value else math.nan)  # one NaN, whatever its bits
-    elif isinstance(value, str) and type(value) is str:
+def _encoded(value: Any) -> bytes:
+    """Tag, length and content of a value, so that every value has exactly one encoding and no two share it."""
+    pieces: list[bytes] = []
+    _encode(value, pieces.append)
+    return b"".join(pieces)
+
+
+def _encode(value: Any, put: Callable[[bytes], object]) -> None:
+    kind = type(value)
+    if kind is str:
         text = value.encode("utf-8", "surrogatepass")
-        yield b"s" + struct.pack(">Q", len(text)) + text
-    elif isinstance(value, bytes):
-        yield b"b" + struct.pack(">Q", len(value)) + value
-    elif isinstance(value, list | tuple):
-        yield b"l" + struct.pack(">Q", len(value))
+        put(b"s" + _LENGTH(len(text)) + text)
+    elif kind is list or kind is tuple:
+        put(b"l" + _LENGTH(len(value)))
         for item in value:
-            yield from _encode(item)
+            _encode(item, put)
+    elif value is None:
+        put(b"N")
+    elif kind is bool:
+        put(b"T" if value else b"F")
+    elif kind is int:
+        text = str(value).encode()
+        put(b"i" + _LENGTH(len(text)) + text)
+    elif kind is float:
+        put(b"f" + struct.pack(">d", value if value == value else math.nan))  # one NaN, whatever its bits
+    elif kind is bytes:
+        put(b"b" + _LENGTH(len(value)) + value)
     elif isinstance(value, Mapping):
-        yield b"d" + struct.pack(">Q", len(value))
+        put(b"d" + _LENGTH(len(value)))
         for name in sorted(value, key=_text):
-            yield from _encode(name)
-            yield from _encode(value[name])
+            _encode(name, put)
+            _encode(value[name], put)
+    elif isinstance(value, list | tuple):
+        _encode(list(value), put)
     else:
-        raise TypeError(f"no canonical encoding for {type(value).__name__}: {value!r}")
+        raise TypeError(f"no canonical encoding for {kind.__name__}: {value!r}")
 
 
 def _text(name: Any) -> str:
@@ -138,21 +151,23 @@ def _text(name: Any) -> str:
     return name
 
 
-def _syntax(node: ast.AST) -> Iterator[Any]:
+def _syntax(node: ast.AST) -> list[Any]:
     """The tree as plain values: no positions, no bare strings (docstrings), no field that is empty.
 
     Fields that are empty are left out because Python versions differ in which empty fields a node has.
     """
-    yield type(node).__name__
-    for field, value in ast.iter_fields(node):
+    told: list[Any] = [type(node).__name__]
+    for field in node._fields:
+        value = getattr(node, field, None)
         if isinstance(value, list):
             items = [i for i in value if not _is_docstring(i)]
             if items:
-                yield [field, [list(_syntax(i)) if isinstance(i, ast.AST) else i for i in items]]
+                told.append([field, [_syntax(i) if isinstance(i, ast.AST) else i for i in items]])
         elif isinstance(value, ast.AST):
-            yield [field, list(_syntax(value))]
+            told.append([field, _syntax(value)])
         elif value is not None:
-            yield [field, type(value).__name__, repr(value)]
+            told.append([field, type(value).__name__, repr(value)])
+    return told
 
 
 def _is_docstring(node: Any) -> bool:

@@ -11,6 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 FILES = [*ROOT.glob("pipeline/*.py"), *ROOT.glob("schemas/*.py"), *ROOT.glob("tasks/**/*.py")]
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
+OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name not in ("__init__.py", "commands.py", "plots.py")]
 ASKING = ("inspect.py", "cli.py")
 """The two that ask for the product's own tasks and commands, inside a function, when they are called."""
 BORDER = "tasks/source.py"
@@ -61,7 +62,7 @@ def test_schemas_know_only_schemas(path: Path) -> None:
     assert not ours(imports(path), "kinetree.schemas", "kinetree.pipeline.errors")
 
 
-@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/*.py") if p.name not in ("__init__.py", "commands.py", "plots.py")], ids=name)
+@pytest.mark.parametrize("path", OPERATIONS, ids=name)
 def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
     border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.store"] if name(path) == BORDER else []
     allowed = ["kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.pipeline.errors", *border]
@@ -88,7 +89,7 @@ def test_no_module_imports_itself_in_a_ring() -> None:
     assert list(nx.simple_cycles(graph)) == []
 
 
-@pytest.mark.parametrize("path", [p for p in ROOT.glob("tasks/*.py") if p.name not in ("__init__.py", "commands.py", "plots.py")], ids=name)
+@pytest.mark.parametrize("path", OPERATIONS, ids=name)
 def test_every_operation_has_one_stem_behind_every_door(path: Path) -> None:
     assert (ROOT / "schemas" / path.name).is_file()
     assert (ROOT / "tests" / "tasks" / f"test_{path.name}").is_file()
