@@ -66,6 +66,8 @@ ENVIRONMENT = (
     errno.ENFILE, errno.ELOOP, errno.ENOTDIR, errno.ESTALE, errno.ENOMEM,
 )  # fmt: skip
 """What a system refuses for reasons that lie in it and not in kinetree."""
+REMARKS = 12
+"""Remarks printed after a run."""
 GATHERS = {"one": "", "tuple": " of all", "mapping": " of all", "previous": " before it"}
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
@@ -98,7 +100,7 @@ def run(
     if as_json:
         _print_json(told)
     elif not quiet:
-        _print_summary(told, pipeline.config.output)
+        _print_summary(told, pipeline)
     if told["status"] == "failed":
         if quiet:
             _print_failures(told)
@@ -388,12 +390,17 @@ def _print_plan(found: Plan, nodes: bool) -> None:
         out.print("everything is fresh; a run would compute nothing")
 
 
-def _print_summary(told: dict[str, Any], folder: Path) -> None:
+def _print_summary(told: dict[str, Any], pipeline: Pipeline) -> None:
     counts = told["nodes"]
     line = ", ".join(f"{count} {name}" for name, count in counts.items() if count or name in ("ran", "fresh"))
     _print_failures(told)
     out.print(f"{told['status']}: {line} in {clock(told['seconds'])}")
-    out.print(f"results: {printable(folder)}", markup=False)
+    remarks = pipeline.remarks()
+    for node, text in remarks[:REMARKS]:
+        out.print(f"{node}: {printable(text)}", markup=False)
+    if len(remarks) > REMARKS:
+        out.print(f"… and {len(remarks) - REMARKS} more remarks")
+    out.print(f"results: {printable(pipeline.config.output)}", markup=False)
 
 
 def _print_failures(told: dict[str, Any]) -> None:

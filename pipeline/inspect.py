@@ -162,6 +162,12 @@ class Pipeline:
             raise UnknownNodeError(f"{planned}; it has no artifact until kinetree run computes it")
         return schedule.value(node)
 
+    def remarks(self) -> list[tuple[str, str]]:
+        """What the results that stand for the whole sequence have to say, as (node, sentence)."""
+        schedule = self.schedule()
+        whole = [e for e in schedule.entries.values() if not e.task.over and e.artifact is not None and not e.task.is_origin]
+        return [(e.label, text) for e in whole for text in schedule.value(e.node).remarks()]
+
     def runs(self) -> list[dict[str, Any]]:
         """Every run on record in this store, oldest first."""
         return History(self.store, str(self.config.output)).runs()

@@ -110,6 +110,10 @@ class Artifact(BaseModel):
         """The member before this one in the traversal this artifact orders; None where the traversal starts."""
         raise ArtifactError(f"{type(self).__name__} orders no traversal")
 
+    def remarks(self) -> tuple[str, ...]:
+        """What a person should know of this result, in plain sentences; most have nothing to say."""
+        return ()
+
     @classmethod
     def array_fields(cls) -> dict[str, Array]:
         """The declared arrays by field name."""

@@ -42,3 +42,12 @@ class Leaves(Artifact):
     """Position of the first frame without it."""
     lost_end: Annotated[Ints, Array("int32", GAP)]
     """Position of the last frame without it, included."""
+
+    def remarks(self) -> tuple[str, ...]:
+        """No leaves at all, intervals without any, and where leaves were lost."""
+        if not len(self.rows):
+            return ("no leaves: no frame has a tip that stands out of the body, as on a ball; there are no limbs to follow",)
+        told = [f"interval {i} has no leaf that is seen often enough" for i in range(len(self.kept)) if not self.kept[i].any()]
+        for leaf, begin, end in zip(self.lost, self.lost_begin, self.lost_end, strict=True):
+            told.append(f"leaf {leaf} is not seen from frame {self.frames[begin]} to {self.frames[end]}")
+        return tuple(told)
