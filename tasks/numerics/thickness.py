@@ -1,0 +1,39 @@
+"""How thick a body is at every point of its surface: the way through it to the other side."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+_TURN = 0.1  # what a turn of the normal counts against distance: enough that a neighbour is never the other side
+_CANDIDATES = 4
+
+
+def opposite(V: Floats, N: Floats, size: float, vertex: Ints) -> tuple[Ints, Floats]:
+    """Vertices on the other side of the body, sought among points whose normals are opposite.
+
+    V, N    : (vertex, xyz) mesh unit · (vertex, xyz) unit
+    size    : of the body, mesh unit
+    vertex  : (row,) the vertices asked for
+    returns : (row, 4) vertices · (row, 4) distance to each, mesh unit; infinite where the way there leads out of the body,
+              and where the body is thicker than a fifth of its size: then nearer points are found, on the same side
+    """
+    count = min(_CANDIDATES, len(V))
+    tree = cKDTree(np.hstack([V, _TURN * size * N]))
+    found = tree.query(np.hstack([V[vertex], -_TURN * size * N[vertex]]), k=count)[1].reshape(len(vertex), count)
+    way = V[found] - V[vertex, None]
+    length = np.linalg.norm(way, axis=2)
+    inwards = np.einsum("vkx,vx->vk", way, N[vertex]) < -0.5 * length
+    return found, np.where(inwards, length, np.inf)
+
+
+def thickness(V: Floats, N: Floats, size: float) -> Floats:
+    """Shortest way through the body from each vertex.
+
+    V, N    : (vertex, xyz) mesh unit · (vertex, xyz) unit
+    size    : of the body, mesh unit
+    returns : (vertex,) mesh unit; infinite where the body is thicker than a fifth of its size
+    """
+    return opposite(V, N, size, np.arange(len(V)))[1].min(axis=1)

@@ -1,0 +1,50 @@
+"""Limbs whose every point's way is known: closed tubes, bent at a joint, cut anew for every frame."""
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+LENGTH = 10.0  # half of it on either side of the joint at the origin
+RADIUS = 1.0
+
+
+def tube(around: int = 24, along: int = 48, start: float = 0.0, flat: float = 0.7) -> tuple[Floats, Ints]:
+    """A closed tube along z with round ends and an oval section, V (vertex, xyz) and F (face, corner).
+
+    Other numbers around and along, or another start, give the same surface other vertices and faces.
+    """
+    arc = np.pi / 2 * RADIUS
+    s = np.linspace(0, LENGTH - 2 * RADIUS + 2 * arc, along + 1)[1:-1]
+    low, high = s < arc, s > s[-1] + s[0] - arc
+    end = np.where(high, s[-1] + s[0] - s, s) / RADIUS
+    r = np.where(low | high, RADIUS * np.sin(end), RADIUS)
+    z = np.where(low, -LENGTH / 2 + RADIUS * (1 - np.cos(end)), s - arc - LENGTH / 2 + RADIUS)
+    z = np.where(high, LENGTH / 2 - RADIUS * (1 - np.cos(end)), z)
+    phi = start + 2 * np.pi * np.arange(around) / around
+    rings = np.stack(
+        [r[:, None] * np.cos(phi), flat * r[:, None] * np.sin(phi), np.repeat(z[:, None], around, axis=1)], axis=2
+    )
+    V = np.concatenate([rings.reshape(-1, 3), [[0, 0, -LENGTH / 2], [0, 0, LENGTH / 2]]])
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(len(s) - 1), np.arange(around), indexing="ij"))
+    k = (j + 1) % around
+    a, b, c, d = i * around + j, i * around + k, (i + 1) * around + k, (i + 1) * around + j
+    j, k = np.arange(around), (np.arange(around) + 1) % around
+    last = (len(s) - 1) * around
+    caps = [np.stack([np.full(around, len(V) - 2), k, j], 1), np.stack([np.full(around, len(V) - 1), last + j, last + k], 1)]
+    return V, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1), *caps])
+
+
+def bent(V: Floats, angle: float, blend: float = 1.0) -> Floats:
+    """Every point with z > 0 turned about the x axis by `angle`, those within `blend` of the joint by a part of it."""
+    share = np.clip((V[:, 2] / blend + 1) / 2, 0, 1)
+    turn = angle * share * share * (3 - 2 * share)
+    y, z = V[:, 1], V[:, 2]
+    return np.stack([V[:, 0], np.cos(turn) * y - np.sin(turn) * z, np.sin(turn) * y + np.cos(turn) * z], axis=1)
+
+
+def rotation(axis: tuple[float, float, float], angle: float) -> Floats:
+    """(3, 3) about an axis through the origin."""
+    k = np.asarray(axis) / np.linalg.norm(axis)
+    K = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
