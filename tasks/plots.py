@@ -42,7 +42,7 @@ def mu(fetch: Fetch, frames: list[int]) -> "Figure":
     """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
     followed = fetch("leaves")
     figure, row = _figure(3.2 * len(frames), 4.2, len(frames))
-    view = _view(fetch("mesh", frame=frames[0]).vertices)
+    view = _view([fetch("mesh", frame=frame).vertices for frame in frames])
     for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
         mesh, found = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
         _surface(axes, mesh.vertices @ view, mesh.faces, found.mu)
@@ -83,13 +83,19 @@ def _figure(width: float, height: float, columns: int = 1) -> "tuple[Figure, Any
     return figure, figure.subplots(1, columns)
 
 
-def _view(V: Floats) -> Floats:
-    """(xyz, 3) axes across, up and towards the eye: the body's longest extent upright, its shortest towards the eye."""
-    values, axes = np.linalg.eigh(np.cov((V - V.mean(axis=0)).T))
-    order = np.argsort(values)
-    up, across = axes[:, order[2]], axes[:, order[1]]
-    up, across = (a * np.sign(a[np.argmax(np.abs(a))]) for a in (up, across))
-    return np.stack([across, up, np.cross(across, up)], axis=1)
+def _view(bodies: list[Floats]) -> Floats:
+    """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
+
+    Up is the axis along which the lowest point of the body moves least: feet stand on the ground. The eye looks along the
+    shorter extent of the other two.
+    """
+    lowest = np.array([V.min(axis=0) for V in bodies])
+    extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
+    up = int(np.argmin(np.ptp(lowest, axis=0) - 1e-6 * extent))
+    eye, across = sorted((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
+    view = np.eye(3)[:, [across, up, eye]]
+    view[:, 2] *= np.linalg.det(view)
+    return np.asarray(view, dtype=np.float64)
 
 
 def _surface(axes: "Axes", X: Floats, F: Ints, values: Floats) -> None:
