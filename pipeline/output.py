@@ -6,7 +6,8 @@ from typing import Any
 
 import yaml
 
-from kinetree.pipeline.config import SAVED, Config
+from kinetree.pipeline.blocks import SAVED
+from kinetree.pipeline.config import Config
 from kinetree.pipeline.place import Folder
 
 RUN_JSON = "run.json"

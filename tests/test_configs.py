@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from kinetree.pipeline.config import Compute, checked, preset_names
+from kinetree.pipeline.blocks import preset_names
+from kinetree.pipeline.config import Compute, checked
 from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
 

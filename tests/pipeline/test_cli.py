@@ -120,7 +120,8 @@ def test_without_anything_to_work_on_it_says_what_to_name(kinetree):
 def test_run_says_what_it_did_and_where_the_results_are(kinetree, scans, tmp_path):
     code, printed, complained = kinetree("run", "-i", "scans", "-o", "walk", "--until", "connectivity", "--executor", "sync")
     assert code == 0
-    first, second = printed.splitlines()
+    first, *remarks, second = printed.splitlines()
+    assert remarks == ["connectivity: fixed connectivity: the same 4 faces in every frame"]
     assert first.startswith("done: 4 ran, 0 fresh in ")
     assert second == f"results: {tmp_path / 'walk'}"
     assert "mesh: 3 ran, 0 fresh" in complained

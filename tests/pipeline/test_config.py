@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinetree.pipeline.config import Compute, load, preset_names, with_compute
+from kinetree.pipeline.blocks import preset_names
+from kinetree.pipeline.config import Compute, load, with_compute
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import as_yaml
