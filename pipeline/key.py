@@ -96,6 +96,12 @@ def code_closure(module: str) -> dict[str, str]:
     return dict(sorted(found.items()))
 
 
+def forget_code() -> None:
+    """Makes the code be read again, for a process that reloads its modules after an edit."""
+    code_closure.cache_clear()
+    _module.cache_clear()
+
+
 @cache
 def _module(name: str, roots: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     """Digest of one module's code, and the modules below `roots` that it imports."""

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.key import code_closure
+from kinetree.pipeline.key import forget_code
 
 HERE = Path(__file__).parent
 MAIN = """from kinetree.pipeline import cli, inspect
@@ -96,7 +96,7 @@ class Toys:
         for module in [m for m in sys.modules if m.partition(".")[0] == self.name]:
             del sys.modules[module]
         importlib.invalidate_caches()
-        code_closure.cache_clear()
+        forget_code()
 
     def write(self, *numbers: float, start: int = 0) -> None:
         """Writes one frame per number, from frame `start` on."""
