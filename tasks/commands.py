@@ -31,14 +31,21 @@ def plot(
     frames: Annotated[
         str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw; default: four across the sequence.")
     ] = "",
+    up: Annotated[str | None, typer.Option("--up", help="Axis that points up: x, y or z; default: guessed.")] = None,
 ) -> None:
     """Draw what a run found: correlation, C(t) with its cuts; mu, the integral of geodesic distance with the leaves."""
     pipeline = Pipeline.of(run)
     schedule = pipeline.schedule()
     known = sorted(node.at[0] for node in schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
-    draw(what, lambda name, **index: pipeline.artifact(name, within=schedule, **index), _wanted(frames, known), path)
+    draw(what, lambda name, **index: pipeline.artifact(name, within=schedule, **index), _wanted(frames, known), path, _axis(up))
     typer.echo(str(path))
+
+
+def _axis(up: str | None) -> int | None:
+    if up is not None and up not in ("x", "y", "z"):
+        raise ConfigError(f"--up {up}: write x, y or z")
+    return None if up is None else "xyz".index(up)
 
 
 def _wanted(text: str, known: list[int]) -> list[int]:

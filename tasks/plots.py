@@ -21,7 +21,7 @@ LEAF_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 """Okabe and Ito's eight, which the colour-blind can tell apart."""
 
 
-def correlation(fetch: Fetch, frames: list[int]) -> "Figure":
+def correlation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     """C(t) over the frames, the cuts with what made them, the intervals shaded in turn (2014, Fig. 5)."""
     series, cut = fetch("correlation"), fetch("intervals")
     figure, axes = _figure(9.0, 3.6)
@@ -38,11 +38,11 @@ def correlation(fetch: Fetch, frames: list[int]) -> "Figure":
     return figure
 
 
-def mu(fetch: Fetch, frames: list[int]) -> "Figure":
+def mu(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
     followed = fetch("leaves")
     figure, row = _figure(3.2 * len(frames), 4.2, len(frames))
-    view = _view([fetch("mesh", frame=frame).vertices for frame in frames])
+    view = _view([fetch("mesh", frame=frame).vertices for frame in frames], up)
     for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
         mesh, found = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
         _surface(axes, mesh.vertices @ view, mesh.faces, found.mu)
@@ -51,20 +51,21 @@ def mu(fetch: Fetch, frames: list[int]) -> "Figure":
     return figure
 
 
-WHAT: Mapping[str, Callable[[Fetch, list[int]], "Figure"]] = {"correlation": correlation, "mu": mu}
+WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {"correlation": correlation, "mu": mu}
 """What can be drawn, by the word of the command line."""
 
 
-def draw(what: str, fetch: Fetch, frames: list[int], path: Path) -> None:
+def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None = None) -> None:
     """Draws into a file, complete or not at all.
 
+    up     : axis of the coordinates that points up; None guesses it
     raises : ConfigError where `what` is not known, the file's ending is none of FORMATS or it cannot be written
     """
     if what not in WHAT:
         raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    figure = WHAT[what](fetch, frames)
+    figure = WHAT[what](fetch, frames, up)
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
         figure.savefig(beside, dpi=150, bbox_inches="tight")
@@ -83,16 +84,19 @@ def _figure(width: float, height: float, columns: int = 1) -> "tuple[Figure, Any
     return figure, figure.subplots(1, columns)
 
 
-def _view(bodies: list[Floats]) -> Floats:
+def _view(bodies: list[Floats], up: int | None) -> Floats:
     """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
 
-    Up is the axis along which the lowest point of the body moves least: feet stand on the ground. The eye looks along the
-    shorter extent of the other two.
+    The eye looks along the shortest extent. Where nobody says what is up, it is the one of the other two axes along which
+    the body's lowest point moves least: feet stand on the ground.
     """
     lowest = np.array([V.min(axis=0) for V in bodies])
     extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
-    up = int(np.argmin(np.ptp(lowest, axis=0) - 1e-6 * extent))
-    eye, across = sorted((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
+    eye = min((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
+    if up is None:
+        sways = np.ptp(lowest, axis=0) - 1e-6 * extent  # of two that do not move, the longer
+        up = min((axis for axis in range(3) if axis != eye), key=lambda axis: float(sways[axis]))
+    across = 3 - eye - up
     view = np.eye(3)[:, [across, up, eye]]
     view[:, 2] *= np.linalg.det(view)
     return np.asarray(view, dtype=np.float64)
