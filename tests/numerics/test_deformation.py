@@ -162,7 +162,8 @@ def test_blocks_are_the_normal_equations_of_the_energy_and_cg_solves_them():
     body = template(*tube(around=10, along=14), TemplateSettings(nodes=9))
     start = Pose(*stepped(*at_rest(body), 0.1 * rng.normal(size=(9, 6)), 1.0))
     vertex = rng.integers(len(body.V), size=60)
-    point, normal = body.V[vertex] + 0.1 * rng.normal(size=(60, 3)), turned(body.N, body.bound, body.weight, start.rotation)[vertex]
+    point = body.V[vertex] + 0.1 * rng.normal(size=(60, 3))
+    normal = turned(body.N, body.bound, body.weight, start.rotation)[vertex]
     D, B, b, A = _system(body, start, vertex, point, normal)
     np.testing.assert_allclose(A, A.T, atol=1e-10)
     slope = np.empty((9, 6))

@@ -1,0 +1,162 @@
+"""One mesh aligned to all frames, against the truth: vertex error, turning of every joint, seconds a frame, residual.
+
+    export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+    python benchmarks/alignment.py --data FOLDER [--only NAME ...] [--every N] [--reference FRAME] [--peer] [--plot FOLDER]
+
+FOLDER holds sequences NAME.npz (vertices, faces, vertex_offsets, face_offsets); where NAME-body.npz and NAME.truth.json
+lie beside them, errors are given in % of the body's height; elsewhere residuals only, in % of the body's size. Seconds
+are those of one core, after a first fit that compiles. --every N refits and scores each Nth frame only (tracking needs
+all). --peer aligns one frame with trimesh's nricp_amberg too and gives the ratio.
+"""
+
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import trimesh
+from turning import Truth
+
+from kinetree.tasks.numerics.correspondence import Target
+from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.leaves import leaves
+from kinetree.tasks.numerics.mesh import Cleaned, clean
+from kinetree.tasks.numerics.mu import farthest_bases, mu
+from kinetree.tasks.numerics.reference import profile, reference
+from kinetree.tasks.numerics.repair import Tracked, repaired, tracked
+from kinetree.tasks.numerics.stiffness import PASSES, learned
+from kinetree.tasks.numerics.surface import Surface
+from kinetree.tasks.numerics.template import Template, template
+from kinetree.tasks.numerics.trust import residuals, trusted
+
+Floats = npt.NDArray[np.float64]
+
+
+def frames(path: Path) -> list[Cleaned]:
+    """Every frame of a sequence, clean."""
+    held = np.load(path)
+    V, F, v, f = (held[k] for k in ("vertices", "faces", "vertex_offsets", "face_offsets"))
+    same = len(f) == 2
+    return [
+        clean(V[v[t] : v[t + 1]].astype(np.float64), F[f[0 if same else t] : f[1 if same else t + 1]].astype(np.int32))
+        for t in range(len(v) - 1)
+    ]
+
+
+def chosen(meshes: list[Cleaned]) -> int:
+    """The reference frame by the rule."""
+    count, poses = [], []
+    for mesh in meshes:
+        surface = Surface.of(mesh.V, mesh.F)
+        bases = farthest_bases(surface, 60)
+        integral = mu(bases.distance, bases.weight)
+        count.append(len(leaves(integral, mesh.F).vertex))
+        poses.append(profile(integral, surface.area))
+    return reference(count, [m.euler for m in meshes], [m.area for m in meshes], np.stack(poses)).frame
+
+
+def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:
+    """Tracked outwards from the reference in both directions."""
+    out = [Tracked(at_rest(body), 0.0, 0)] * len(targets)
+    for step in (1, -1):
+        before, t = None, start + step
+        while 0 <= t < len(targets):
+            out[t] = tracked(body, before, out[t - step].pose, targets[t])
+            before, t = out[t - step].pose, t + step
+    return out
+
+
+def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[Template, list[int], list[Pose], Floats, float]:
+    """All passes: the template, the frames kept, their poses, uncovered shares, and seconds a frame."""
+    body = template(meshes[start].V, meshes[start].F)
+    fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
+    begun = time.perf_counter()
+    targets = [Target.of(m.V, m.F, body.size) for m in meshes]
+    found = repaired(body, chain(body, targets, start), targets, start)
+    first = (time.perf_counter() - begun) / len(meshes)
+    kept = sorted({start, *range(0, len(meshes), every)})
+    poses = [found[t].pose for t in kept]
+    begun = time.perf_counter()
+    for settings in PASSES:
+        s = learned(body, poses)
+        poses = [fit(body, pose, targets[t], settings, s).pose for t, pose in zip(kept, poses, strict=True)]
+    seconds = first + (time.perf_counter() - begun) / len(kept)
+    return body, kept, poses, np.array([found[t].uncovered for t in kept]), seconds
+
+
+def peer(meshes: list[Cleaned], body: Template, start: int, seconds: float) -> None:
+    """One frame by trimesh's nricp_amberg, in the same run."""
+    source = trimesh.Trimesh(body.V, body.F, process=False)
+    mesh = meshes[start + 1]
+    begun = time.perf_counter()
+    found = trimesh.registration.nricp_amberg(source, trimesh.Trimesh(mesh.V, mesh.F, process=False))
+    spent = time.perf_counter() - begun
+    error = residuals(np.asarray(found), mesh.V, mesh.F).mean() / body.size * 100
+    print(f"    nricp_amberg: {spent:.1f} s for one frame, residual {error:.3f} %: {spent / seconds:.0f} times as long")
+
+
+def plotted(folder: Path, name: str, body: Template, shapes: list[Floats], meshes: list[Cleaned], kept: list[int]) -> None:
+    """Aligned (red) over input (grey) for six frames, three views."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    picked = np.linspace(0, len(kept) - 1, 6).astype(int)
+    figure, axes = plt.subplots(2, 6, figsize=(24, 11))
+    for column, k in enumerate(picked):
+        for row, (a, b) in enumerate(((0, 1), (2, 1))):
+            ax = axes[row, column]
+            ax.scatter(*meshes[kept[k]].V[:, [a, b]].T, s=0.4, c="0.6")
+            ax.triplot(*shapes[k][:, [a, b]].T, body.F[::4], lw=0.15, color="r")
+            ax.set_aspect("equal")
+            ax.set_title(f"{name} {kept[k]}")
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / f"{name}.png", dpi=60)
+
+
+def scored(folder: Path, name: str, args: argparse.Namespace) -> None:
+    """One line of the table, and the joints that turn too little."""
+    meshes = frames(folder / f"{name}.npz")
+    start = chosen(meshes) if args.reference is None else args.reference
+    body, kept, poses, share, seconds = aligned(meshes, start, args.every)
+    shapes = [shape(body, pose)[0] for pose in poses]
+    residual = np.array([residuals(x, meshes[t].V, meshes[t].F).mean() for x, t in zip(shapes, kept, strict=True)])
+    doubted = int((~trusted(share, residual)).sum())
+    line = f"{name:9s} {start:4d} {len(kept):4d} {seconds:6.2f} {residual.mean() / body.size * 100:6.3f}"
+    line += f" {share.max():6.3f} {doubted:3d}"
+    low: list[str] = []
+    if (folder / f"{name}-body.npz").exists():
+        truth = Truth.of(folder, name, body.V, start)
+        truth_kept = Truth(truth.x[kept], truth.part, truth.label, truth.joints, truth.height)
+        error = np.linalg.norm(np.stack(shapes) - truth_kept.x, axis=2) / truth.height * 100
+        turns = truth_kept.turns(np.stack(shapes), kept.index(start))
+        low = [f"{t.joint} {t.share:.2f}/{t.peak:.2f} of {t.degrees:.0f}°" for t in turns if min(t.share, t.peak) < 0.8]
+        line += f" {error.mean():7.3f} {np.quantile(error, 0.95):6.2f} {error.max():6.1f}"
+        line += f" {len(turns) - len(low):3d}/{len(turns)}"
+    print(line, flush=True)
+    if low:
+        print("    turning below 0.8 (all frames/largest angle): " + ", ".join(low))
+    if args.peer:
+        peer(meshes, body, start, seconds)
+    if args.plot:
+        plotted(args.plot, name, body, shapes, meshes, kept)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--only", nargs="*", default=["wave", "dance", "wolf", "camel", "dancer"])
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--reference", type=int)
+    parser.add_argument("--peer", action="store_true")
+    parser.add_argument("--plot", type=Path)
+    args = parser.parse_args()
+    print("sequence   ref  frm  s/frm resid% uncov  ?   mean%   p95%   max%  joints turning ≥ 0.8")
+    for name in args.only:
+        scored(args.data, name, args)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""Stiffness learned from a whole sequence: what never bends is bone, what bends in some frame is a joint.
+
+A uniform prior bends where the body is thin; after one pass over the sequence every tie of the deformation graph has
+shown how much it bends, and the next pass holds on to bones and lets joints go.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from kinetree.tasks.numerics.blocks import strains
+from kinetree.tasks.numerics.deformation import FitSettings, Pose
+from kinetree.tasks.numerics.template import Template
+
+Floats = npt.NDArray[np.float64]
+
+YIELD = 0.02  # relative bending at which a tie counts half
+
+# the passes after the first start from the pose they had, so they search near and once
+PASSES = tuple(
+    FitSettings(6, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1) for last in (0.1, 0.05, 0.03)
+)
+
+
+def learned(template: Template, poses: Sequence[Pose], yields: float = YIELD) -> Floats:
+    """S = s₀² / (s₀² + q²), q the rms over frames of a tie's relative residual.
+
+    poses   : one a frame, in any order; at least one
+    yields  : s₀
+    returns : (edge,) above 0, at most 1
+    """
+    g = template.g
+    # sorted, so that the sum does not depend on the order in which frames arrive
+    strain = np.sort(np.stack([strains(template.edge, *pose, g) for pose in poses]), axis=0).mean(axis=0)
+    return yields**2 / (yields**2 + strain)
