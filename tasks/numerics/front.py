@@ -7,7 +7,9 @@ and the inner loops hardly branch, which is where a heap spends its time.
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.bands import BANDS, IDLE, advance, enter, lower
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.light import light
 from kinetree.tasks.numerics.surface import Surface
 from kinetree.tasks.numerics.unfolding import (
     BASE,
@@ -27,6 +29,7 @@ from kinetree.tasks.numerics.unfolding import (
     unfold_first,
     unfold_next,
 )
+from kinetree.tasks.numerics.windows import Plane, plane
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -35,13 +38,17 @@ Indices = npt.NDArray[np.uint32]
 Codes = npt.NDArray[np.uint64]
 Topology = tuple[Indices, Indices, Lengths, Lengths, Indices, Indices, Indices, Indices, Lengths, npt.NDArray[np.uint8]]
 
+Room = tuple[
+    Floats, Floats, Indices, Indices, Indices, Indices, Codes, Floats, Indices, Floats, Indices, Plane
+]  # fmt: skip
+
 BAND = 0.25  # of the mean edge: wider bands settle vertices before their distance is known, narrower ones cost time
+EXACT = 10.0  # mean edges around the source whose distances are exact
+OVERLAP = 3.0  # mean edges of them from which the front starts: what lies behind them is hidden from what lies ahead
 UNFOLDINGS = 3  # triangles after the first: each more costs 5 % of time and gains 5 % of accuracy
-BANDS = 64  # a power of two; vertices further ahead wait in the last one
 
 _0, _1, _2, _3 = np.uint64(0), np.uint64(1), np.uint64(2), np.uint64(3)
 _32, _LOW = np.uint64(32), np.uint64(0xFFFFFFFF)
-_IDLE = np.uint64(0xFFFFFFFF)
 
 
 def topology(surface: Surface) -> Topology:
@@ -53,11 +60,12 @@ def topology(surface: Surface) -> Topology:
 
 
 @compiled
-def workspace(vertices: int, entries: int) -> tuple[npt.NDArray, ...]:  # type: ignore[type-arg]
+def workspace(vertices: int, entries: int) -> Room:
     """Memory for one propagation at a time; the first array is the distance in the surface's own numbering."""
+    around = plane(vertices)
     return (
-        np.empty(vertices),
-        np.empty(vertices),
+        around[0],
+        around[1],
         np.empty(vertices, np.uint32),
         # a vertex enters a band once, or twice if it had to wait in the last one
         np.empty((BANDS, 2 * vertices + 2), np.uint32),
@@ -68,25 +76,26 @@ def workspace(vertices: int, entries: int) -> tuple[npt.NDArray, ...]:  # type: 
         np.empty(entries + 1, np.uint32),
         np.empty(ROWS * BLOCK),
         np.empty((3, BLOCK + 1), np.uint32),
+        around,
     )
 
 
 @compiled
-def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: tuple[npt.NDArray, ...]) -> None:  # type: ignore[type-arg]
+def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: Room) -> None:
     """Distances from one source into room[0]; the only state is `room`."""
     start, ring, ring_length, ring_rim, ring_edge, apex, twin, opening, length, bends = mesh
-    distance, bend, band, waiting, filled, front, codes, results, reached, W, small = room
+    distance, bend, band, waiting, filled, front, codes, results, reached, W, small, around = room
     distance[:] = np.inf
-    band[:] = _IDLE
+    band[:] = IDLE
     filled[:] = 0
     per_band, least = 1.0 / (BAND * edge), 1e-9 * edge
-    distance[source] = bend[source] = 0.0
-    band[source] = 0
-    waiting[0, 0] = source
-    filled[0] = 1
-    queued, now = _1, _0
+    exact = min(EXACT * edge, radius)
+    light(source, exact, BAND * edge, start, ring, ring_edge, bends, (apex, twin, length), around)
+    exact, now, queued = enter(
+        source, exact, (EXACT - OVERLAP) * edge, per_band, distance, bend, band, waiting, filled, around[-1]
+    )
     while queued > _0 and now <= radius * per_band:
-        size = _advance(now, per_band, distance, band, waiting, filled, front)
+        size = advance(now, per_band, distance, band, waiting, filled, front)
         if size == _0:
             now += _1
             continue
@@ -95,7 +104,7 @@ def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, roo
         found = _0
         for first in range(_0, pairs, np.uint64(BLOCK)):
             count = min(np.uint64(BLOCK), pairs - first)
-            _load(first, count, codes, start, ring, ring_length, ring_rim, distance, bend, W, small)
+            _load(np.uint64(first), count, codes, start, ring, ring_length, ring_rim, distance, bend, W, small)
             unfold_first(count, W)
             found = _collect(count, small[1], W, found, reached, results)
             count = leave_first(count, small[0], ring_edge, opening, W, small[2])
@@ -107,42 +116,19 @@ def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, roo
                     small[1, i] = apex[np.uint64(small[2, i]) >> _1]
                 found = _collect(count, small[1], W, found, reached, results)
                 count = leave_next(count, twin, W, small[2])
-        queued += _lower(found, reached, results[0], results[1], now, per_band, least, distance, bend, band, waiting, filled)
+        queued += lower(
+            found, reached, results[0], results[1], now, per_band, least, exact, distance, bend, band, waiting, filled
+        )
         for i in range(edges):
             v = codes[1, i] >> _32
             reached[i] = codes[1, i] & _LOW
             results[0, i] = distance[v] if bends[v] else bend[v]
-        queued += _lower(edges, reached, results[2], results[0], now, per_band, least, distance, bend, band, waiting, filled)
+        queued += lower(
+            edges, reached, results[2], results[0], now, per_band, least, exact, distance, bend, band, waiting, filled
+        )
     for v in range(len(distance)):
         if distance[v] > radius:
             distance[v] = np.inf
-
-
-@compiled
-def _advance(
-    now: np.uint64, per_band: float, distance: Floats, band: Indices, waiting: Indices, filled: Indices, front: Indices
-) -> np.uint64:
-    """Take the vertices of band `now` off the queue; those that only waited in it move on."""
-    row = now & np.uint64(BANDS - 1)
-    held = np.uint64(filled[row])
-    filled[row] = 0
-    size = _0
-    for i in range(held):
-        v = np.uint64(waiting[row, i])
-        if np.uint64(band[v]) != now:
-            continue
-        due = np.uint64(distance[v] * per_band)
-        if due > now:
-            due = min(due, now + np.uint64(BANDS - 1))
-            band[v] = due
-            later = due & np.uint64(BANDS - 1)
-            waiting[later, np.uint64(filled[later])] = v
-            filled[later] += np.uint32(1)
-            continue
-        band[v] = _IDLE
-        front[size] = v
-        size += _1
-    return size
 
 
 @compiled
@@ -213,28 +199,3 @@ def _collect(count: np.uint64, apex: Indices, W: Floats, found: np.uint64, reach
         results[1, found] = W[i + SIGMA]
         found += np.uint64((W[i + Y] > 0.0) & (W[i + FROM_LEFT] >= 0.0) & (W[i + FROM_RIGHT] >= 0.0))
     return found
-
-
-@compiled
-def _lower(
-    count: np.uint64, vertex: Indices, value: Floats, origin: Floats, now: np.uint64, per_band: float, least: float,
-    distance: Floats, bend: Floats, band: Indices, waiting: Indices, filled: Indices,
-) -> np.uint64:  # fmt: skip
-    """Take the smaller distance where it is shorter by `least`, and queue the vertex; how many were not queued before.
-
-    Without branches: half of the candidates are no improvement, in no order that a processor could learn.
-    """
-    added = _0
-    for i in range(count):
-        v, new, old = np.uint64(vertex[i]), value[i], distance[np.uint64(vertex[i])]
-        better = new < old - least
-        distance[v] = new if better else old
-        bend[v] = origin[i] if better else bend[v]
-        was = np.uint64(band[v])
-        due = min(min(max(np.uint64(new * per_band), now), now + np.uint64(BANDS - 1)), was)
-        row = due & np.uint64(BANDS - 1)
-        waiting[row, np.uint64(filled[row])] = v
-        filled[row] += np.uint32(better & (was != due))
-        added += np.uint64(better & (was == _IDLE))
-        band[v] = due if better else was
-    return added

@@ -13,7 +13,8 @@ Lengths = npt.NDArray[np.float32]
 Ints = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.uint32]
 
-NONE = 0xFFFFFFFF
+NONE = 0xFFFFFFFF  # no half-edge: a border
+BLIND = 0xFFFFFFFE  # no half-edge either, though the surface goes on
 BLUNT = np.deg2rad(135)  # 115° is exact on milder grids too, but left more outliers on bodies
 
 
@@ -32,7 +33,7 @@ class Surface:
     ring_rim    : (entry,) length of that face's edge opposite the ring's vertex, mesh unit
     ring_edge   : (entry,) that face's half-edge that leaves the ring's vertex
     apex        : (half-edge,) vertex opposite
-    twin        : (half-edge,) the other face's half-edge; NONE at a border, at an edge of three or more faces and
+    twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
                   between faces of opposite orientation
     opening     : (half-edge,) its twin if the angle opposite the twin exceeds a sixth of a turn, else NONE: a vertex
                   at a smaller angle is reached in time through its triangle's other edges
@@ -126,15 +127,17 @@ def _along_a_curve(V: Floats) -> Ints:
 
 
 def _twins(tail: Ints, head: Ints, vertices: int) -> Ints:
-    """(half-edge,) partner across each edge that exactly two faces share in opposite directions, else NONE."""
+    """(half-edge,) partner across each edge that two faces share in opposite directions; NONE at one face, else BLIND."""
     key = np.minimum(tail, head) * vertices + np.maximum(tail, head)
     by_edge = np.argsort(key, kind="stable")
     sorted_key = key[by_edge]
     first = np.flatnonzero(np.diff(sorted_key, prepend=-1) != 0)
-    pair = first[np.diff(first, append=len(key)) == 2]
+    faces = np.diff(first, append=len(key))
+    pair = first[faces == 2]
     a, b = by_edge[pair], by_edge[pair + 1]
     opposed = tail[a] == head[b]
-    twin = np.full(len(tail), NONE)
+    twin = np.full(len(tail), BLIND)
+    twin[by_edge[first[faces == 1]]] = NONE
     twin[a[opposed]], twin[b[opposed]] = b[opposed], a[opposed]
     return twin
 
@@ -151,7 +154,7 @@ def _angles(length: Floats) -> Floats:
 def _bends(angle: Floats, tail: Ints, head: Ints, twin: Ints, vertices: int) -> npt.NDArray[np.uint8]:
     """A shortest path passes through a vertex only if the angle on both sides is at least π."""
     bends = np.bincount(tail, angle, vertices) > 2 * np.pi
-    alone = twin == NONE
+    alone = twin >= BLIND
     bends[tail[alone]] = bends[head[alone]] = True
     return bends.astype(np.uint8)
 
@@ -169,11 +172,11 @@ def _rings(start: Ints, corner: Ints, twin: Ints) -> tuple[Ints, npt.NDArray[np.
         for closed in range(2):
             for q in range(start[v], start[v + 1]):
                 h = corner[q]
-                if seen[h] or (closed == 0 and twin[h] != NONE):
+                if seen[h] or (closed == 0 and twin[h] < BLIND):
                     continue
                 edge[k] = h
                 k += 1
-                while h != NONE and not seen[h]:
+                while h < BLIND and not seen[h]:
                     seen[h] = 1
                     kind[k] = 1
                     edge[k] = h

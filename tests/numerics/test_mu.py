@@ -70,7 +70,8 @@ def test_a_farther_base_is_never_chosen_after_a_nearer_one() -> None:
 
 def test_mu_of_a_pipe_with_three_arms_is_greatest_at_their_tips_and_least_in_the_middle() -> None:
     V, F, _ = shapes.y_pipe()
-    found = from_bases(Surface.of(V, F))
+    surface = Surface.of(V, F)
+    found = mu_from_every_vertex(surface, surface.area)
     tips = np.argsort(found)[-3:]
     radius = np.linalg.norm(V[:, :2], axis=1)
     assert np.all(radius[tips] == radius.max())
