@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from kinetree.tasks.numerics.blocks import add_data, add_ties, conjugate_gradients, tie_energy
+from kinetree.tasks.numerics.blocks import add_data, conjugate_gradients
 from kinetree.tasks.numerics.correspondence import Target, walked
 from kinetree.tasks.numerics.kinematics import deformed, stepped, turned
 from kinetree.tasks.numerics.template import Template
+from kinetree.tasks.numerics.ties import add_ties, tie_energy
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.blocks import strains
 from kinetree.tasks.numerics.deformation import FitSettings, Pose
 from kinetree.tasks.numerics.template import Template
+from kinetree.tasks.numerics.ties import strains
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
 
-from kinetree.tasks.numerics.blocks import add_data, add_ties, conjugate_gradients, strains, tie_energy
+from kinetree.tasks.numerics.blocks import add_data, conjugate_gradients
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.deformation import FitSettings, Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.kinematics import deformed, stepped, turned
 from kinetree.tasks.numerics.template import TemplateSettings, template
+from kinetree.tasks.numerics.ties import add_ties, strains, tie_energy
 
 FEW = TemplateSettings(nodes=80)
 
