@@ -52,7 +52,7 @@ class Target:
     size: float
 
     @classmethod
-    def of(cls, V: Floats, F: npt.NDArray[np.integer[Any]], size: float, samples: int = 3000) -> "Target":
+    def of(cls, V: Floats, F: npt.NDArray[np.integer[Any]], size: float, samples: int = 6000) -> "Target":
         """Prepare a frame.
 
         V, F    : (vertex, xyz) mesh unit · (face, corner) clean

@@ -40,12 +40,12 @@ class FitSettings:
     solves    : conjugate-gradient steps at most
     """
 
-    steps: int = 14
+    steps: int = 10
     stiffness: tuple[float, float] = (0.2, 0.002)
     reach: tuple[float, float] = (0.08, 0.027)
     scale: tuple[float, float] = (0.04, 0.008)
     point: tuple[float, float] = (0.05, 0.002)
-    searches: int = 4
+    searches: int = 3
     solves: int = 30
 
 

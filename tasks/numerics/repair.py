@@ -61,18 +61,15 @@ def tracked(
     last    : the pose of the neighbouring frame
     returns : Tracked; the first way that leaves less than LOST uncovered, else the best of all
     """
-    best: Tracked | None = None
-    for number, attempt in enumerate(attempts(settings or FitSettings())):
-        if attempt.predicted and before is None:
-            continue
-        start = predicted(before, last) if attempt.predicted and before is not None else last
-        pose = fit(template, start, target, attempt.settings).pose
-        share = uncovered(*shape(template, pose), template.F, target)
-        if best is None or share < best.uncovered:
-            best = Tracked(pose, share, number)
+    ways = attempts(settings or FitSettings())
+    best = _taken(template, last, target, ways[0].settings, 0)
+    for number, way in enumerate(ways[1:], start=1):
         if best.uncovered <= LOST:
             break
-    assert best is not None  # the first way needs no prediction
+        if way.predicted and before is None:
+            continue
+        start = last if before is None or not way.predicted else predicted(before, last)
+        best = min(best, _taken(template, start, target, way.settings, number), key=lambda found: found.uncovered)
     return best
 
 
@@ -114,3 +111,9 @@ def repaired(template: Template, found: Sequence[Tracked], targets: Sequence[Tar
             out[t] = min(out[t], again, key=lambda frame: frame.uncovered)
             flagged[t] = out[t].uncovered > LOST
     return out
+
+
+def _taken(template: Template, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracked:
+    """One attempt and what it leaves uncovered."""
+    pose = fit(template, start, target, settings).pose
+    return Tracked(pose, uncovered(*shape(template, pose), template.F, target), number)

@@ -15,11 +15,11 @@ from kinetree.tasks.numerics.ties import strains
 
 Floats = npt.NDArray[np.float64]
 
-YIELD = 0.02  # relative bending at which a tie counts half
+YIELD = 0.03  # relative bending at which a tie counts half
 
 # the passes after the first start from the pose they had, so they search near and once
 PASSES = tuple(
-    FitSettings(6, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1) for last in (0.1, 0.05, 0.03)
+    FitSettings(4, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1) for last in (0.06, 0.03, 0.02)
 )
 
 

@@ -40,7 +40,7 @@ class TemplateSettings:
     finest: float = 0.4
     thick: float = 0.08
     strut: float = 0.15
-    samples: int = 4
+    samples: int = 8
 
 
 @dataclass(frozen=True)
