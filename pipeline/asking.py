@@ -20,9 +20,9 @@ GATHERS = {"one": "", "tuple": " of all", "mapping": " of all", "previous": " be
 def register(app: typer.Typer) -> None:
     """Adds the commands to the command line."""
     app.command(name="config", epilog="Examples: kinetree config > walk.yaml · kinetree config paper-2014")(config_)
-    app.command(epilog='Examples: kinetree why "mesh[frame=3]" walk/ · kinetree why skeleton walk/')(why)
+    app.command(epilog=escape('Examples: kinetree why "mesh[frame=3]" walk/ · kinetree why leaves walk/'))(why)
     app.command(epilog="Examples: kinetree graph · kinetree graph walk/ --format dot | dot -Tsvg > graph.svg")(graph)
-    app.command(epilog='Example: kinetree show "mesh[frame=3]" walk/')(show)
+    app.command(epilog=escape('Example: kinetree show "mesh[frame=3]" walk/'))(show)
     app.command(epilog="Example: kinetree runs walk/")(runs)
     app.command(epilog="Example: kinetree diff 20250301-081500-123ab 20250302-081500-4560c walk/")(diff)
     app.command(epilog="Example: kinetree tasks --json")(tasks)
@@ -34,7 +34,7 @@ def config_(config: Target = None, sets: Set = None) -> None:
     typer.echo(explained(pipeline.config, pipeline.tasks), nl=False)
 
 
-def why(node: Annotated[str, typer.Argument(help="A node, e.g. mesh[frame=3] or connectivity.")], config: Target = None,
+def why(node: Annotated[str, typer.Argument(help=escape("A node, e.g. mesh[frame=3] or connectivity."))], config: Target = None,
         sets: Set = None, as_json: AsJson = False) -> None:  # fmt: skip
     """Say why one node is fresh, stale or waiting, and what it is made from."""
     pipeline = pipeline_of(config, sets=sets)
@@ -70,7 +70,7 @@ def graph(
     typer.echo(draw(drawn, chosen))
 
 
-def show(node: Annotated[str, typer.Argument(help="A node, e.g. mesh[frame=3].")], config: Target = None,
+def show(node: Annotated[str, typer.Argument(help=escape("A node, e.g. mesh[frame=3]."))], config: Target = None,
          sets: Set = None, as_json: AsJson = False) -> None:  # fmt: skip
     """Show what a node holds: schema, shapes, statistics, and how it was made."""
     told = shown(pipeline_of(config, sets=sets), node)

@@ -68,6 +68,12 @@ def test_help_of_every_command_has_an_example(kinetree, command):
     assert f"kinetree {command}" in " ".join(printed.split())
 
 
+@pytest.mark.parametrize("command", ["why", "show"])
+def test_help_writes_a_node_with_its_index(kinetree, command):
+    _, printed, _ = kinetree(command, "--help")
+    assert printed.count("mesh[frame=3]") == 2
+
+
 def test_help_names_every_command_and_the_exit_codes(kinetree):
     code, printed, _ = kinetree("--help")
     assert code == 0
