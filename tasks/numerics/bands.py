@@ -28,7 +28,7 @@ def enter(
             distance[met[k]] = np.inf
         distance[source], bend[source] = 0.0, 0.0
         exact, begin, count, met[0] = -1.0, 0.0, _1, source
-    first, queued = np.uint64(begin * per_band), _0
+    first, queued = np.uint64(max(begin, 0.0) * per_band) if begin < np.inf else _0, _0
     for k in range(count):
         v = np.uint64(met[k])
         if distance[v] >= begin:

@@ -43,7 +43,6 @@ Room = tuple[
 ]  # fmt: skip
 
 BAND = 0.25  # of the mean edge: wider bands settle vertices before their distance is known, narrower ones cost time
-EXACT = 10.0  # mean edges around the source whose distances are exact
 OVERLAP = 2.0  # mean edges of them that are front already: from these all beyond is seen
 UNFOLDINGS = 3  # triangles after the first: each more costs 5 % of time and gains 5 % of accuracy
 
@@ -81,18 +80,24 @@ def workspace(vertices: int, entries: int) -> Room:
 
 
 @compiled
-def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: Room) -> None:
-    """Distances from one source into room[0]; the only state is `room`."""
+def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: Room, exact: float = 0.0) -> None:
+    """Distances from one source into room[0]; the only state is `room`.
+
+    source : vertex in the surface's own numbering
+    edge   : the surface's mean edge, mesh unit
+    radius : mesh unit; what is farther becomes infinite
+    exact  : mean edges around the source in which distances are exact, unless light is lost there at a blind edge
+    """
     start, ring, ring_length, ring_rim, ring_edge, apex, twin, opening, length, bends = mesh
     distance, bend, band, waiting, filled, front, codes, results, reached, W, small, around = room
     distance[:] = np.inf
     band[:] = IDLE
     filled[:] = 0
     per_band, least = 1.0 / (BAND * edge), 1e-9 * edge
-    exact = min(EXACT * edge, radius)
-    light(source, exact, BAND * edge, start, ring, ring_edge, bends, (apex, twin, length), around)
-    exact, now, queued = enter(
-        source, exact, (EXACT - OVERLAP) * edge, per_band, distance, bend, band, waiting, filled, around[-1]
+    limit = min(exact * edge, radius)
+    light(source, limit, BAND * edge, start, ring, ring_edge, bends, (apex, twin, length), around)
+    settled, now, queued = enter(
+        source, limit, (exact - OVERLAP) * edge, per_band, distance, bend, band, waiting, filled, around[-1]
     )
     while queued > _0 and now <= radius * per_band:
         size = advance(now, per_band, distance, band, waiting, filled, front)
@@ -117,14 +122,14 @@ def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, roo
                 found = _collect(count, small[1], W, found, reached, results)
                 count = leave_next(count, twin, W, small[2])
         queued += lower(
-            found, reached, results[0], results[1], now, per_band, least, exact, distance, bend, band, waiting, filled
+            found, reached, results[0], results[1], now, per_band, least, settled, distance, bend, band, waiting, filled
         )
         for i in range(edges):
             v = codes[1, i] >> _32
             reached[i] = codes[1, i] & _LOW
             results[0, i] = distance[v] if bends[v] else bend[v]
         queued += lower(
-            edges, reached, results[2], results[0], now, per_band, least, exact, distance, bend, band, waiting, filled
+            edges, reached, results[2], results[0], now, per_band, least, settled, distance, bend, band, waiting, filled
         )
     for v in range(len(distance)):
         if distance[v] > radius:

@@ -32,7 +32,7 @@ def light(
     met[0], met[-2], met[-1] = source, 1, 0
     distance[source], bend[source], arrival[source], passed[source] = 0.0, 0.0, _NONE, np.inf
     level = 0.0
-    while level <= limit:
+    while level <= limit and level < np.inf:
         following, k = np.inf, _0
         while k < np.uint64(met[-2]):
             v = np.uint64(met[k])

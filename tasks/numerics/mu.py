@@ -19,7 +19,7 @@ class Bases:
     """Vertices spread evenly over a surface, and the fields they were found by.
 
     vertex   : (base,) vertex numbers of the input mesh, in the order of choice: any first few are well spread too
-    distance : (base, vertex) geodesic distance from each base, mesh unit
+    distance : (base, vertex) geodesic distance from each base, mesh unit; not exact around it, which μ would not feel
     cell     : (vertex,) the base nearest to each vertex
     weight   : (base,) area of each base's cell, mesh unit², summing to the surface's area
     """

@@ -11,17 +11,17 @@ import shapes
 import trimesh
 
 from kinetree.pipeline.errors import MeshError
-from kinetree.tasks.numerics.geodesics import geodesic_distance
+from kinetree.tasks.numerics.geodesics import EXACT, geodesic_distance
 from kinetree.tasks.numerics.surface import Surface
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
-def relative_error(V: Floats, F: Ints, source: Ints, exact: Floats) -> Floats:
+def relative_error(V: Floats, F: Ints, source: Ints, exact: Floats, near: float = EXACT) -> Floats:
     """Signed, at vertices more than four mean edges from their source: nearer, one edge's worth is all there is."""
     surface = Surface.of(V, F)
-    found = geodesic_distance(surface, source)
+    found = geodesic_distance(surface, source, exact=near)
     far = exact > 4 * surface.edge
     assert far.any()
     return (found - exact)[far] / exact[far]
@@ -72,7 +72,8 @@ def test_on_a_sphere_error_falls_with_the_edges() -> None:
     for subdivisions in (3, 4, 5):
         V, F = shapes.sphere(subdivisions)
         source = np.arange(12)
-        mean.append(np.abs(relative_error(V, F, source, np.arccos(np.clip(V[source] @ V.T, -1, 1)))).mean())
+        # with no exact part, which would be a smaller share of each finer sphere
+        mean.append(np.abs(relative_error(V, F, source, np.arccos(np.clip(V[source] @ V.T, -1, 1)), near=0.0)).mean())
     assert mean[1] < 0.6 * mean[0]
     assert mean[2] < 0.6 * mean[1]
 
@@ -115,7 +116,7 @@ def test_distance_is_symmetric() -> None:
     far = g > 4 * surface.edge
     error = np.abs(g - g.T)[far] / g[far]
     assert error.mean() < 0.005
-    assert error.max() < 0.04
+    assert error.max() < 0.025
     assert np.all(np.diag(g) == 0)
 
 
@@ -231,9 +232,31 @@ def test_exact_distances_of_another_program_are_met_on_a_rough_body_with_a_sharp
     exact = exact_distances(V, F, source)
     error = np.abs(relative_error(V, F, source, exact))
     assert error.mean() < 0.005
-    assert np.quantile(error, 0.99) < 0.02
+    assert np.quantile(error, 0.99) < 0.015
     surface = Surface.of(V, F)
     assert np.abs(geodesic_distance(surface, source) - exact).max() < 1.5 * surface.edge
+    assert np.allclose(geodesic_distance(surface, source[:3], exact=np.inf), exact[:3], rtol=1e-5)
+
+
+def test_what_is_asked_to_be_exact_is_exact_and_what_lies_beyond_is_not_worse_for_it() -> None:
+    V, F, _ = shapes.y_pipe()
+    surface = Surface.of(V, F)
+    source = np.arange(0, len(V), 97)
+    truth = geodesic_distance(surface, source, exact=np.inf)
+    mean = []
+    for exact in (0.0, 6.0, 12.0):
+        found = geodesic_distance(surface, source, exact=exact)
+        near = truth <= exact * surface.edge
+        assert np.allclose(found[near], truth[near], rtol=1e-5)
+        mean.append(np.abs(found - truth)[truth > 12 * surface.edge].mean())
+    assert mean[0] > mean[1] > mean[2] > 0
+
+
+def test_exact_distances_are_symmetric_and_obey_the_triangle_inequality() -> None:
+    V, F, _ = shapes.y_pipe(arm=12, half_width=3)
+    g = geodesic_distance(Surface.of(V, F), np.arange(len(V)), exact=np.inf)
+    assert np.allclose(g, g.T, rtol=1e-5)
+    assert (g[:, :, None] - (g[:, None, ::7] + g[::7].T[None])).max() < 1e-5 * g.max()
 
 
 @pytest.mark.data

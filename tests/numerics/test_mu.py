@@ -39,7 +39,8 @@ def test_as_many_bases_as_vertices_is_the_sum_over_all() -> None:
 def test_the_first_equation_counts_every_vertex_once() -> None:
     surface = Surface.of(*shapes.flat_grid(7, 5))
     rows = geodesic_distance(surface, np.arange(35))
-    assert np.allclose(mu_from_every_vertex(surface), rows.sum(axis=0), rtol=1e-12)
+    # lengths are float32
+    assert np.allclose(mu_from_every_vertex(surface), rows.sum(axis=0), rtol=1e-6)
 
 
 def test_cells_share_out_the_whole_area() -> None:
