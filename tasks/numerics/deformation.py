@@ -20,6 +20,7 @@ from kinetree.tasks.numerics.ties import add_ties, tie_energy
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+_Pair = tuple[Ints, Ints]  # of the body and of the frame
 
 _ALIKE = 0.5  # matches whose normals have a smaller cosine do not count
 _DAMPING = 1e-4  # of the mean diagonal
@@ -38,6 +39,7 @@ class FitSettings:
     point     : b, what distance counts beside distance from the plane
     searches  : so many steps search for matches among all samples, later ones walk
     solves    : conjugate-gradient steps at most
+    thin      : of the samples of both surfaces every so many are used
     """
 
     steps: int = 10
@@ -47,6 +49,7 @@ class FitSettings:
     point: tuple[float, float] = (0.05, 0.002)
     searches: int = 3
     solves: int = 30
+    thin: int = 2
 
 
 class Pose(NamedTuple):
@@ -104,6 +107,7 @@ def fit(
     settings = settings or FitSettings()
     s = np.ones(len(template.edge)) if stiffness is None else stiffness
     pose, energy, match = start, np.zeros((settings.steps, 2)), None
+    samples = template.sample[:: settings.thin], target.sample[:: settings.thin]
     for i in range(settings.steps):
         share = i / max(settings.steps - 1, 1)
         lam, reach, scale, b = (
@@ -111,20 +115,20 @@ def fit(
             for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point)
         )
         x, n = shape(template, pose)
-        match = _matches(template, target, x, n, None if i < settings.searches else match)
-        rows = _rows(template, target, x, n, match, (reach * template.size, scale * template.size, b))
+        match = _matches(template, target, samples, x, n, None if i < settings.searches else match)
+        rows = _rows(template, target, samples, x, n, match, (reach * template.size, scale * template.size, b))
         pose, energy[i] = _step(template, pose, rows, lam * s, settings.solves)
     return Fitted(pose, energy / template.size**2)
 
 
 def _matches(
-    template: Template, target: Target, x: Floats, n: Floats, last: tuple[Ints, Ints] | None
-) -> tuple[Ints, Ints]:
+    template: Template, target: Target, samples: _Pair, x: Floats, n: Floats, last: _Pair | None
+) -> _Pair:
     """(sample,) the frame's vertex for each of the body's samples · (sample,) the body's vertex for each of the frame's.
 
     x, n : the body now · last : matches to walk from, or None to search
     """
-    mine, theirs = template.sample, target.sample
+    mine, theirs = samples
     y, m = target.V[theirs], target.N[theirs]
     if last is None:
         tree = cKDTree(np.hstack([x[mine], target.beta * n[mine]]), balanced_tree=False)
@@ -134,11 +138,17 @@ def _matches(
 
 
 def _rows(
-    template: Template, target: Target, x: Floats, n: Floats, match: tuple[Ints, Ints], limits: tuple[float, float, float]
+    template: Template,
+    target: Target,
+    samples: _Pair,
+    x: Floats,
+    n: Floats,
+    match: _Pair,
+    limits: tuple[float, float, float],
 ) -> _Rows:
     """Matches nearer than `reach`, weighted (n·m) / (1 + (distance from the plane / scale)²)²; limits: reach, scale, b."""
     reach, scale, b = limits
-    vertex, other = np.concatenate([template.sample, match[1]]), np.concatenate([match[0], target.sample])
+    vertex, other = np.concatenate([samples[0], match[1]]), np.concatenate([match[0], samples[1]])
     r, m = x[vertex] - target.V[other], target.N[other]
     alike = np.einsum("rx,rx->r", n[vertex], m)
     near = (alike > _ALIKE) & (np.einsum("rx,rx->r", r, r) < reach * reach)

@@ -19,7 +19,8 @@ YIELD = 0.03  # relative bending at which a tie counts half
 
 # the passes after the first start from the pose they had, so they search near and once
 PASSES = tuple(
-    FitSettings(4, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1) for last in (0.06, 0.03, 0.02)
+    FitSettings(4, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1)
+    for last in (0.06, 0.03, 0.02)
 )
 
 
