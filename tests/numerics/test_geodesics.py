@@ -116,7 +116,7 @@ def test_distance_is_symmetric() -> None:
     far = g > 4 * surface.edge
     error = np.abs(g - g.T)[far] / g[far]
     assert error.mean() < 0.005
-    assert error.max() < 0.025
+    assert error.max() < 0.02
     assert np.all(np.diag(g) == 0)
 
 
@@ -232,7 +232,7 @@ def test_exact_distances_of_another_program_are_met_on_a_rough_body_with_a_sharp
     exact = exact_distances(V, F, source)
     error = np.abs(relative_error(V, F, source, exact))
     assert error.mean() < 0.005
-    assert np.quantile(error, 0.99) < 0.015
+    assert np.quantile(error, 0.999) < 0.02
     surface = Surface.of(V, F)
     assert np.abs(geodesic_distance(surface, source) - exact).max() < 1.5 * surface.edge
     assert np.allclose(geodesic_distance(surface, source[:3], exact=np.inf), exact[:3], rtol=1e-5)
@@ -271,4 +271,5 @@ def test_exact_distances_are_met_on_a_surfaced_body() -> None:
         exact = exact_distances(V, F, source)
         error = np.abs(relative_error(V, F, source, exact))
         assert error.mean() < 0.005
+        assert error.max() < 0.02
         assert np.abs(geodesic_distance(Surface.of(V, F), source) - exact).max() < 0.02 * exact.mean()
