@@ -8,6 +8,8 @@ import contextlib
 import itertools
 import queue
 import secrets
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -48,6 +50,8 @@ class Launcher:
     submit: Callable[[str, str, tuple[Step, ...]], Future]
     window: int
     """How many parcels may be out at once: enough that no worker waits, few enough that the deepest go first."""
+    is_apart: bool = True
+    """Whether nodes run elsewhere than in the thread that runs the loop."""
 
 
 @contextlib.contextmanager
@@ -71,7 +75,7 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
             yield Launcher(lambda _, url, steps: pool.submit(execute, url, steps), 2 * compute.worker_count)
         else:
             here = SynchronousExecutor()
-            yield Launcher(lambda _, url, steps: here.submit(execute, url, steps), 1)
+            yield Launcher(lambda _, url, steps: here.submit(execute, url, steps), 1, is_apart=False)
 
 
 def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
@@ -81,13 +85,33 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
     """
     loop = _Loop(schedule, launch, watch)
     try:
-        while loop.send() or loop.out:
-            loop.receive()
+        with _interruptible(loop):
+            while loop.send() or loop.out:
+                loop.receive()
         _refuse_rings(schedule)
     except BaseException:
         for future in loop.out.values():
             future.cancel()
+        loop.out.clear()
         raise
+
+
+@contextlib.contextmanager
+def _interruptible(loop: "_Loop") -> Iterator[None]:
+    """Ctrl-C and SIGTERM become something the loop receives, so that it stops where it is at rest.
+
+    Raised wherever the thread happens to be, they can leave a lock of a library held for ever. A node that runs in this
+    very thread is interrupted as usual.
+    """
+    if not loop.launch.is_apart or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, loop.interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
 
 @dataclass
@@ -97,7 +121,7 @@ class _Loop:
     watch: Watch
     out: dict[int, Future] = field(default_factory=dict)
     _parcels: dict[int, list[Entry]] = field(default_factory=dict)
-    _done: "queue.SimpleQueue[tuple[int, Future]]" = field(default_factory=queue.SimpleQueue)
+    _done: "queue.SimpleQueue[tuple[int, Future | None]]" = field(default_factory=queue.SimpleQueue)
     _twins: dict[str, list[Node]] = field(default_factory=dict)
     """Nodes that wait for a parcel under way which computes the same key."""
     _numbers: Iterator[int] = field(default_factory=itertools.count)
@@ -116,9 +140,15 @@ class _Loop:
                 break
         return sent
 
+    def interrupt(self, *_: object) -> None:
+        """Makes the loop stop at what it receives next; safe to call from a signal's handler."""
+        self._done.put((-1, None))
+
     def receive(self) -> None:
         """Waits for one parcel and tells the schedule what became of it."""
         number, future = self._done.get()
+        if future is None:
+            raise KeyboardInterrupt
         del self.out[number]
         parcel = self._parcels.pop(number)
         try:

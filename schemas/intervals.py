@@ -19,9 +19,9 @@ class IntervalsParams(Params):
     threshold: float = Field(default=0.95, ge=-1, le=1)
     """For the fixed rule: C(t) below which to cut; the paper gives no number."""
     high: float = Field(default=2.0, ge=0)
-    """A drop of the correlation begins above this many robust standard deviations of log(1 − C) …"""
+    """A drop of the correlation begins above this many robust standard deviations of log(1 − C)."""
     low: float = Field(default=1.5, ge=0)
-    """… and reaches as far as it stays above this many."""
+    """It reaches as far as it stays above this many."""
     drop: float = Field(default=0.02, ge=0, le=2)
     """And somewhere in it 1 − C must exceed this."""
     minimum: int = Field(default=3, ge=1)
