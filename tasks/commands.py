@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from kinetree.pipeline.config import checked
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.schemas.synth import ContactParams, DroppedParams, SynthParams
@@ -104,10 +105,8 @@ def synth(
 
 def _params(figure: str, **options: Any) -> SynthParams:
     own = figure.endswith((".yaml", ".yml"))
-    try:
-        return SynthParams(figure="" if own else figure, file=str(Path(figure).absolute()) if own else "", **options)
-    except ValueError as error:
-        raise ConfigError(f"synth: {error}") from None
+    named = {"figure": "" if own else figure, "file": str(Path(figure).absolute()) if own else ""}
+    return checked(SynthParams, {**named, **options}, "synth")
 
 
 def _contact(text: str) -> ContactParams:
@@ -120,5 +119,5 @@ def _contact(text: str) -> ContactParams:
 def _dropped(text: str) -> DroppedParams:
     parts = text.split(":")
     if len(parts) != 3 or not all(p.strip().isdigit() for p in parts[1:]):
-        raise ConfigError(f"--drop {text}: write LIMB:BEGIN:END, e.g. hand_r:12:26")
+        raise ConfigError(f"--drop {text}: write LIMB:BEGIN:END, e.g. wrist_r:12:26")
     return DroppedParams(limb=parts[0], begin=int(parts[1]), end=int(parts[2]))

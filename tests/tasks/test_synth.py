@@ -12,6 +12,7 @@ from kinetree.pipeline.files import Files
 from kinetree.pipeline.store import Store
 from kinetree.schemas.source import SourceParams
 from kinetree.schemas.synth import ContactParams, SynthParams
+from kinetree.tasks.commands import synth
 from kinetree.tasks.source import source, surface
 from kinetree.tasks.synth import body, recipe, write_sequence
 
@@ -76,6 +77,22 @@ def test_folder_that_holds_something_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="not an empty folder"):
         write_sequence(SMALL, tmp_path)
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_options_that_cannot_be_are_refused_in_one_line_each(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"^synth\.noise: input should be greater than or equal to 0, got -1\.0$"):
+        synth(noise=-1.0, output=tmp_path / "new")
+    with pytest.raises(ConfigError, match=r"nowhere\.yaml: cannot be read: No such file or directory$"):
+        synth(figure="nowhere.yaml", output=tmp_path / "new")
+    assert not (tmp_path / "new").exists()
+
+
+def test_example_in_the_refusal_of_a_dropped_limb_is_one(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"write LIMB:BEGIN:END, e\.g\. ") as refused:
+        synth(drop=["hand"], output=tmp_path / "new")
+    example = str(refused.value).split("e.g. ")[1].replace(":12:26", ":0:1")
+    synth(frames=2, vertices=300, drop=[example], output=tmp_path / "new")
+    assert json.loads((tmp_path / "new" / "truth.json").read_text())["dropped"]
 
 
 def test_figure_of_ones_own_is_read_from_yaml(tmp_path: Path) -> None:
