@@ -5,7 +5,8 @@
 
 FOLDER holds sequences NAME.npz (vertices, faces, vertex_offsets, face_offsets); where NAME-body.npz and NAME.truth.json
 lie beside them, errors are given in % of the body's height; elsewhere residuals only, in % of the body's size. Seconds
-are those of one core, after a first fit that compiles. --every N refits and scores each Nth frame only (tracking needs
+are those the processor spent, all on one core, after a first fit that compiles. --every N refits and scores each Nth
+frame only (tracking needs
 all). --peer aligns one frame with trimesh's nricp_amberg too and gives the ratio.
 """
 
@@ -60,9 +61,10 @@ def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:
     """Tracked outwards from the reference in both directions."""
     out = [Tracked(at_rest(body), 0.0, 0)] * len(targets)
     for step in (1, -1):
-        before, t = None, start + step
+        before, t, usual = None, start + step, 0.0
         while 0 <= t < len(targets):
-            out[t] = tracked(body, before, out[t - step].pose, targets[t])
+            out[t] = tracked(body, before, out[t - step].pose, targets[t], usual=usual)
+            usual = out[t].uncovered if before is None else min(usual, out[t].uncovered)
             before, t = out[t - step].pose, t + step
     return out
 
@@ -71,17 +73,17 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[Template, li
     """All passes: the template, the frames kept, their poses, uncovered shares, and seconds a frame."""
     body = template(meshes[start].V, meshes[start].F)
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
-    begun = time.perf_counter()
+    begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]
     found = repaired(body, chain(body, targets, start), targets, start)
-    first = (time.perf_counter() - begun) / len(meshes)
+    first = (time.process_time() - begun) / len(meshes)
     kept = sorted({start, *range(0, len(meshes), every)})
     poses = [found[t].pose for t in kept]
-    begun = time.perf_counter()
+    begun = time.process_time()
     for settings in PASSES:
         s = learned(body, poses)
         poses = [fit(body, pose, targets[t], settings, s).pose for t, pose in zip(kept, poses, strict=True)]
-    seconds = first + (time.perf_counter() - begun) / len(kept)
+    seconds = first + (time.process_time() - begun) / len(kept)
     return body, kept, poses, np.array([found[t].uncovered for t in kept]), seconds
 
 
@@ -89,9 +91,9 @@ def peer(meshes: list[Cleaned], body: Template, start: int, seconds: float) -> N
     """One frame by trimesh's nricp_amberg, in the same run."""
     source = trimesh.Trimesh(body.V, body.F, process=False)
     mesh = meshes[start + 1]
-    begun = time.perf_counter()
+    begun = time.process_time()
     found = trimesh.registration.nricp_amberg(source, trimesh.Trimesh(mesh.V, mesh.F, process=False))
-    spent = time.perf_counter() - begun
+    spent = time.process_time() - begun
     error = residuals(np.asarray(found), mesh.V, mesh.F).mean() / body.size * 100
     print(f"    nricp_amberg: {spent:.1f} s for one frame, residual {error:.3f} %: {spent / seconds:.0f} times as long")
 

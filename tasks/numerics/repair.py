@@ -53,18 +53,24 @@ class Tracked(NamedTuple):
 
 
 def tracked(
-    template: Template, before: Pose | None, last: Pose, target: Target, settings: FitSettings | None = None
+    template: Template,
+    before: Pose | None,
+    last: Pose,
+    target: Target,
+    settings: FitSettings | None = None,
+    usual: float = 0.0,
 ) -> Tracked:
     """Fit a frame from its neighbour's pose; if much stays uncovered, try the other ways and take what covers most.
 
     before  : the pose of the neighbour's neighbour, from which to predict; None where there is none
     last    : the pose of the neighbouring frame
-    returns : Tracked; the first way that leaves less than LOST uncovered, else the best of all
+    usual   : the least that any frame on the way here left uncovered: holes of a capture, which no way would cover
+    returns : Tracked; the first way that leaves no more than LOST beyond the usual uncovered, else the best of all
     """
     ways = attempts(settings or FitSettings())
     best = _taken(template, last, target, ways[0].settings, 0)
     for number, way in enumerate(ways[1:], start=1):
-        if best.uncovered <= LOST:
+        if best.uncovered <= usual + LOST:
             break
         if way.predicted and before is None:
             continue
@@ -100,6 +106,7 @@ def repaired(template: Template, found: Sequence[Tracked], targets: Sequence[Tar
     out = list(found)
     flagged = suspects(np.array([frame.uncovered for frame in found]))
     flagged[reference] = False
+    usual = min((frame.uncovered for t, frame in enumerate(found) if t != reference), default=0.0)
     for step in (-1, 1):
         order = range(len(out)) if step == 1 else range(len(out) - 1, -1, -1)
         for t in order:
@@ -107,9 +114,9 @@ def repaired(template: Template, found: Sequence[Tracked], targets: Sequence[Tar
             if not flagged[t] or not 0 <= near < len(out) or out[near].uncovered >= out[t].uncovered:
                 continue
             before = out[far].pose if 0 <= far < len(out) else None
-            again = tracked(template, before, out[near].pose, targets[t])
+            again = tracked(template, before, out[near].pose, targets[t], usual=usual)
             out[t] = min(out[t], again, key=lambda frame: frame.uncovered)
-            flagged[t] = out[t].uncovered > LOST
+            flagged[t] = out[t].uncovered > usual + LOST
     return out
 
 

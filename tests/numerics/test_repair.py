@@ -50,6 +50,12 @@ def test_a_missing_half_is_reported_as_uncovered(body):
     assert found.uncovered > 0.1
 
 
+def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
+    V, F = tube(around=29, along=57)
+    longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
+    assert tracked(body, None, at_rest(body), longer, usual=1.0).attempt == 0
+
+
 def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
     R = [rotation((1, 2, 0), k * 0.3) for k in range(3)]
     steady = [rigid(body, r, k * np.array([1.0, 0, 0])) for k, r in enumerate(R)]
