@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 from scipy.spatial import cKDTree
+
+from kinetree.tasks.numerics.compiled import compiled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -41,7 +42,7 @@ def projected(P: Floats, V: Floats, F: npt.NDArray[np.integer], candidates: int 
     return Projection(*_nearest(P, V, np.ascontiguousarray(F, np.int64), near, start, corner // 3))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _nearest(P: Floats, V: Floats, F: Ints, near: Ints, start: Ints, around: Ints) -> tuple[Ints, Floats, Floats]:
     face, share, distance = np.zeros(len(P), np.int64), np.zeros((len(P), 3)), np.full(len(P), np.inf)
     for i in range(len(P)):
@@ -58,7 +59,7 @@ def _nearest(P: Floats, V: Floats, F: Ints, near: Ints, start: Ints, around: Int
     return face, share, np.sqrt(distance)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _shares(p: Floats, a: Floats, b: Floats, c: Floats) -> tuple[float, float]:
     """Barycentric shares of b and c at the point of the triangle nearest to p."""
     d1 = d2 = d3 = d4 = d5 = d6 = 0.0
