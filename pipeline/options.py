@@ -49,7 +49,7 @@ def pipeline_of(
     told = [f"{key}={_quoted(str(value))}" for key, value in options.items() if value is not None]
     target = config if config is not None else (None if source else here())
     if target is None and not source and store is None:
-        raise ConfigError("nothing to work on: name a config or an output folder, or give --input FOLDER")
+        raise ConfigError("nothing to work on: name a config or an output folder (run and plan also take --input FOLDER)")
     return Pipeline.of(target, sets=[*(sets or ()), *told])
 
 

@@ -116,7 +116,7 @@ def test_without_anything_to_work_on_it_says_what_to_name(kinetree):
     for command in (["run"], ["plan"], ["runs"], ["gc"], ["why", "mesh[0]"], ["show", "mesh[0]"]):
         code, _, complained = kinetree(*command)
         assert (code, complained) == (
-            2, "kinetree: nothing to work on: name a config or an output folder, or give --input FOLDER\n",
+            2, "kinetree: nothing to work on: name a config or an output folder (run and plan also take --input FOLDER)\n",
         )  # fmt: skip
 
 
