@@ -119,8 +119,8 @@ def followed(frames: Sequence[Frame]) -> Ints:
 
 def leaf_scores(frames: Sequence[Frame], truth: Truth) -> str:
     """Frames with exactly the body's tips, swaps along tracks, tracks per tip, margins of persistence."""
-    kept = [f.peaks[f.peaks >= 0.10] for f in frames]
-    below = [f.peaks[f.peaks < 0.10].max(initial=0.0) for f in frames]
+    kept = [f.peaks[f.peaks >= 0.20] for f in frames]
+    below = [f.peaks[f.peaks < 0.20].max(initial=0.0) for f in frames]
     margin = f"persistence: least leaf {min(k.min() for k in kept):.2f}, largest other {max(below):.3f}"
     tracks = followed(frames)
     if truth.tips is None:

@@ -28,9 +28,13 @@ def register(app: typer.Typer) -> None:
     app.command(epilog="Example: kinetree tasks --json")(tasks)
 
 
-def config_(config: Target = None, sets: Set = None) -> None:
+def config_(config: Target = None, sets: Set = None, as_json: AsJson = False) -> None:
     """Print the whole configuration as YAML, every parameter with its value and what it means."""
     pipeline = Pipeline.of(config, sets=sets or ())
+    if as_json:
+        params = {name: block.model_dump(mode="json") for name, block in pipeline.config.params.items()}
+        print_json({"method": pipeline.config.method, **params})
+        return
     typer.echo(explained(pipeline.config, pipeline.tasks), nl=False)
 
 
@@ -115,8 +119,11 @@ def diff(run_a: Annotated[str, typer.Argument(help="A run, as kinetree runs name
     for word, names in (("only in the first", told["only_a"]), ("only in the second", told["only_b"])):
         if names:
             out.print(printable(f"{word}: {brief(names)}"), markup=False)
+    alike: dict[tuple[str, str], list[str]] = {}
     for label, reasons in told["begins"].items():
-        out.print(printable(f"begins at {label}: {'; '.join(reasons)}"), markup=False)
+        alike.setdefault((label.partition("[")[0], "; ".join(reasons)), []).append(label)
+    for (task, why_), labels in alike.items():
+        out.print(printable(f"begins at {labels[0] if len(labels) == 1 else f'{task} ×{len(labels)}'}: {why_}"), markup=False)
     out.print(f"{len(told['changed'])} nodes have other results{': ' + brief(told['changed']) if told['changed'] else ''}",
               markup=False)  # fmt: skip
 

@@ -91,7 +91,19 @@ def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Gr
     params = {name: checked(cls, block(blocks, name), f"{where}: {name}") for name, cls in known.items()}
     output = _folder(blocks, "output", where) or Path("kinetree-output").absolute()
     store = _folder(blocks, "store", where) or output / "store"
+    _refuse_own_input(params, output, where)
     return Config(method, params, output, store, checked(Compute, compute_block(blocks), f"{where}: compute"))
+
+
+def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) -> None:
+    """Results among the user's own files would be lost in them, and a glob would read them as frames."""
+    for name, told in params.items():
+        for keys in told.path_fields():
+            value: Any = told
+            for key in keys:
+                value = getattr(value, key, None)
+            if value and Path(value).absolute() == output:
+                raise ConfigError(f"{where}: output {output} is also {'.'.join((name, *keys))}; name a folder of its own")
 
 
 def with_compute(config: Config, **changes: Any) -> Config:

@@ -59,7 +59,7 @@ def _provenance(record: Record) -> dict[str, Any]:
         "created": record.created,
         "host": record.host,
         "seconds": round(record.seconds, 4),
-        "peak_bytes": record.peak_bytes,
+        "peak_bytes_of_the_process": record.peak_bytes,
         "bytes": record.bytes,
         "params": record.params,
         "inputs": inputs,

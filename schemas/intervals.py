@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
-from kinetree.schemas.dims import INTERVAL, TRANSITION
+from kinetree.schemas.dims import CUE, INTERVAL, TRANSITION
 
 Cue = Literal["correlation", "leaves", "loops", "components", "euler"]
 
@@ -46,6 +46,10 @@ class Intervals(Artifact):
     """How far each transition stands out: robust z score of log(1 − C)."""
     cues: tuple[tuple[str, ...], ...]
     """What made each cut; cut i lies between interval i and the next."""
+    strengths: Annotated[Floats, Array("float64", CUE, TRANSITION)]
+    """How near each cue came to cutting at each transition, by itself: 1 is its threshold. Rows in the order of `cue_names`."""
+    cue_names: tuple[str, ...]
+    """The cues, whether they were allowed to cut or not."""
     threshold: float
     """z, or C for the fixed rule, that a transition had to pass."""
 

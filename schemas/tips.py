@@ -11,7 +11,7 @@ from kinetree.schemas.dims import LEAF, LOOP, PEAK, STATION, XYZ
 class TipsParams(Params):
     """What counts as a tip."""
 
-    threshold: float = Field(default=0.10, gt=0, lt=1)
+    threshold: float = Field(default=0.20, gt=0, lt=1)
     """Share of the range of μ that one must descend from a tip before a higher one is in reach."""
     roundness: float = Field(default=0.05, ge=0, lt=1)
     """A body on which μ varies by less than this share of its maximum is round and has no tips."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.correlation import Correlation
@@ -14,12 +15,13 @@ from kinetree.tasks.numerics import intervals as numerics
 @task()
 def intervals(correlation: Correlation, tips: Mapping[int, Tips], params: IntervalsParams) -> Intervals:
     """Cuts the sequence at sharp drops of the correlation and where limbs join or part for good (2014, Sec. 4)."""
+    cues = _cues(tuple(tips.values()), params.step)
     if params.rule == "fixed":
         found = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
     else:
         found = numerics.intervals(
             correlation.histograms,
-            {name: cue for name, cue in _cues(tuple(tips.values()), params.step).items() if name in params.cues},
+            {name: cue for name, cue in cues.items() if name in params.cues},
             high=params.high,
             low=params.low,
             drop=params.drop,
@@ -32,8 +34,14 @@ def intervals(correlation: Correlation, tips: Mapping[int, Tips], params: Interv
         end=found.end,
         z=found.z,
         cues=found.cues,
+        strengths=np.stack([found.z / max(params.high, 1e-9), *(_strength(cue) for cue in cues.values())]),
+        cue_names=(numerics.CORRELATION, *cues),
         threshold=params.threshold if params.rule == "fixed" else params.high,
     )
+
+
+def _strength(cue: numerics.Cue) -> NDArray[np.float64]:
+    return numerics.sharpness(cue.profile) / cue.least
 
 
 def _cues(tips: tuple[Tips, ...], step: float) -> dict[str, numerics.Cue]:

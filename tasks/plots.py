@@ -22,17 +22,23 @@ LEAF_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 
 
 def correlation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
-    """C(t) over the frames, the cuts with what made them, the intervals shaded in turn (2014, Fig. 5)."""
+    """C(t) with the cuts and what made them, intervals shaded in turn (2014, Fig. 5); below, how near each cue came."""
     series, cut = fetch("correlation"), fetch("intervals")
-    figure, axes = _figure(9.0, 3.6)
+    figure, (axes, below) = _figure(9.0, 6.0, rows=2)
     t = np.array(cut.frames)
+    between = (t[:-1] + t[1:]) / 2
+    for row, name in enumerate(cut.cue_names):
+        below.plot(between, cut.strengths[row], label=name, color=LEAF_COLOURS[row], lw=1, ls=("-", "--", "-.", ":")[row % 4])
+    below.axhline(1.0, color="black", lw=0.6)
+    below.set(xlabel="frame", ylabel="cue / its threshold", xlim=(t[0] - 0.5, t[-1] + 0.5), ylim=(0, None))
+    below.legend(fontsize=7, ncols=len(cut.cue_names))
     for number, (begin, end) in enumerate(zip(cut.begin, cut.end, strict=True)):
         axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color="#0072B2" if number % 2 else "#E69F00", alpha=0.12, lw=0)
-    axes.plot((t[:-1] + t[1:]) / 2, series.correlation, color="black", marker=".", lw=1)
+    axes.plot(between, series.correlation, color="black", marker=".", lw=1)
     for end, cues in zip(cut.end[:-1], cut.cues, strict=True):
         axes.axvline(t[end] + 0.5, color="#D55E00", lw=1)
-        axes.annotate(" + ".join(cues), (t[end] + 0.5, 0.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7)
-    axes.set(xlabel="frame", ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
+        axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.98), xycoords=("data", "axes fraction"), fontsize=7, va="top")
+    axes.set(ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
     count = len(cut.begin)
     axes.set_title(f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
     return figure
@@ -76,12 +82,12 @@ def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None 
         beside.unlink(missing_ok=True)
 
 
-def _figure(width: float, height: float, columns: int = 1) -> "tuple[Figure, Any]":
+def _figure(width: float, height: float, columns: int = 1, rows: int = 1) -> "tuple[Figure, Any]":
     """A figure that belongs to no window, so that no display is needed."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
-    return figure, figure.subplots(1, columns)
+    return figure, figure.subplots(rows, columns)
 
 
 def _view(bodies: list[Floats], up: int | None) -> Floats:

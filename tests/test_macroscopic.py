@@ -8,6 +8,9 @@ import pytest
 import trimesh
 
 from kinetree.pipeline import Pipeline
+from kinetree.schemas.synth import SynthParams
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.synth import body, recipe
 
 BALL = trimesh.creation.icosphere(subdivisions=2)
 
@@ -25,6 +28,15 @@ def written(tmp_path: Path, *meshes: trimesh.Trimesh) -> dict[str, Any]:
     return {"input": str(tmp_path / "scans")}
 
 
+def limbs_swapped(pipeline: Pipeline, made: Body) -> int:
+    """How many times a leaf goes over to another limb's true end."""
+    leaves: Any = pipeline.artifact("leaves")
+    ends = [n for n, joint in enumerate(made.truth()["joints"]) if joint["kind"] == "tip" and "heel" not in joint["name"]]
+    away = np.linalg.norm(leaves.positions[:, :, None] - made.X[:, ends][None], axis=3)
+    nearest = [row[leaves.rows[i] >= 0].argmin(axis=1) for i, row in enumerate(away)]
+    return sum(int((np.diff(row) != 0).sum()) for row in nearest)
+
+
 def said(pipeline: Pipeline) -> str:
     return "\n".join(f"{node}: {text}" for node, text in pipeline.remarks())
 
@@ -39,6 +51,8 @@ def test_hand_on_the_hip_is_an_interval_of_its_own_and_the_hand_comes_back_as_it
     kept = leaves.kept  # type: ignore[attr-defined]
     assert kept[0].sum() == kept[2].sum() == 5
     assert kept[0].tolist() == kept[2].tolist()
+    assert kept[1].sum() == 4, "the elbow of the arm on the hip is no leaf"
+    assert limbs_swapped(pipeline, body(recipe(SynthParams(**synth)))) == 0
     assert "leaf" in said(pipeline)
     assert "3 intervals" in said(pipeline)
 

@@ -154,7 +154,7 @@ def steps(profile: Floats, least: float) -> Flags:
     returns : (transition,) True at the sharpest transition of each run
     """
     cuts = np.zeros(max(len(profile) - 1, 0), dtype=np.bool_)
-    sharp = np.abs(np.diff(profile, axis=0)).max(axis=1, initial=0.0)
+    sharp = sharpness(profile)
     lasting = np.zeros(len(cuts))
     for t in range(len(cuts)):
         before = np.median(profile[max(t + 1 - _WINDOW, 0) : t + 1], axis=0)
@@ -163,6 +163,15 @@ def steps(profile: Floats, least: float) -> Flags:
         top = a + int(np.argmax(sharp[a:b]))
         cuts[top] = 0.5 * (sharp[top] + lasting[top]) >= least
     return cuts
+
+
+def sharpness(profile: Floats) -> Floats:
+    """How far a profile moves at each transition: the largest change of any rank.
+
+    profile : (frame, rank) as for `steps`
+    returns : (transition,) in the profile's unit
+    """
+    return np.abs(np.diff(profile, axis=0)).max(axis=1, initial=0.0)
 
 
 def _runs(flags: Flags) -> Ints:

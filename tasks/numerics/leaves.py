@@ -28,12 +28,12 @@ class Leaves(NamedTuple):
     level: Floats
 
 
-def leaves(mu: Floats, F: npt.NDArray[np.integer], threshold: float = 0.10, roundness: float = 0.05) -> Leaves:
+def leaves(mu: Floats, F: npt.NDArray[np.integer], threshold: float = 0.20, roundness: float = 0.05) -> Leaves:
     """Local maxima of μ with persistence of at least `threshold` · (max μ − min μ).
 
     mu        : (vertex,) finite at all vertices with a face, any unit
     F         : (face, corner)
-    threshold : tips of free limbs have 0.3 and more, the elbow of an arm whose hand rests on the hip less than 0.1
+    threshold : tips of free limbs have 0.25 and more; the elbow of an arm whose hand rests on the hip has up to 0.18
     roundness : a body on which μ varies by less than this share of its maximum is round and has no leaves
     returns   : Leaves; the highest maximum of each component has that component's whole range as its persistence
     """

@@ -324,7 +324,7 @@ def test_show_tells_schema_shapes_statistics_and_provenance(kinetree, walked):
     found = told(kinetree("show", "mesh[1]", walked, "--json")[1])
     assert found["node"] == "mesh[frame=1]"
     assert found["arrays"]["vertices"]["shape"] == [4, 3]
-    assert {"key", "code", "versions", "seconds", "peak_bytes", "inputs", "params"} <= set(found["made"])
+    assert {"key", "code", "versions", "seconds", "peak_bytes_of_the_process", "inputs", "params"} <= set(found["made"])
 
 
 def test_show_of_what_was_not_computed_tells_its_schema(kinetree, scans):

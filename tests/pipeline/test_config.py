@@ -356,3 +356,10 @@ def test_compute_preset_is_one_of_those_there_are():
 def test_workers_default_to_the_cores_this_process_may_use():
     assert Compute().worker_count == len(os.sched_getaffinity(0))
     assert Compute(workers=7).worker_count == 7
+
+
+def test_output_among_the_users_own_files_is_refused(tmp_path):
+    from kinetree.pipeline import Pipeline
+
+    with pytest.raises(ConfigError, match=r"is also source\.input; name a folder of its own"):
+        Pipeline.of({"source": {"input": str(tmp_path)}, "output": str(tmp_path)})

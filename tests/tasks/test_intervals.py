@@ -46,7 +46,10 @@ def test_drop_that_lasts_cuts_and_the_cue_is_named() -> None:
 def test_lost_leaf_cuts_where_the_correlation_is_blind_unless_it_may_not() -> None:
     seen = {n: tip(1.0, 0.5, 0.4 if n < 6 else 0.05) for n in range(12)}
     assert intervals(series(*[0] * 12), seen, IntervalsParams()).cues == (("leaves",),)
-    assert intervals(series(*[0] * 12), seen, IntervalsParams(cues=("correlation",))).cues == ()
+    silenced = intervals(series(*[0] * 12), seen, IntervalsParams(cues=("correlation",)))
+    assert silenced.cues == ()
+    leaves = silenced.strengths[silenced.cue_names.index("leaves")]
+    assert np.flatnonzero(leaves >= 1).tolist() == [5], "a cue that may not cut still tells how near it came"
 
 
 def test_fixed_rule_cuts_at_the_threshold_and_nowhere_else() -> None:

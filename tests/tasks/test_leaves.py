@@ -25,7 +25,7 @@ def cut(*ends: int) -> Intervals:
     begin = [0, *(e + 1 for e in ends[:-1])]
     return Intervals(
         frames=tuple(range(FRAMES)), begin=np.array(begin), end=np.array(ends), z=np.zeros(FRAMES - 1),
-        cues=(("leaves",),) * (len(ends) - 1), threshold=2.0,
+        cues=(("leaves",),) * (len(ends) - 1), strengths=np.zeros((1, FRAMES - 1)), cue_names=("leaves",), threshold=2.0,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from kinetree.tasks.numerics.synth.body import Body
 from kinetree.tasks.numerics.synth.figures import Figure
 from kinetree.tasks.numerics.synth.implicit import values
+from kinetree.tasks.numerics.synth.skins import Skin
 
 KNEE = {
     "name": "knee",
@@ -66,3 +67,10 @@ def test_noise_leaves_the_fixed_faces_alone():
     noisy, clean = knee(connectivity="fixed", noise=0.002), knee(connectivity="fixed")
     np.testing.assert_array_equal(noisy.frame(4)[1], clean.frame(4)[1])
     assert not np.array_equal(noisy.frame(4)[0], clean.frame(4)[0])
+
+
+def test_weights_of_every_vertex_sum_to_one_and_none_is_negative():
+    skin = knee().skin
+    assert isinstance(skin, Skin)
+    assert skin.weights.min() >= 0
+    assert skin.weights.sum(axis=1) == pytest.approx(np.ones(len(skin.V)))
