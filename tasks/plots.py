@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 Fetch = Callable[..., Any]
 """Gives the artifact of a task at an index, as `Pipeline.artifact` does."""
 FORMATS = (".png", ".svg", ".pdf")
+BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 LEAF_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 """Okabe and Ito's eight, which the colour-blind can tell apart."""
 
@@ -37,7 +38,7 @@ def correlation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figu
     axes.plot(between, series.correlation, color="black", marker=".", lw=1)
     for end, cues in zip(cut.end[:-1], cut.cues, strict=True):
         axes.axvline(t[end] + 0.5, color="#D55E00", lw=1)
-        axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.98), xycoords=("data", "axes fraction"), fontsize=7, va="top")
+        axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.5), xycoords=("data", "axes fraction"), fontsize=7)
     axes.set(ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
     count = len(cut.begin)
     axes.set_title(f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
@@ -138,7 +139,7 @@ def _leaves(axes: "Axes", followed: Artifact, frame: int, view: Floats) -> None:
             seen = told.rows[leaf, at] >= 0
             colour = LEAF_COLOURS[leaf % len(LEAF_COLOURS)]
             axes.plot(x, y, "o", ms=7, color=colour if seen else "none", mec=colour if not seen else "white")
-            axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour)
+            axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, bbox=BEHIND)
 
 
 def _range(x: NDArray[np.float64]) -> tuple[float, float]:
