@@ -23,10 +23,11 @@ from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
+from kinetree.pipeline.layout import Given
 from kinetree.pipeline.node import Node, label, parse
 from kinetree.pipeline.output import write_config, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
-from kinetree.pipeline.schedule import Given, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact, Index
 

@@ -9,22 +9,20 @@ import heapq
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
 from kinetree.pipeline.errors import DamagedArtifactError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
-from kinetree.pipeline.node import Node, label, project
+from kinetree.pipeline.layout import Given, Layout, T
+from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Reason, Recall, Work, differences, never_ran
 from kinetree.pipeline.store import Record, Store
-from kinetree.pipeline.task import Argument, Space
+from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Index, Params
 
-T = TypeVar("T")
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")
-Given = Mapping[str, Mapping[Index, Artifact]]
-"""What the origins found, by task name and index."""
 
 
 @dataclass
@@ -70,6 +68,7 @@ class Schedule:
         self.force = frozenset(force)
         self.recall = recall
         self.entries: dict[Node, Entry] = {}
+        self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
         self.code = {task.name: code_digest(task.module) for task in graph.tasks}
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
@@ -89,7 +88,7 @@ class Schedule:
             if task.is_origin:
                 self._accept(task)
                 continue
-            indices, blocking = self._indices(task.over)
+            indices, blocking = self._layout.indices(task.over)
             self.blocked[task.name] = blocking
             for node in (Node(task.name, index) for index in indices):
                 if node not in self.entries:
@@ -208,30 +207,6 @@ class Schedule:
                 entry.artifact = artifact_digest(artifact)
                 self.entries[node] = entry
 
-    def _indices(self, space: Space) -> tuple[list[Index], tuple[Node, ...]]:
-        """The known indices of a space, and the nodes that must be computed before the rest is known."""
-        known: list[Index] = [()]
-        blocking: list[Node] = []
-        for depth in range(1, len(space) + 1):
-            longer: list[Index] = []
-            for prefix in known:
-                members = self._members(space[:depth], prefix)
-                if isinstance(members, Node):
-                    blocking.append(members)
-                else:
-                    longer.extend((*prefix, member) for member in members)
-            known = longer
-        return known, tuple(dict.fromkeys(blocking))
-
-    def _members(self, space: Space, prefix: Index) -> Sequence[int] | Node:
-        """Members of a space's last dimension below a prefix, or the node that has to tell them."""
-        opener = self.graph.openers[space]
-        if opener.is_origin and opener.over == space:
-            return sorted(i[-1] for i in self.given[opener.name] if i[:-1] == prefix)
-        node = Node(opener.name, project(prefix, space[:-1], opener.over))
-        members = self._ask(node, lambda value: value.members("/".join(space), prefix))
-        return node if members is None else members
-
     def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
         """What an opener or a traversal answers, None while it is not there (or no longer readable)."""
         entry = self.entries.get(node)
@@ -248,7 +223,7 @@ class Schedule:
         blocking: list[Node] = []
         inputs: list[tuple[Argument, tuple[Node, ...]]] = []
         for argument in entry.task.arguments:
-            nodes, blocked = self._read(entry, argument)
+            nodes, blocked = self._layout.reads(entry.task, entry.node.at, argument)
             inputs.append((argument, nodes))
             blocking.extend(blocked)
         wanted = blocking or [node for _, nodes in inputs for node in nodes]
@@ -274,36 +249,6 @@ class Schedule:
             if node not in self.entries:
                 name = label(node, self.graph.by_name[node.task].over)
                 raise GraphError(f"{entry.label} ({entry.task.where}) reads {name}, which does not exist")
-
-    def _read(self, entry: Entry, argument: Argument) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
-        """The nodes an argument reads, and those that block saying so."""
-        task, index = entry.task, entry.node.at
-        writer = self.graph.writers[argument.artifact]
-        if argument.form == "previous":
-            return self._previous(entry)
-        if argument.form == "one":
-            return (Node(writer.name, project(index, task.over, writer.over)),), ()
-        space = self.graph.gathered_space(task, argument)
-        shared = tuple(d for d in space if d in task.over)
-        here = project(index, task.over, shared)
-        found, blocking = self._indices(space)
-        mine = [i for i in found if project(i, space, shared) == here]
-        return tuple(Node(writer.name, project(i, space, writer.over)) for i in mine), blocking
-
-    def _previous(self, entry: Entry) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
-        assert entry.task.along is not None  # a declaration without it was refused
-        orderer = self.graph.writers[entry.task.along]
-        node = Node(orderer.name, project(entry.node.at, entry.task.over, orderer.over))
-        answer = self._ask(node, lambda order: (order.previous(entry.node.at[-1]),))
-        if answer is None:
-            return (), (node,)
-        (member,) = answer
-        if member is None:
-            return (), ()
-        before = Node(entry.task.name, (*entry.node.at[:-1], member))
-        if before not in self.entries:
-            raise GraphError(f"{entry.label}: {entry.task.along.__name__} puts {label(before, entry.task.over)} before it")
-        return (before,), ()
 
     def _settle_all(self, nodes: Iterable[Node]) -> list[Node]:
         """Settles nodes whose inputs are all there, and on from those that turn out fresh; returns these."""

@@ -1,0 +1,86 @@
+"""Which nodes there are and what they read, as far as the artifacts that open spaces and order traversals are known."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from kinetree.pipeline.errors import GraphError
+from kinetree.pipeline.graph import AnyTask, Graph
+from kinetree.pipeline.node import Node, label, project
+from kinetree.pipeline.task import Argument, Space
+from kinetree.schemas.array import Artifact, Index
+
+T = TypeVar("T")
+Given = Mapping[str, Mapping[Index, Artifact]]
+"""What the origins found, by task name and index."""
+
+
+class Ask(Protocol):
+    """Puts a question to a node's artifact."""
+
+    def __call__(self, node: Node, question: Callable[[Artifact], T], /) -> T | None:
+        """The answer; None while the artifact is not there."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A graph over one sequence; `ask` and `exists` tell what a schedule knows by now."""
+
+    graph: Graph
+    given: Given
+    ask: Ask
+    exists: Callable[[Node], bool]
+
+    def indices(self, space: Space) -> tuple[list[Index], tuple[Node, ...]]:
+        """The known indices of a space, and the nodes that must be computed before the rest is known."""
+        known: list[Index] = [()]
+        blocking: list[Node] = []
+        for depth in range(1, len(space) + 1):
+            longer: list[Index] = []
+            for prefix in known:
+                members = self._members(space[:depth], prefix)
+                if isinstance(members, Node):
+                    blocking.append(members)
+                else:
+                    longer.extend((*prefix, member) for member in members)
+            known = longer
+        return known, tuple(dict.fromkeys(blocking))
+
+    def reads(self, task: AnyTask, index: Index, argument: Argument) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
+        """The nodes that an argument of a task reads at an index, and those that block saying so."""
+        writer = self.graph.writers[argument.artifact]
+        if argument.form == "previous":
+            return self._previous(task, index)
+        if argument.form == "one":
+            return (Node(writer.name, project(index, task.over, writer.over)),), ()
+        space = self.graph.gathered_space(task, argument)
+        shared = tuple(d for d in space if d in task.over)
+        here = project(index, task.over, shared)
+        found, blocking = self.indices(space)
+        mine = [i for i in found if project(i, space, shared) == here]
+        return tuple(Node(writer.name, project(i, space, writer.over)) for i in mine), blocking
+
+    def _members(self, space: Space, prefix: Index) -> Sequence[int] | Node:
+        """Members of a space's last dimension below a prefix, or the node that has to tell them."""
+        opener = self.graph.openers[space]
+        if opener.is_origin and opener.over == space:
+            return sorted(i[-1] for i in self.given[opener.name] if i[:-1] == prefix)
+        node = Node(opener.name, project(prefix, space[:-1], opener.over))
+        members = self.ask(node, lambda value: value.members("/".join(space), prefix))
+        return node if members is None else members
+
+    def _previous(self, task: AnyTask, index: Index) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
+        assert task.along is not None  # a declaration without it was refused
+        orderer = self.graph.writers[task.along]
+        node = Node(orderer.name, project(index, task.over, orderer.over))
+        answer = self.ask(node, lambda order: (order.previous(index[-1]),))
+        if answer is None:
+            return (), (node,)
+        (member,) = answer
+        if member is None:
+            return (), ()
+        before = Node(task.name, (*index[:-1], member))
+        if not self.exists(before):
+            here, there = label(Node(task.name, index), task.over), label(before, task.over)
+            raise GraphError(f"{here}: {task.along.__name__} puts {there} before it")
+        return (before,), ()
