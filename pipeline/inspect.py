@@ -29,6 +29,7 @@ from kinetree.pipeline.output import write_config, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
+from kinetree.pipeline.told import Difference, RunsTold, RunTold, html_table
 from kinetree.schemas.array import Artifact, Index
 
 
@@ -63,14 +64,9 @@ class Pipeline:
         return f"Pipeline({self.config.method}: {names}; output {self.config.output}, store {self.store.url})"
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{html.escape(task.name)}</td><td>{html.escape('/'.join(task.over))}</td>"
-            f"<td>{html.escape(task.summary)}</td><td>{html.escape(task.paper)}</td></tr>"
-            for task in self.tasks.tasks
-        )
-        head = "".join(f"<th>{name}</th>" for name in ("task", "per", "what", "paper"))
-        where = f"output {self.config.output}, store {self.store.url}"
-        return f"<p>{html.escape(where)}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        rows = [(task.name, "/".join(task.over), task.summary, task.paper) for task in self.tasks.tasks]
+        where = html.escape(f"output {self.config.output}, store {self.store.url}")
+        return f"<p>{where}</p>{html_table(('task', 'per', 'what', 'paper'), rows)}"
 
     def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Plan:
         """Every node with its state and the reason for it; looks at the input, computes nothing."""
@@ -94,7 +90,7 @@ class Pipeline:
         until: Iterable[str] = (),
         force: Iterable[str] = (),
         listeners: Iterable[Listener] = (),
-    ) -> dict[str, Any]:
+    ) -> RunTold:
         """Runs what is not fresh; returns the content of run.json and the run's name. Failed nodes are told, not raised.
 
         client : a `distributed.Client` to run on; None runs where the configuration says
@@ -122,7 +118,7 @@ class Pipeline:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
             self._close(opened, schedule, account, status, seconds)
-        return {"run": opened["name"], **summary(account, status, seconds)}
+        return RunTold({"run": opened["name"], **summary(account, status, seconds)})
 
     def graph(self, *, expanded: bool = False) -> "nx.DiGraph[str]":
         """The graph of tasks, or expanded of nodes; each node's `data` is a TaskPlan or Planned, edges name arguments."""
@@ -169,13 +165,13 @@ class Pipeline:
         whole = [e for e in schedule.entries.values() if not e.task.over and e.artifact is not None and not e.task.is_origin]
         return [(e.label, text) for e in whole for text in schedule.value(e.node).remarks()]
 
-    def runs(self) -> list[dict[str, Any]]:
+    def runs(self) -> RunsTold:
         """Every run on record in this store, oldest first."""
-        return History(self.store, str(self.config.output)).runs()
+        return RunsTold(History(self.store, str(self.config.output)).runs())
 
-    def diff(self, run_a: str, run_b: str) -> dict[str, Any]:
+    def diff(self, run_a: str, run_b: str) -> Difference:
         """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
-        return difference(self.store, self.store.run(run_a), self.store.run(run_b))
+        return Difference(difference(self.store, self.store.run(run_a), self.store.run(run_b)))
 
     def _go(self, schedule: Schedule, watch: Watch, client: Any) -> None:
         """Starts workers only where there is something to run."""

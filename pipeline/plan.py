@@ -1,6 +1,5 @@
 """A plan: every node with its state and the reason for it, as text, as a table in a notebook, as JSON."""
 
-import html
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from typing import Any, Literal
 
 from kinetree.pipeline.reason import Reason
 from kinetree.pipeline.schedule import Entry, Schedule
+from kinetree.pipeline.told import html_table
 
 PlanState = Literal["fresh", "stale", "waits"]
 
@@ -111,14 +111,9 @@ class Plan:
         return "\n".join(map(str, self.tasks))
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{html.escape(t.task)}</td><td>{html.escape(t.over)}</td>"
-            + "".join(f"<td>{t.states.get(s, 0)}</td>" for s in ("fresh", "stale", "waits"))
-            + f"<td>{html.escape('; '.join(t.reasons))}</td></tr>"
-            for t in self.tasks
-        )
-        head = "".join(f"<th>{name}</th>" for name in ("task", "over", "fresh", "stale", "waits", "why"))
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        states = ("fresh", "stale", "waits")
+        rows = [(t.task, t.over, *(str(t.states.get(s, 0)) for s in states), "; ".join(t.reasons)) for t in self.tasks]
+        return html_table(("task", "over", *states, "why"), rows)
 
 
 def _planned(schedule: Schedule, entry: Entry) -> Planned:

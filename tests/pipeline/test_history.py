@@ -1,8 +1,11 @@
 """Runs on record: what they used, where two of them differ, and why a node would run again."""
 
+import json
+
 import pytest
 
 from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.pipeline.told import RunsTold
 
 
 def why(toys, node, **blocks):
@@ -147,3 +150,15 @@ def test_a_run_nobody_knows_is_refused(toys):
     toys.run(until=("points",))
     with pytest.raises(UnknownNodeError, match="no run 'yesterday'"):
         toys.pipeline().diff("yesterday", "today")
+
+
+def test_what_is_told_reads_well_and_is_still_plain(toys):
+    first, second = toys.run().told, toys.run(smooth={"grain": 20.0}).told
+    assert repr(first).startswith(f"{first['run']} done: ")
+    assert json.loads(json.dumps(first)) == dict(first)
+    runs = toys.pipeline().runs()
+    assert repr(runs).splitlines()[1].startswith(first["run"])
+    assert runs._repr_html_().count("<tr>") == 1 + len(runs)
+    told = toys.pipeline().diff(first["run"], second["run"])
+    assert "begins at smooth[frame=0]: params: grain 10.0 → 20.0" in repr(told)
+    assert "<script>" not in RunsTold([{"name": "<script>"}])._repr_html_()

@@ -1,0 +1,49 @@
+"""What a run, the list of runs and a comparison tell: plain dictionaries and lists that read well when they are shown."""
+
+import html
+from collections.abc import Sequence
+from typing import Any
+
+RUN_COLUMNS = ("name", "status", "ran", "fresh", "failed", "seconds", "output")
+
+
+class RunTold(dict[str, Any]):
+    """The content of run.json and the run's name; shown as one line and its failures."""
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {name}" for name, count in self["nodes"].items() if count or name in ("ran", "fresh"))
+        lines = [f"{self['run']} {self['status']}: {counts} in {self['seconds']:.1f} s"]
+        return "\n".join(lines + [f"  {f['node']}: {f['error']}: {f['message']}" for f in self["failures"]])
+
+
+class RunsTold(list[dict[str, Any]]):
+    """The runs on record; shown as a table, one line a run."""
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """The cells of the table."""
+        told = [{**run, **run.get("counts", {})} for run in self]
+        return [tuple(str(run.get(column, "")) for column in RUN_COLUMNS) for run in told]
+
+    def __repr__(self) -> str:
+        return "\n".join("  ".join(row) for row in [RUN_COLUMNS, *self.rows()])
+
+    def _repr_html_(self) -> str:
+        return html_table(RUN_COLUMNS, self.rows())
+
+
+class Difference(dict[str, Any]):
+    """What differs between two runs; shown as where it begins and how many nodes it reached."""
+
+    def __repr__(self) -> str:
+        lines = [f"{self['a']} → {self['b']}: {len(self['changed'])} nodes have other results"]
+        lines += [f"  begins at {node}: {'; '.join(reasons)}" for node, reasons in self["begins"].items()]
+        for word, names in (("only in the first", self["only_a"]), ("only in the second", self["only_b"])):
+            lines += [f"  {word}: {len(names)} nodes"] if names else []
+        return "\n".join(lines)
+
+
+def html_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table for a notebook, every cell escaped."""
+    top = "".join(f"<th>{html.escape(cell)}</th>" for cell in head)
+    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
