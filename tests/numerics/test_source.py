@@ -1,7 +1,6 @@
 """Laws of listing and of packed sequences: natural order, frames as they were stacked, the words of every refusal."""
 
 import os
-import struct
 
 import numpy as np
 import pytest
@@ -13,17 +12,6 @@ from kinetree.tasks.numerics.source import Frames, mesh_files, natural_order, re
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [7, 7, 7]], dtype=float)  # nobody refers to the last one
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
-
-
-def ply(V=V, F=F, form="binary_little_endian", claimed=None):
-    mark = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}[form]
-    head = f"ply\nformat {form} 1.0\nelement vertex {claimed or len(V)}\n" + "".join(f"property double {x}\n" for x in "xyz")
-    head += f"element face {len(F)}\nproperty list uchar int vertex_indices\nend_header\n"
-    if form == "ascii":
-        rows = [" ".join(map(repr, map(float, v))) for v in V] + [" ".join(map(str, [len(f), *f])) for f in F]
-        return (head + "\n".join(rows) + "\n").encode()
-    faces = b"".join(struct.pack(f"{mark}B{len(f)}i", len(f), *map(int, f)) for f in F)
-    return head.encode() + np.asarray(V).astype(f"{mark}f8").tobytes() + faces
 
 
 def written(tmp_path, name, content):
@@ -103,7 +91,7 @@ def test_several_formats_are_refused_with_counts_and_a_pattern(tmp_path):
 
 
 def test_single_file_is_refused_as_a_sequence(tmp_path):
-    path = written(tmp_path, "body.ply", ply())
+    path = written(tmp_path, "body.ply", b"one frame, whatever is in it")
     with pytest.raises(SourceError, match=r"body.ply: one file, not a sequence; give the folder"):
         mesh_files(path)
 
