@@ -1,0 +1,21 @@
+"""The reference mesh in one frame, and how far it is to be believed there (2014, Sec. 5.3)."""
+
+from typing import Annotated
+
+from kinetree.schemas.array import Array, Artifact, Floats
+from kinetree.schemas.dims import VERTEX, XYZ
+
+
+class Alignment(Artifact):
+    """Where every vertex of the reference mesh is in this frame."""
+
+    vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
+    """Position of every vertex of the reference mesh."""
+    residual: Annotated[Floats, Array("float64", VERTEX, unit="length")]
+    """Distance of every vertex to the frame's surface, point to triangle; 0 for fixed connectivity."""
+    stretch: Annotated[Floats, Array("float64", VERTEX)]
+    """Length of the edges around every vertex against their length in the reference."""
+    trust: Annotated[Floats, Array("float64", VERTEX)]
+    """Weight of every vertex in later steps, 1 where it is to be believed, 0 where it is not."""
+    uncovered: float
+    """Share of the frame's surface that the body does not explain."""

@@ -1,0 +1,30 @@
+"""The one mesh that follows the body, and the order in which frames are reached from it (2014, Sec. 5.3)."""
+
+from typing import Annotated
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.dims import CORNER, FACE, FRAME, VERTEX, XYZ
+
+
+class Reference(Artifact):
+    """The reference mesh, from which frame it is, and before which frame each frame is reached."""
+
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    frame: int
+    """Source frame number of the reference."""
+    vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
+    """Its vertices, as its cleaned mesh has them."""
+    faces: Annotated[Ints, Array("int32", FACE, CORNER)]
+    """Its faces."""
+    size: float
+    """Root of its area, length: what every length of the alignment is relative to."""
+    score: Annotated[Floats, Array("float64", FRAME)]
+    """How unfit each frame is as the reference, lower is better."""
+    before: Annotated[Ints, Array("int32", FRAME)]
+    """Position of the frame from which each frame is reached, −1 for the reference."""
+
+    def previous(self, member: int) -> int | None:
+        """The frame from which this one is reached; None for the reference."""
+        at = int(self.before[self.frames.index(member)])
+        return None if at < 0 else self.frames[at]
