@@ -12,7 +12,7 @@ from kinetree.pipeline.files import Files
 from kinetree.pipeline.store import Store
 from kinetree.schemas.source import SourceParams
 from kinetree.schemas.synth import ContactParams, SynthParams
-from kinetree.tasks.commands import synth
+from kinetree.tasks.commands.synth import synth
 from kinetree.tasks.source import source, surface
 from kinetree.tasks.synth import body, recipe, write_sequence
 

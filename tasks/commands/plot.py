@@ -1,0 +1,51 @@
+"""`kinetree plot`: pictures of what a run found."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks.plots import WHAT, draw
+
+EXAMPLES = "Examples: kinetree plot walk/ correlation -o correlation.pdf · kinetree plot walk/ mu --frames 0,12,30"
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to the command line."""
+    app.command(epilog=EXAMPLES)(plot)
+
+
+def plot(
+    run: Annotated[str, typer.Argument(metavar="RUN", help="A configuration or the output folder of a run.")],
+    what: Annotated[str, typer.Argument(metavar="WHAT", help=f"One of {', '.join(sorted(WHAT))}.")],
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="File: .png, .svg or .pdf; default: WHAT.png.")] = None,
+    frames: Annotated[
+        str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw; default: four across the sequence.")
+    ] = "",
+    up: Annotated[str | None, typer.Option("--up", help="Axis that points up: x, y or z; default: guessed.")] = None,
+) -> None:
+    """Draw what a run found: correlation, C(t) with its cuts; mu, the integral of geodesic distance with the leaves."""
+    pipeline = Pipeline.of(run)
+    schedule = pipeline.schedule()
+    known = sorted(node.at[0] for node in schedule.entries if node.task == "source")
+    path = output or Path(f"{what}.png")
+    draw(what, lambda name, **index: pipeline.artifact(name, within=schedule, **index), _wanted(frames, known), path, _axis(up))
+    typer.echo(str(path))
+
+
+def _axis(up: str | None) -> int | None:
+    if up is not None and up not in ("x", "y", "z"):
+        raise ConfigError(f"--up {up}: write x, y or z")
+    return None if up is None else "xyz".index(up)
+
+
+def _wanted(text: str, known: list[int]) -> list[int]:
+    """The frames that a text names, or four spread over the sequence."""
+    if not text:
+        return sorted({known[round(i * (len(known) - 1) / 3)] for i in range(4)})
+    parts = text.split(",")
+    if not all(p.strip().isdigit() and int(p) in known for p in parts):
+        raise ConfigError(f"--frames {text}: write numbers of frames such as 0,12,30; there are {known[0]} to {known[-1]}")
+    return [int(p) for p in parts]

@@ -1,0 +1,1 @@
+"""The page that shows a run: what goes into it and how it is put together."""
