@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 FILES = [*ROOT.glob("pipeline/*.py"), *ROOT.glob("schemas/*.py"), *ROOT.glob("tasks/**/*.py")]
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
-OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name not in ("__init__.py", "plots.py")]
+OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name != "__init__.py"]
 ASKING = ("inspect.py", "cli.py")
 """The two that ask for the product's own tasks and commands, inside a function, when they are called."""
 BORDER = "tasks/source.py"

@@ -8,7 +8,8 @@ import pytest
 
 from kinetree.pipeline import Pipeline
 from kinetree.pipeline.errors import ConfigError
-from kinetree.tasks.plots import WHAT, _view, draw
+from kinetree.tasks.plots import WHAT, draw
+from kinetree.tasks.plots.drawing import view
 
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -46,13 +47,13 @@ def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(f
 @pytest.mark.parametrize("up", [0, 1, 2])
 def test_axis_that_is_said_to_be_up_is_up(up: int) -> None:
     rng = np.random.default_rng(0)
-    view = _view([rng.normal(size=(50, 3)) * [1, 2, 3]], up)
-    assert np.array_equal(view[:, 1], np.eye(3)[up])
-    assert np.linalg.det(view) == pytest.approx(1)
+    axes = view([rng.normal(size=(50, 3)) * [1, 2, 3]], up)
+    assert np.array_equal(axes[:, 1], np.eye(3)[up])
+    assert np.linalg.det(axes) == pytest.approx(1)
 
 
 def test_feet_on_the_ground_tell_what_is_up() -> None:
     rng = np.random.default_rng(0)
     body = rng.uniform([0, 0, 0], [1, 3, 2], size=(500, 3))
     walk = [body + [0, step, 0] for step in range(4)]
-    assert np.array_equal(_view(walk, None)[:, 1], [0, 0, 1])
+    assert np.array_equal(view(walk, None)[:, 1], [0, 0, 1])

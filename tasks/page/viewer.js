@@ -1,0 +1,327 @@
+"use strict";
+// The player of a report: reads the scene that lies in the page and draws it with three.js. No request leaves the page.
+
+const byId = (id) => document.getElementById(id);
+const TYPES = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, uint32: Uint32Array, float32: Float32Array };
+
+async function payload() {
+  const text = byId("payload").textContent.trim();
+  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
+}
+
+function arraysOf(scene, bytes) {
+  const found = {};
+  for (const [name, a] of Object.entries(scene.arrays)) {
+    found[name] = new TYPES[a.dtype](bytes, a.offset, a.shape.reduce((x, y) => x * y, 1));
+  }
+  return found;
+}
+
+class Surface {
+  constructor(materials) {
+    this.geometry = new THREE.BufferGeometry();
+    this.mesh = new THREE.Mesh(this.geometry, materials.plain);
+    this.mesh.frustumCulled = false;
+    this.materials = materials;
+  }
+  coloured(on) { this.mesh.material = on ? this.materials.parts : this.materials.plain; }
+}
+
+function dequantised(source, begin, count, scene, out) {
+  const [scale, low] = [scene.scale, scene.low];
+  for (let i = 0; i < count; i++) {
+    for (let x = 0; x < 3; x++) out[3 * i + x] = low[x] + scale * source[3 * (begin + i) + x];
+  }
+  return out;
+}
+
+function colours(labels, begin, count, palette) {
+  const out = new Float32Array(3 * count);
+  const rgb = palette.map((c) => new THREE.Color(c));
+  const white = new THREE.Color("#ffffff");
+  for (let i = 0; i < count; i++) {
+    const label = labels[begin + i];
+    (label < 0 ? white : rgb[label % rgb.length]).toArray(out, 3 * i);
+  }
+  return out;
+}
+
+class Player {
+  constructor(scene, arrays) {
+    this.scene = scene;
+    this.arrays = arrays;
+    this.at = 0;
+    this.playing = false;
+    this.speed = 1;
+    this.elapsed = 0;
+    const canvas = byId("stage");
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.world = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(35, 1, scene.size / 100, scene.size * 50);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.draw());
+    this.light();
+    this.body();
+    this.inputs();
+    this.bones();
+    this.tips();
+    this.home();
+  }
+
+  light() {
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a93a0, 2.2));
+    const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
+    lamp.position.set(0.4, 0.8, 1);
+    this.world.add(lamp);
+  }
+
+  materials(opacity) {
+    const shared = { flatShading: true, side: THREE.DoubleSide, transparent: opacity < 1, opacity, depthWrite: true };
+    return {
+      plain: new THREE.MeshLambertMaterial({ color: 0xb9bec6, ...shared }),
+      parts: new THREE.MeshLambertMaterial({ vertexColors: true, ...shared }),
+    };
+  }
+
+  body() {
+    const { arrays, scene } = this;
+    this.aligned = new Surface(this.materials(1));
+    if (!arrays.positions) return;
+    const count = scene.arrays.positions.shape[1];
+    this.aligned.count = count;
+    const position = new THREE.BufferAttribute(new Float32Array(3 * count), 3).setUsage(THREE.DynamicDrawUsage);
+    this.aligned.geometry.setAttribute("position", position);
+    this.aligned.geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays.label, 0, count, scene.palette), 3));
+    this.aligned.geometry.setIndex(new THREE.BufferAttribute(arrays.faces, 1));
+    this.world.add(this.aligned.mesh);
+  }
+
+  inputs() {
+    this.input = new Surface(this.materials(1));
+    this.world.add(this.input.mesh);
+    this.input.mesh.visible = false;
+  }
+
+  bones() {
+    const { scene } = this;
+    this.skeleton = new THREE.Group();
+    const over = { depthTest: false, transparent: true };
+    const count = scene.joints.length;
+    const ball = new THREE.SphereGeometry(scene.size * 0.011, 14, 10);
+    this.balls = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0xffffff, ...over }), Math.max(count, 1));
+    const rod = new THREE.CylinderGeometry(scene.size * 0.0025, scene.size * 0.006, 1, 8).translate(0, 0.5, 0);
+    this.rods = new THREE.InstancedMesh(rod, new THREE.MeshBasicMaterial({ color: 0x222222, ...over }), Math.max(count, 1));
+    this.balls.renderOrder = 3;
+    this.rods.renderOrder = 2;
+    const kinds = { root: "#000000", joint: "#D55E00", leaf: "#0072B2" };
+    scene.joints.forEach((joint, j) => this.balls.setColorAt(j, new THREE.Color(kinds[joint.kind])));
+    for (const part of [this.rods, this.balls]) {
+      part.frustumCulled = false;
+      part.count = count;
+      this.skeleton.add(part);
+    }
+    this.world.add(this.skeleton);
+  }
+
+  tips() {
+    const count = this.scene.arrays.leaves ? this.scene.arrays.leaves.shape[1] : 0;
+    const ball = new THREE.SphereGeometry(this.scene.size * 0.014, 14, 10);
+    this.leaves = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0x009e73 }), Math.max(count, 1));
+    this.leaves.count = count;
+    this.leaves.visible = false;
+    this.leaves.frustumCulled = false;
+    this.world.add(this.leaves);
+  }
+
+  point(name, count, k) {
+    const a = this.arrays[name];
+    const i = 3 * (this.at * count + k);
+    return new THREE.Vector3(a[i], a[i + 1], a[i + 2]);
+  }
+
+  centre() {
+    return this.scene.joints.length ? this.point("joints", this.scene.joints.length, 0) : new THREE.Vector3(...this.scene.centre);
+  }
+
+  home() {
+    this.controls.target.copy(new THREE.Vector3(...this.scene.centre));
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(this.scene.size * 2.1));
+    this.followed = null;
+    this.controls.update();
+  }
+
+  show(at) {
+    const { scene, arrays } = this;
+    this.at = Math.max(0, Math.min(scene.frames.length - 1, at));
+    if (arrays.positions) {
+      const position = this.aligned.geometry.attributes.position;
+      dequantised(arrays.positions, this.at * this.aligned.count, this.aligned.count, scene, position.array);
+      position.needsUpdate = true;
+    }
+    this.showInput();
+    this.showBones();
+    this.showTips();
+    if (byId("follow").checked) this.follow();
+    byId("scrub").value = this.at;
+    byId("scrub").setAttribute("aria-valuetext", `frame ${scene.frames[this.at]}`);
+    byId("when").textContent = `frame ${scene.frames[this.at]}` + (scene.fps ? ` · ${(scene.frames[this.at] / scene.fps).toFixed(2)} s` : "");
+    this.draw();
+  }
+
+  showInput() {
+    const { arrays, scene } = this;
+    if (!arrays.input_vertices || !this.input.mesh.visible) return;
+    const [v, w] = [arrays.input_vertex_offsets[this.at], arrays.input_vertex_offsets[this.at + 1]];
+    const [f, g] = [arrays.input_face_offsets[this.at], arrays.input_face_offsets[this.at + 1]];
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(dequantised(arrays.input_vertices, v, w - v, scene, new Float32Array(3 * (w - v))), 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays.input_label, v, w - v, scene.palette), 3));
+    geometry.setIndex(new THREE.BufferAttribute(arrays.input_faces.slice(3 * f, 3 * g), 1));
+    this.input.mesh.geometry.dispose();
+    this.input.mesh.geometry = geometry;
+  }
+
+  showBones() {
+    const joints = this.scene.joints;
+    const place = new THREE.Matrix4();
+    const upwards = new THREE.Vector3(0, 1, 0);
+    joints.forEach((joint, j) => {
+      const here = this.point("joints", joints.length, j);
+      this.balls.setMatrixAt(j, place.makeTranslation(here.x, here.y, here.z));
+      const from = joint.parent < 0 ? here : this.point("joints", joints.length, joint.parent);
+      const along = here.clone().sub(from);
+      const length = along.length();
+      const turn = new THREE.Quaternion().setFromUnitVectors(upwards, length > 0 ? along.divideScalar(length) : upwards);
+      this.rods.setMatrixAt(j, place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1)));
+    });
+    this.balls.instanceMatrix.needsUpdate = true;
+    this.rods.instanceMatrix.needsUpdate = true;
+  }
+
+  showTips() {
+    const place = new THREE.Matrix4();
+    for (let k = 0; k < this.leaves.count; k++) {
+      const here = this.point("leaves", this.scene.arrays.leaves.shape[1], k);
+      const known = Number.isFinite(here.x);
+      this.leaves.setMatrixAt(k, known ? place.makeTranslation(here.x, here.y, here.z) : place.makeScale(0, 0, 0));
+    }
+    this.leaves.instanceMatrix.needsUpdate = true;
+  }
+
+  follow() {
+    const now = this.centre();
+    const shift = now.clone().sub(this.followed || now);
+    this.camera.position.add(shift);
+    this.controls.target.add(shift);
+    this.followed = now;
+  }
+
+  turn(around, over) {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    away.applyAxisAngle(new THREE.Vector3(0, 1, 0), around);
+    const side = new THREE.Vector3(0, 1, 0).cross(away).normalize();
+    const tilted = away.clone().applyAxisAngle(side, over);
+    this.camera.position.copy(this.controls.target).add(Math.abs(tilted.y) < 0.98 * tilted.length() ? tilted : away);
+    this.controls.update();
+    this.draw();
+  }
+
+  resize() {
+    const canvas = this.renderer.domElement;
+    const { clientWidth, clientHeight } = canvas;
+    if (!clientWidth) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.fov = this.camera.aspect < 1 ? 35 / this.camera.aspect : 35;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() { this.renderer.render(this.world, this.camera); }
+
+  tick(now) {
+    if (!this.playing) return;
+    const step = 1000 / ((this.scene.rate || 25) * this.speed);
+    if (this.last !== undefined) this.elapsed += now - this.last;
+    this.last = now;
+    const frames = Math.floor(this.elapsed / step);
+    if (frames) {
+      this.elapsed -= frames * step;
+      this.show((this.at + frames) % this.scene.frames.length);
+    }
+    requestAnimationFrame((t) => this.tick(t));
+  }
+
+  play(on) {
+    if (on === this.playing) return;
+    this.playing = on;
+    this.last = undefined;
+    byId("play").textContent = on ? "Pause" : "Play";
+    byId("play").setAttribute("aria-pressed", String(on));
+    if (on) requestAnimationFrame((t) => this.tick(t));
+  }
+}
+
+function wire(player) {
+  const { scene } = player;
+  const toggles = {
+    "see-aligned": (on) => { player.aligned.mesh.visible = on; },
+    "see-input": (on) => { player.input.mesh.visible = on; },
+    "see-parts": (on) => { player.aligned.coloured(on); player.input.coloured(on); },
+    "see-skeleton": (on) => { player.skeleton.visible = on; },
+    "see-leaves": (on) => { player.leaves.visible = on; },
+    follow: (on) => { if (on) player.followed = player.centre(); },
+  };
+  for (const [id, act] of Object.entries(toggles)) {
+    const box = byId(id);
+    box.addEventListener("change", () => { act(box.checked); player.show(player.at); });
+    act(box.checked);
+  }
+  const scrub = byId("scrub");
+  scrub.max = scene.frames.length - 1;
+  scrub.addEventListener("input", () => { player.play(false); player.show(Number(scrub.value)); });
+  byId("play").addEventListener("click", () => player.play(!player.playing));
+  byId("speed").addEventListener("change", (e) => { player.speed = Number(e.target.value); });
+  byId("home").addEventListener("click", () => player.home());
+  byId("interval").addEventListener("change", (e) => { if (e.target.value !== "") { player.play(false); player.show(Number(e.target.value)); } });
+  const turns = { "turn-left": [-0.3, 0], "turn-right": [0.3, 0], "turn-up": [0, -0.25], "turn-down": [0, 0.25] };
+  for (const [id, [around, over]] of Object.entries(turns)) byId(id).addEventListener("click", () => player.turn(around, over));
+  byId("stage").addEventListener("keydown", (e) => {
+    const keys = {
+      " ": () => player.play(!player.playing),
+      ArrowRight: () => (e.shiftKey ? player.turn(0.15, 0) : player.show(player.at + 1)),
+      ArrowLeft: () => (e.shiftKey ? player.turn(-0.15, 0) : player.show(player.at - 1)),
+      ArrowUp: () => player.turn(0, -0.15),
+      ArrowDown: () => player.turn(0, 0.15),
+      Home: () => player.show(0),
+      End: () => player.show(scene.frames.length - 1),
+    };
+    if (keys[e.key]) { e.preventDefault(); keys[e.key](); }
+  });
+  new ResizeObserver(() => player.resize()).observe(byId("stage"));
+}
+
+async function begin() {
+  const scene = JSON.parse(byId("scene").textContent);
+  if (!scene.frames.length) return;
+  let player;
+  try {
+    player = new Player(scene, arraysOf(scene, await payload()));
+  } catch (error) {
+    byId("player-note").textContent = `The player needs a browser with WebGL: ${error.message}. Everything below works without.`;
+    byId("player-note").hidden = false;
+    return;
+  }
+  wire(player);
+  player.resize();
+  player.show(0);
+  window.kinetree = player;
+  document.body.dataset.ready = "yes";
+  if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && scene.frames.length > 1) player.play(true);
+}
+
+begin();

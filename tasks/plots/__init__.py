@@ -1,0 +1,38 @@
+"""Pictures for people, by the word of the command line."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.tasks.plots.drawing import Fetch
+from kinetree.tasks.plots.macroscopic import correlation, mu
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = (".png", ".svg", ".pdf")
+
+WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {"correlation": correlation, "mu": mu}
+"""What can be drawn, by the word of the command line."""
+
+
+def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None = None) -> None:
+    """Draws into a file, complete or not at all.
+
+    up     : axis of the coordinates that points up; None guesses it
+    raises : ConfigError where `what` is not known, the file's ending is none of FORMATS or it cannot be written
+    """
+    if what not in WHAT:
+        raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
+    if path.suffix.lower() not in FORMATS:
+        raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
+    figure = WHAT[what](fetch, frames, up)
+    beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        figure.savefig(beside, dpi=150, bbox_inches="tight")
+        beside.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        beside.unlink(missing_ok=True)
