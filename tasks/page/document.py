@@ -1,0 +1,142 @@
+"""The page as one file of HTML: what was found, drawn and told, every word from outside escaped."""
+
+import base64
+import io
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+from kinetree.tasks.page.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RUN = "<!--what ran-->"
+"""Where what ran is told, which is known only when the run is over."""
+
+
+FOLDED = {
+    "config": "Configuration, where it differs from the default",
+    "graph": "The graph",
+    "versions": "Versions",
+}
+
+
+@dataclass(frozen=True)
+class Section:
+    """One chapter of the page: HTML that is safe already."""
+
+    anchor: str
+    heading: str
+    body: str
+
+
+@dataclass(frozen=True)
+class Page:
+    """All that the page tells."""
+
+    title: str
+    facts: Sequence[tuple[str, str]]
+    warnings: Sequence[str]
+    scene: Scene
+    sections: Sequence[Section] = field(default_factory=tuple)
+
+
+def document(page: Page) -> str:
+    """The whole page, with RUN where what ran is to stand."""
+    sections = [*page.sections, Section("run", "What ran", RUN)]
+    parts = {
+        "title": escape(page.title),
+        "style": _file("style.css"),
+        "nav": "".join(f'<a href="#{s.anchor}">{escape(s.heading)}</a> ' for s in sections),
+        "facts": "".join(f"<li>{escape(name)} <b>{escape(value)}</b></li>" for name, value in page.facts),
+        "warnings": warnings(page.warnings),
+        "intervals": "".join(
+            f'<option value="{i["at"]}">{n}: frames {i["begin"]}–{i["end"]}</option>'
+            for n, i in enumerate(page.scene.told["intervals"])
+        ),
+        "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
+        "sections": "".join(
+            f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections
+        ),
+        "scene": as_script(page.scene.told),
+        "payload": page.scene.block,
+        "three": _file("vendor/three.min.js"),
+        "viewer": _file("viewer.js"),
+    }
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found.group(1)], _file("page.html"))
+
+
+def as_script(told: Any) -> str:
+    """JSON that can lie in a script element: no end of the element, no comment can hide in a string."""
+    text = json.dumps(told, ensure_ascii=True, allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def warnings(told: Sequence[str]) -> str:
+    """The box of warnings; nothing where there are none."""
+    if not told:
+        return ""
+    items = "".join(f"<li>{escape(text)}</li>" for text in told)
+    return f'<aside class="warnings" aria-labelledby="heed"><h2 id="heed">To heed</h2><ul>{items}</ul></aside>'
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """A table that scrolls by itself on a narrow screen; numbers to the right."""
+    numeric = [all(isinstance(row[i], int | float) for row in rows) for i in range(len(head))]
+    kind = [' class="n"' if n and rows else "" for n in numeric]
+    top = "".join(f'<th scope="col"{k}>{escape(h)}</th>' for h, k in zip(head, kind, strict=True))
+    body = "".join(
+        "<tr>" + "".join(f"<td{k}>{escape(_text(c))}</td>" for c, k in zip(row, kind, strict=True)) + "</tr>" for row in rows
+    )
+    return f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
+    """A figure in the page itself: lines as SVG, surfaces as PNG; its caption is its text for those who cannot see it."""
+    from matplotlib import rc_context
+
+    out = io.BytesIO()
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
+        if vector:
+            drawn.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+        else:
+            drawn.savefig(out, format="png", dpi=110, metadata={"Software": None})
+    kind = "svg+xml" if vector else "png"
+    data = base64.b64encode(out.getvalue()).decode()
+    return (
+        f'<figure><img alt="{escape(caption)}" src="data:image/{kind};base64,{data}">'
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
+    )
+
+
+def what_ran(told: Mapping[str, Any]) -> str:
+    """The section on the run itself, from what run.json holds."""
+    nodes = told.get("nodes", {})
+    counts = ", ".join(f"{count} {name}" for name, count in nodes.items() if count)
+    parts = [f"<p>{escape(str(told.get('run', '')))} {escape(str(told.get('status', '')))}: {escape(counts)}"]
+    parts.append(f" in {told['seconds']:.1f} s.</p>" if "seconds" in told else "</p>")
+    tasks = told.get("tasks") or {}
+    if tasks:
+        rows = [
+            (name, t.get("ran", 0), t.get("fresh", 0), t.get("failed", 0), round(float(t.get("seconds", 0)), 2))
+            for name, t in tasks.items()
+        ]
+        parts.append(table(("task", "ran", "reused", "failed", "seconds"), rows))
+    for key, name in FOLDED.items():
+        if told.get(key):
+            text = told[key] if isinstance(told[key], str) else json.dumps(told[key], indent=2, ensure_ascii=False)
+            parts.append(f"<details><summary>{name}</summary><pre>{escape(text)}</pre></details>")
+    return "".join(parts)
+
+
+def _text(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _file(name: str) -> str:
+    return files("kinetree.tasks.page").joinpath(name).read_text(encoding="utf-8")
