@@ -82,6 +82,8 @@ def show(node: Annotated[str, typer.Argument(help=escape("A node, e.g. mesh[fram
         print_json(told)
         return
     out.print(printable(told["why"]), markup=False)
+    for line in told.get("told", ()):
+        out.print(printable(line), markup=False)
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("field", "type", "value", "what"):
         table.add_column(name, overflow="fold")
@@ -137,7 +139,8 @@ def tasks(as_json: AsJson = False) -> None:
     for row in rows:
         reads = ", ".join(f"{a['artifact']}{GATHERS[a['form']]}" for a in row["reads"]) or "the files"
         per = f" per {row['over']}" if row["over"] else ""
-        out.print(f"[bold]{row['task']}[/bold]: {reads} → {row['writes']}{per}  [dim]{escape(row['paper'])}[/dim]")
+        named = " [dim](only when it is named)[/dim]" if row["on_request"] else ""
+        out.print(f"[bold]{row['task']}[/bold]: {reads} → {row['writes']}{per}{named}  [dim]{escape(row['paper'])}[/dim]")
         out.print(f"    {escape(row['summary'])}")
         for name, param in row["params"].items():
             out.print(f"    [cyan]{row['task']}.{name}[/cyan] = {escape(str(param['default']))}  {escape(param['what'])}")
@@ -151,6 +154,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         "reads": [{"argument": a.name, "artifact": a.artifact.__name__, "form": a.form} for a in task.arguments],
         "writes": task.returns.__name__,
         "params": {n: {"default": f.default, "what": f.description or ""} for n, f in fields.items()},
+        "on_request": task.on_request,
         "paper": task.paper,
         "summary": task.summary,
     }

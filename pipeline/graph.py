@@ -61,6 +61,11 @@ class Graph:
         found.update({space(path): task for task in self.tasks for path in task.returns.opens})
         return found
 
+    @cached_property
+    def unasked(self) -> tuple[str, ...]:
+        """Names of the tasks that run without being named."""
+        return tuple(task.name for task in self.tasks if not task.on_request)
+
     def task(self, name: str) -> AnyTask:
         """The task of that name; raises UnknownNodeError with the nearest one."""
         if name not in self.by_name:

@@ -98,11 +98,12 @@ def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
 
 
 def closing(
-    opened: dict[str, Any], schedule: Schedule, before: dict[str, Any], account: Account, status: str, seconds: float
+    opened: dict[str, Any], schedule: Schedule, before: dict[str, Any], account: Account, told: dict[str, Any]
 ) -> dict[str, Any]:
     """The record of a run that is over; nodes of tasks that it was not asked for are carried on as "left".
 
     before : the nodes on record before it began
+    told   : what run.json holds
     """
     nodes: dict[str, dict[str, Any]] = {
         e.label: {"state": e.state, "key": e.key, "artifact": e.artifact} for e in schedule.entries.values()
@@ -114,7 +115,6 @@ def closing(
     asked = {task.name for task in schedule.graph.tasks}
     left = {name: {**node, "state": "left"} for name, node in before.items() if name.partition("[")[0] not in asked}
     nodes = {**left, **nodes}
-    told = summary(account, status, seconds)
     more = {"tasks": account.tasks, "failures": account.failures, "counts": told["nodes"], "nodes": nodes}
     return {**{name: value for name, value in opened.items() if name != "uses"}, **told, **more}
 

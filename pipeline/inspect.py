@@ -18,14 +18,14 @@ import networkx as nx
 from kinetree.pipeline import config as configuration
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
-from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.pipeline.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
 from kinetree.pipeline.layout import Given
 from kinetree.pipeline.node import Node, label, parse
-from kinetree.pipeline.output import write_config, write_run_json
+from kinetree.pipeline.output import write_config, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
@@ -70,10 +70,10 @@ class Pipeline:
 
     def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Plan:
         """Every node with its state and the reason for it; looks at the input, computes nothing."""
-        return Plan.of(self.schedule(until=until, force=force))
+        return Plan.of(self.schedule(until=tuple(until) or self.tasks.unasked, force=force))
 
     def schedule(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Schedule:
-        """The schedule behind `plan` and `run`, laid out as far as it is known."""
+        """The schedule of the named tasks or of all there are, laid out as far as it is known."""
         return self._schedule(Files.of(self.store), until, force)
 
     def _schedule(self, files: Files, until: Iterable[str], force: Iterable[str]) -> Schedule:
@@ -98,7 +98,7 @@ class Pipeline:
         """
         started = time.perf_counter()
         files = Files.of(self.store)
-        schedule = self._schedule(files, until, force)
+        schedule = self._schedule(files, tuple(until) or self.tasks.unasked, force)
         self.store.create()
         files.save()
         write_config(self.config)
@@ -107,9 +107,10 @@ class Pipeline:
         account = Account()
         watch = Watch((account, *listeners))
         watch.begin(opened["name"], schedule.entries.values())
-        status = "interrupted"
+        status, left = "interrupted", list[str]()
         try:
             self._go(schedule, watch, client)
+            left += write_results(self.config.output, schedule)
             status = "failed" if account.failures else "done"
         except Exception:
             status = "stopped"
@@ -117,8 +118,27 @@ class Pipeline:
         finally:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
-            self._close(opened, schedule, account, status, seconds)
-        return RunTold({"run": opened["name"], **summary(account, status, seconds)})
+            told = {**summary(account, status, seconds), "files": left}
+            self._close(opened, schedule, account, told)
+        return RunTold({"run": opened["name"], **told})
+
+    def computed(self, name: str) -> Schedule:
+        """Computes one task from what is there and nothing else; returns the schedule that has its artifacts.
+
+        raises : UnknownNodeError where something it reads is not there; NodesFailedError where it fails itself
+        """
+        schedule = self.schedule(until=[name])
+        reads = {task.name for task in self.tasks.reads(self.tasks.task(name))}
+        lacking = [node for node in Plan.of(schedule).nodes if node.task in reads and node.state != "fresh"]
+        if lacking:
+            more = f" and {len(lacking) - 1} more like it" if len(lacking) > 1 else ""
+            raise UnknownNodeError(f"{name} is made from {lacking[0]}{more}; kinetree run computes what is missing")
+        account = Account()
+        self._go(schedule, Watch((account,)), None)
+        if account.failures:
+            told = account.failures[0]
+            raise NodesFailedError(f"{told['node']}: {told['error']}: {told['message']}")
+        return schedule
 
     def graph(self, *, expanded: bool = False) -> "nx.DiGraph[str]":
         """The graph of tasks, or expanded of nodes; each node's `data` is a TaskPlan or Planned, edges name arguments."""
@@ -182,11 +202,10 @@ class Pipeline:
         with launcher(self.config.compute, client) as launch:
             run(schedule, launch, watch)
 
-    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, status: str, seconds: float) -> None:
+    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, told: dict[str, Any]) -> None:
         before = History(self.store, str(self.config.output)).last_nodes()
-        told = closing(opened, schedule, before, account, status, seconds)
-        write_run_json(self.config, summary(account, status, seconds))
-        self.store.write_run(opened["name"], told)
+        write_run_json(self.config, told)
+        self.store.write_run(opened["name"], closing(opened, schedule, before, account, told))
 
     def _given(self, graph: Graph, files: Files) -> Given:
         given: dict[str, dict[Index, Artifact]] = {}

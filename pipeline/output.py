@@ -1,6 +1,7 @@
-"""What a run leaves in its output folder beside its results: run.json and the configuration that made them."""
+"""What a run leaves in its output folder: what artifacts hold for other programs, run.json, the configuration."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,10 @@ import yaml
 
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
+from kinetree.pipeline.errors import DamagedArtifactError
 from kinetree.pipeline.place import Folder
+from kinetree.pipeline.schedule import DONE, Entry, Schedule
+from kinetree.schemas.array import Artifact
 
 RUN_JSON = "run.json"
 
@@ -28,6 +32,48 @@ def as_yaml(saved: dict[str, Any]) -> str:
 def write_run_json(config: Config, told: dict[str, Any]) -> None:
     """Leaves what ran, what was fresh, what failed."""
     _write(config.output, RUN_JSON, json.dumps(told, indent=2, ensure_ascii=False) + "\n")
+
+
+def write_results(folder: Path, schedule: Schedule) -> list[str]:
+    """Leaves the files and groups of every artifact that has some, each whole or not at all; returns their names.
+
+    One that lies there with the same bytes is not touched.
+    raises : StoreError where the folder cannot be written; DamagedArtifactError, after which a run makes it again
+    """
+    left: list[str] = []
+    for entry in schedule.entries.values():
+        if entry.state in DONE and entry.artifact is not None and leaves(entry.task.returns):
+            try:
+                left += write_result(folder, schedule, entry)
+            except DamagedArtifactError:
+                schedule.store.discard(entry.artifact)
+                raise
+    return left
+
+
+def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
+    """Leaves the files and the group of one node that has its artifact; see `write_results`."""
+    place, name = Folder(folder, "output folder", beside=""), entry.task.returns.left_as
+    files = schedule.value(entry.node).files(entry.node.at)
+    for path, data in files.items():
+        if place.size(path) != len(data) or place.get(path) != data:
+            place.put(path, data)
+    if name:
+        _put_group(place, name, schedule.store.group(str(entry.artifact)))
+    return [*files, *([name] if name else [])]
+
+
+def leaves(cls: type[Artifact]) -> bool:
+    """Whether artifacts of this class leave anything in an output folder."""
+    return bool(cls.left_as) or cls.files is not Artifact.files
+
+
+def _put_group(place: Folder, name: str, files: Mapping[str, bytes]) -> None:
+    """A group's attributes hold the digests of its arrays: where they and all sizes agree, so does the rest."""
+    sizes = {path: len(data) for path, data in files.items()}
+    if place.get(f"{name}/zarr.json") != files["zarr.json"] or place.tree(name) != sizes:
+        place.remove(name)
+        place.put_all(name, files)
 
 
 def _write(folder: Path, name: str, text: str) -> None:

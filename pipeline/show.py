@@ -26,6 +26,7 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
     return {
         **told,
         "artifact": entry.artifact,
+        "told": list(artifact.told()),
         "values": artifact.plain(),
         "arrays": {name: statistics(array) for name, array in artifact.arrays().items()},
         "made": _provenance(entry.record) if entry.record else None,

@@ -154,6 +154,14 @@ class Store:
         except (ValueError, KeyError, TypeError) as error:
             raise DamagedArtifactError(digest, "its metadata cannot be read") from error
 
+    def group(self, digest: str) -> dict[str, bytes]:
+        """The files of an artifact's zarr group, by path within it; raises DamagedArtifactError where one is missing."""
+        top = artifact_path(digest)
+        files = {name: self.place.get(f"{top}/{name}") for name in self.place.tree(top)}
+        if None in files.values() or "zarr.json" not in files:
+            raise DamagedArtifactError(digest, "a file is missing")
+        return {name: data for name, data in files.items() if data is not None}
+
     def discard(self, digest: str) -> None:
         """Removes an artifact; records that name it then make nothing fresh."""
         self.place.remove(artifact_path(digest))

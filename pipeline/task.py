@@ -22,7 +22,7 @@ import re
 import types
 import typing
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, Literal, ParamSpec, TypeVar, Union
 
 from kinetree.pipeline.errors import GraphError
@@ -56,6 +56,8 @@ class Task(Generic[P, R]):
     along: type[Artifact] | None
     is_origin: bool
     where: str
+    on_request: bool = False
+    """Whether it runs only when it is named."""
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """The function itself."""
@@ -85,16 +87,19 @@ class Task(Generic[P, R]):
         return found.group(1) if found else ""
 
 
-def task(*, over: str = "", along: type[Artifact] | None = None) -> Callable[[Callable[P, R]], Task[P, R]]:
+def task(
+    *, over: str = "", along: type[Artifact] | None = None, on_request: bool = False
+) -> Callable[[Callable[P, R]], Task[P, R]]:
     """Declares a function as a task; see the module's docstring for what its signature says.
 
-    over   : the fan-out, a path of dimensions; "" runs once
-    along  : the artifact class whose `previous` orders the traversal, for a task that reads its own neighbour
-    raises : GraphError, at import, where the signature does not say enough
+    over       : the fan-out, a path of dimensions; "" runs once
+    along      : the artifact class whose `previous` orders the traversal, for a task that reads its own neighbour
+    on_request : whether a run leaves it out unless it is named, or something that reads it
+    raises     : GraphError, at import, where the signature does not say enough
     """
 
     def declare(function: Callable[P, R]) -> Task[P, R]:
-        return _declared(function, over, along, is_origin=False)
+        return replace(_declared(function, over, along, is_origin=False), on_request=on_request)
 
     return declare
 

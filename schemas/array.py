@@ -95,11 +95,13 @@ class Artifact(BaseModel):
 
     An artifact whose members other tasks fan out over (the intervals of a sequence, the cones of an interval) names in
     `opens` the spaces it opens and lists their members in `members`; one that orders a traversal answers `previous`.
+    One that people take away gives `files`, or is left in the output folder as the zarr group it is, named in `left_as`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
     version: ClassVar[int] = 1
     opens: ClassVar[tuple[str, ...]] = ()
+    left_as: ClassVar[str] = ""
     _lazy: dict[str, Loader] = PrivateAttr(default_factory=dict)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
@@ -113,6 +115,14 @@ class Artifact(BaseModel):
     def remarks(self) -> tuple[str, ...]:
         """What a person should know of this result, in plain sentences; most have nothing to say."""
         return ()
+
+    def told(self) -> tuple[str, ...]:
+        """The result itself as lines of text, where a person would want to see more than shapes and statistics."""
+        return ()
+
+    def files(self, index: Index) -> Mapping[str, bytes]:
+        """What a run leaves of this, at `index`, in the output folder for other programs: bytes by name; most leave nothing."""
+        return {}
 
     @classmethod
     def array_fields(cls) -> dict[str, Array]:

@@ -83,7 +83,7 @@ def test_all_failures_are_told_and_run_json_has_the_documented_shape(toys):
     assert "points[frame=4]: ValueError: points-50 was told to fail" in done.stderr
     assert "Traceback" not in done.stderr
     told = json.loads((toys.output / "run.json").read_text())
-    assert set(told) == {"status", "nodes", "tasks", "failures", "seconds", "versions"}
+    assert set(told) == {"status", "nodes", "tasks", "failures", "seconds", "versions", "files"}
     assert told["status"] == "failed"
     # four frames are read and smoothed; all else gathers over six
     assert told["nodes"] == {"ran": 8, "fresh": 0, "failed": 2, "skipped": 18}

@@ -20,7 +20,7 @@ MODELS = sorted(
     - {Artifact, Params},
     key=lambda m: m.__name__,
 )
-ARTIFACTS = [m for m in MODELS if issubclass(m, Artifact)]
+ARTIFACTS = [m for m in MODELS if issubclass(m, Artifact) and not m.__subclasses__()]
 SETTINGS = [m for m in MODELS if issubclass(m, Params)]
 TASKS = {task.name: task for graph in METHODS.values() for task in graph.tasks}
 DIMS = {dim.name: dim for dim in vars(dims).values() if isinstance(dim, Dim)}

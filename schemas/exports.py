@@ -1,0 +1,33 @@
+"""What all files for other programs have in common: they are bytes with names."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.schemas.array import Array, Artifact, Index
+from kinetree.schemas.dims import BYTE
+
+
+class Exported(Artifact):
+    """Files of one format; each export is a class of its own, written by a task of its own."""
+
+    names: tuple[str, ...]
+    """Name of every file, relative to the output folder."""
+    sizes: tuple[int, ...]
+    """Bytes of every file."""
+    content: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
+    """The bytes of all files, one after the other."""
+
+    @classmethod
+    def of(cls, files: Mapping[str, bytes], **more: Any) -> Self:
+        """The artifact that holds these files, `more` being its other fields."""
+        content = np.frombuffer(b"".join(files.values()), np.uint8)
+        return cls(names=tuple(files), sizes=tuple(map(len, files.values())), content=content, **more)
+
+    def files(self, index: Index) -> Mapping[str, bytes]:
+        """The files, by name."""
+        ends = np.cumsum(self.sizes, dtype=np.int64).tolist()
+        content = self.content.tobytes()
+        return {name: content[end - size : end] for name, size, end in zip(self.names, self.sizes, ends, strict=True)}
