@@ -1,0 +1,137 @@
+"""Rigid parts of a body from the ways of its vertices (2014, Sec. 6.1 and 6.2; by elimination, not by growth)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from kinetree.tasks.numerics.components import largest_component
+from kinetree.tasks.numerics.leaves import leaves as tips
+from kinetree.tasks.numerics.mu import farthest_bases, mu
+from kinetree.tasks.numerics.rings import rings
+from kinetree.tasks.numerics.structure.beginning import cone_runs, patch_groups
+from kinetree.tasks.numerics.structure.elimination import eliminated
+from kinetree.tasks.numerics.structure.labelling import connected, fitted, misfit, relabelled, residuals
+from kinetree.tasks.numerics.surface import Surface
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class PartsFound(NamedTuple):
+    """Rigid parts and how they move; x(t) ≈ R q + t for a vertex q of the reference.
+
+    label    : (vertex,) part that moves most like it
+    rigid    : (vertex,) share of its motion that the part alone explains: 1 on bones, less where the surface blends
+    R, t     : (frame, part, 3, 3) · (frame, part, xyz) mesh unit
+    residual : (frame, part) root mean square over the part's clearly rigid vertices, mesh unit
+    """
+
+    label: Ints
+    rigid: Floats
+    R: Floats
+    t: Floats
+    residual: Floats
+
+
+class PartsSettings(NamedTuple):
+    """Lengths are shares of the root of the reference's area.
+
+    rings   : in the longest distance from each leaf
+    cut     : root mean square residual that makes a tenth of a cone's rings worth a run of their own
+    patches : the whole surface is cut into
+    trunk   : parts to begin with outside the cones
+    missed  : by how much a part must be missed to stay
+    slip    : what a displacement along the surface counts against one across it, 0 to 1
+    smooth  : radius of the surroundings that decide with a vertex
+    """
+
+    rings: int = 50
+    cut: float = 0.002
+    patches: int = 400
+    trunk: int = 16
+    missed: float = 0.007
+    slip: float = 1.0
+    smooth: float = 0.015
+
+
+FLOOR = 1e-10
+"""Least mean squared residual that tells clearly rigid vertices from others, share of the reference's area."""
+
+
+def parts(
+    V: Floats,
+    F: npt.NDArray[np.integer],
+    x: Floats,
+    trust: Floats | None = None,
+    leaves: Ints | None = None,
+    settings: PartsSettings | None = None,
+) -> PartsFound:
+    """The rigid parts that the motion shows, as many as would be missed; one if nothing turns.
+
+    V, F    : (vertex, xyz) reference, mesh unit · (face, corner); small components go with what is nearest
+    x       : (frame, vertex, xyz) mesh unit
+    trust   : (frame, vertex) how far each position is to be believed, 0 to 1; all of them if not given
+    leaves  : (leaf,) vertices at the tips of the extremities; found on V, F if not given, and there may be none
+    returns : PartsFound, parts numbered by their first vertex
+    """
+    chosen = settings or PartsSettings()
+    kept, body, _ = largest_component(V, np.array(F, np.int32))
+    number = np.full(len(V), -1)
+    number[kept] = np.arange(len(kept))
+    surface = Surface.of(V[kept], body)
+    tip = _tips(surface, body) if leaves is None else number[leaves][number[leaves] >= 0]
+    size, centre, shift = float(np.sqrt(surface.area.sum())), surface.centre, x[:, kept].mean(axis=1, keepdims=True)
+    X = np.ascontiguousarray((x[:, kept] - shift) / size, np.float64)
+    weight = np.ones(X.shape[:2]) if trust is None else np.array(trust[:, kept], np.float64)
+    found = _found(surface, body, (V[kept] - centre) / size, X, weight, tip, chosen)
+    t = size * found.t + shift - found.R @ centre
+    nearest = np.arange(len(V)) if len(kept) == len(V) else cKDTree(V[kept]).query(V)[1]
+    return PartsFound(found.label[nearest], found.rigid[nearest], found.R, t, size * found.residual)
+
+
+def _tips(surface: Surface, F: Ints) -> Ints:
+    bases = farthest_bases(surface)
+    return tips(mu(bases.distance, bases.weight), F).vertex
+
+
+def _found(surface: Surface, F: Ints, V: Floats, x: Floats, weight: Floats, leaves: Ints, chosen: PartsSettings) -> PartsFound:
+    """Parts of one component; lengths in the root of its area, but for those of `surface`."""
+    unit = float(np.sqrt(surface.area.sum()))
+    area = surface.area / unit**2
+    start, ring = rings(F.astype(np.int64), len(V))
+    steps = max(round((chosen.smooth * unit / surface.edge) ** 2), 1)
+    label = cone_runs(surface, V, x, weight * area, leaves, start, ring, chosen.rings, chosen.cut)
+    trunk = patch_groups(surface, V, x, weight * area, label < 0, start, ring, chosen.patches, chosen.trunk)
+    label = np.where(label < 0, label.max() + 1 + trunk, label)
+    label = connected(label, int(label.max()) + 1, start, ring)
+    N = _normals(surface.position, F)
+    for _ in range(2):
+        label, R, t = _refitted(V, x, weight, area, label)
+        label = relabelled(V, x, weight, R, t, label, start, ring, steps)
+    for _ in range(2):
+        label, R, t = _refitted(V, x, weight, area, label)
+        label, R, t = eliminated(V, N, x, weight, area, label, R, t, start, ring, chosen.missed, chosen.slip, FLOOR)
+        label = relabelled(V, x, weight, R, t, label, start, ring, steps)
+    label, R, t = _refitted(V, x, weight, area, label)
+    e = misfit(V, x, weight, R, t, label)
+    rigid = 1 / (1 + e / 1e-5)
+    return PartsFound(label, rigid, R, t, residuals(V, x, weight * area * rigid, R, t, label))
+
+
+def _refitted(V: Floats, x: Floats, weight: Floats, area: Floats, label: Ints) -> tuple[Ints, Floats, Floats]:
+    """Parts that have vertices, numbered by their first one, and their motions."""
+    _, first, label = np.unique(label, return_index=True, return_inverse=True)
+    label = np.argsort(np.argsort(first))[label.reshape(-1)]
+    R, t = np.empty((len(x), len(first), 3, 3)), np.empty((len(x), len(first), 3))
+    fitted(V, x, weight, area, label, np.ones(len(first), np.bool_), R, t, FLOOR)
+    return label, R, t
+
+
+def _normals(V: Floats, F: Ints) -> Floats:
+    """(vertex, xyz) unit, area-weighted means of the faces around; 0 where they cancel."""
+    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    N = np.stack([np.bincount(F.ravel(), np.repeat(n[:, k], 3), len(V)) for k in range(3)], axis=1)
+    unit: Floats = N / np.maximum(np.linalg.norm(N, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit
