@@ -1,0 +1,93 @@
+"""The true skeleton of a sequence, read from the user's file before anything is computed."""
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from kinetree.pipeline.errors import InputError
+from kinetree.pipeline.task import origin
+from kinetree.schemas.array import Floats, Ints
+from kinetree.schemas.truth import Truth, TruthParams
+from kinetree.tasks.numerics.evaluation.truth import TrueMotion, of_told, read_truth
+from kinetree.tasks.synth import body
+
+
+@origin()
+def truth(params: TruthParams, files: object) -> Truth:
+    """Reads the true joints that the result is to be compared with, where there are any (2014, Sec. 7.1)."""
+    if not params.file:
+        if params.body:
+            raise InputError(f"truth.body ({params.body}) says nothing without truth.file; name the file of the joints")
+        return _told(None, "", None)
+    return _read(params, _stamp(params.file), _stamp(params.body))
+
+
+def synthetic(recipe: str) -> Truth:
+    """The truth of a generated sequence, from the recipe its frames are made by."""
+    return _told(of_told(body(recipe).truth(), "the synthetic body"), "synth", None)
+
+
+def _stamp(path: str) -> tuple[int, int]:
+    """Size and time of a file, so that what was read of it is remembered until it changes."""
+    try:
+        stat = Path(path).stat() if path else None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    return (stat.st_size, stat.st_mtime_ns) if stat else (0, 0)
+
+
+@lru_cache(maxsize=2)
+def _read(params: TruthParams, *stamps: tuple[int, int]) -> Truth:
+    path = Path(params.file)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file; a truth is a truth.json, a skeleton.json or a .bvh file") from None
+    return _told(read_truth(text, path.name), path.name, params)
+
+
+def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) -> Truth:
+    """The artifact; without joints where there is no motion."""
+    if motion is None:
+        motion = TrueMotion((), (), (), (), (), (), np.zeros((0, 0, 3)), None, None, None)
+    vertices, carrier = np.zeros((len(motion.X), 0, 3), np.float32), np.zeros(0, np.int32)
+    if params is not None and params.body:
+        vertices, carrier = _body(Path(params.body), motion)
+    return Truth(
+        source=source,
+        frames=motion.frames,
+        fps=motion.fps,
+        unit=motion.unit or (params.unit if params else None),
+        height=motion.height,
+        names=motion.names,
+        parents=motion.parents,
+        kinds=motion.kinds,
+        scored=motion.scored,
+        turns=np.array(motion.turns, dtype=np.float64),
+        positions=motion.X,
+        vertices=vertices,
+        carrier=carrier,
+    )
+
+
+def _body(path: Path, motion: TrueMotion) -> tuple[Floats, Ints]:
+    """(frame, vertex, xyz) the true body and (vertex,) the joint each vertex follows most."""
+    try:
+        with np.load(path, allow_pickle=False) as held:
+            V, W, told = held["vertices"], held["weights"], [str(n) for n in held["weight_names"]]
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(
+            f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one connectivity"
+        ) from None
+    unknown = [n for n in told if n not in motion.names]
+    if unknown or W.ndim != 2 or W.shape[1] != len(told):
+        raise InputError(f"{path}: weights must be (vertex, joint) of the truth's joints; {unknown[:3]} are none of them")
+    if len(V) != len(motion.frames) * len(W):
+        raise InputError(
+            f"{path}: {len(V)} vertices are not {len(motion.frames)} frames of {len(W)}; the truth and the body differ"
+        )
+    joint = np.array([motion.names.index(n) for n in told], dtype=np.int32)
+    return V.reshape(len(motion.frames), len(W), 3).astype(np.float32), joint[W.argmax(axis=1)]
