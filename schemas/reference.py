@@ -13,6 +13,12 @@ class Reference(Artifact):
     """Source frame number of every frame, ascending."""
     frame: int
     """Source frame number of the reference."""
+    fixed: bool
+    """Whether all frames have its connectivity, so that nothing is to be fitted."""
+    leaves: int
+    """Most limbs seen in any frame."""
+    free: bool
+    """Whether as many limbs are seen there, and in the frames around it, as anywhere."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
     """Its vertices, as its cleaned mesh has them."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
@@ -20,7 +26,7 @@ class Reference(Artifact):
     size: float
     """Root of its area, length: what every length of the alignment is relative to."""
     score: Annotated[Floats, Array("float64", FRAME)]
-    """How unfit each frame is as the reference, lower is better."""
+    """How fit each frame is as the reference, at most 1, higher is better."""
     before: Annotated[Ints, Array("int32", FRAME)]
     """Position of the frame from which each frame is reached, −1 for the reference."""
 
@@ -28,3 +34,15 @@ class Reference(Artifact):
         """The frame from which this one is reached; None for the reference."""
         at = int(self.before[self.frames.index(member)])
         return None if at < 0 else self.frames[at]
+
+    def remarks(self) -> tuple[str, ...]:
+        """The frame, and where it could not be a good one."""
+        told = [f"reference: frame {self.frame}"]
+        if self.leaves < 3:
+            seen = ("no limb is", "one limb is", "two limbs are")[self.leaves]
+            told.append(f"{seen} seen in any frame: nothing tells contact from freedom, the reference may be a poor one")
+        if not self.free:
+            told.append(
+                f"no frame is free of contact for long: frame {self.frame} lacks least; limbs that touch in it stay joined"
+            )
+        return tuple(told)

@@ -7,6 +7,7 @@ if __name__ != "kinetree.tasks":
     raise ImportError(f"import kinetree.tasks, not {__name__}: the top-level folders are not packages of their own")
 
 from kinetree.pipeline.graph import Graph
+from kinetree.tasks.alignment import alignment
 from kinetree.tasks.connectivity import connectivity
 from kinetree.tasks.correlation import correlation
 from kinetree.tasks.distribution import distribution
@@ -14,9 +15,17 @@ from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.intervals import intervals
 from kinetree.tasks.leaves import leaves
 from kinetree.tasks.mesh import mesh
+from kinetree.tasks.projection import projection
+from kinetree.tasks.reference import reference
+from kinetree.tasks.refit import first_refit, second_refit, third_refit
+from kinetree.tasks.repair import repair
 from kinetree.tasks.sequence import sequence
 from kinetree.tasks.source import source
+from kinetree.tasks.stiffness import first_stiffness, second_stiffness, third_stiffness
+from kinetree.tasks.suspects import suspects
+from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
+from kinetree.tasks.tracking import tracking
 
 MESOSCOPIC = (
     source,  # Sec. 3
@@ -29,6 +38,19 @@ MESOSCOPIC = (
     tips,  # Sec. 5.1
     intervals,  # Sec. 4
     leaves,  # Sec. 5.1, Eq. 3
+    reference,  # Sec. 5.3
+    template,  # for Sec. 5.2
+    tracking,
+    suspects,
+    repair,
+    first_stiffness,
+    first_refit,
+    second_stiffness,
+    second_refit,
+    third_stiffness,
+    third_refit,
+    alignment,  # Sec. 5.3
+    projection,
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}

@@ -1,0 +1,46 @@
+"""The reference mesh in one frame, and how far it is to be believed there."""
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.mesh import Mesh
+from kinetree.schemas.reference import Reference
+from kinetree.schemas.refit import ThirdRefit
+from kinetree.schemas.suspects import Suspects
+from kinetree.schemas.template import Template
+from kinetree.tasks.numerics.belief import belief
+from kinetree.tasks.numerics.deformation import shape
+from kinetree.tasks.numerics.trust import stretches
+from kinetree.tasks.pose import graph, pose, target
+
+
+@task(over="frame")
+def alignment(
+    mesh: Mesh, reference: Reference, template: Template, refit: ThirdRefit, suspects: Suspects
+) -> Alignment:
+    """Puts every vertex of the reference where it is in this frame, and says how far to believe that (2014, Sec. 5.3)."""
+    if reference.fixed:
+        return _given(mesh, reference)
+    body = graph(template)
+    x, n = shape(body, pose(refit))
+    found = belief(body.V, x, n, body.F, target(mesh, template), suspects.usual)
+    return Alignment(
+        vertices=x,
+        residual=found.residual,
+        stretch=found.stretch,
+        trust=found.trust,
+        uncovered=found.uncovered,
+    )
+
+
+def _given(mesh: Mesh, reference: Reference) -> Alignment:
+    """Fixed connectivity: every vertex is where the frame has it (2014, Sec. 7)."""
+    rest, x = np.array(reference.vertices), np.array(mesh.vertices)
+    return Alignment(
+        vertices=x,
+        residual=np.zeros(len(x)),
+        stretch=stretches(rest, x, reference.faces.astype(np.int64)),
+        trust=np.ones(len(x)),
+        uncovered=0.0,
+    )

@@ -1,0 +1,60 @@
+"""The one mesh that follows the body, and the order in which frames are reached from it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
+from kinetree.schemas.connectivity import Connectivity
+from kinetree.schemas.distribution import Distribution
+from kinetree.schemas.mesh import Mesh
+from kinetree.schemas.reference import Reference
+from kinetree.schemas.tips import Tips
+from kinetree.tasks.numerics import reference as numerics
+
+QUANTILES = 100
+
+
+@task()
+def reference(
+    mesh: Mapping[int, Mesh],
+    distribution: Mapping[int, Distribution],
+    tips: Mapping[int, Tips],
+    connectivity: Connectivity,
+) -> Reference:
+    """Chooses the frame to which all others are aligned, free of contact and amid the poses (2014, Sec. 5.3)."""
+    frames = tuple(mesh)
+    leaves = [len(t.vertices) for t in tips.values()]
+    euler = [t.euler for t in tips.values()]
+    area = [m.cleaning.area for m in mesh.values()]
+    chosen = numerics.reference(leaves, euler, area, np.stack([_quantiles(d) for d in distribution.values()]))
+    mine = mesh[frames[chosen.frame]]
+    return Reference(
+        frames=frames,
+        frame=frames[chosen.frame],
+        fixed=connectivity.fixed,
+        leaves=max(leaves),
+        free=chosen.free,
+        vertices=mine.vertices,
+        faces=mine.faces,
+        size=float(np.sqrt(area[chosen.frame])),
+        score=chosen.score,
+        before=outwards(len(frames), chosen.frame),
+    )
+
+
+def outwards(count: int, start: int) -> NDArray[np.int64]:
+    """(frame,) the position from which each frame is reached, from `start` to both ends; −1 for `start`."""
+    at = np.arange(count)
+    before: NDArray[np.int64] = np.where(at == start, -1, at - np.sign(at - start))
+    return before
+
+
+def _quantiles(distribution: Distribution) -> Floats:
+    """(quantile,) of μ over the surface, which change with the pose, from its fine histogram."""
+    edges = np.linspace(distribution.low, distribution.high, len(distribution.mass) + 1)
+    total = np.concatenate([[0.0], np.cumsum(distribution.mass)])
+    quantiles: Floats = np.interp((np.arange(QUANTILES) + 0.5) / QUANTILES * total[-1], total, edges)
+    return quantiles
