@@ -4,27 +4,17 @@ import base64
 import io
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from kinetree.schemas.report import RUN
 from kinetree.tasks.page.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-RUN = "<!--what ran-->"
-"""Where what ran is told, which is known only when the run is over."""
-
-
-FOLDED = {
-    "config": "Configuration, where it differs from the default",
-    "graph": "The graph",
-    "versions": "Versions",
-}
-
 
 @dataclass(frozen=True)
 class Section:
@@ -47,8 +37,9 @@ class Page:
 
 
 def document(page: Page) -> str:
-    """The whole page, with RUN where what ran is to stand."""
-    sections = [*page.sections, Section("run", "What ran", RUN)]
+    """The whole page, with `RUN` where what ran is to stand."""
+    ran = '<div id="ran"><p class="soft">Known only to a run that is over.</p></div>'
+    sections = [*page.sections, Section("run", "What ran", ran)]
     parts = {
         "title": escape(page.title),
         "style": _file("style.css"),
@@ -65,6 +56,7 @@ def document(page: Page) -> str:
         ),
         "scene": as_script(page.scene.told),
         "payload": page.scene.block,
+        "run": RUN,
         "three": _file("vendor/three.min.js"),
         "viewer": _file("viewer.js"),
     }
@@ -112,26 +104,6 @@ def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
         f'<figure><img alt="{escape(caption)}" src="data:image/{kind};base64,{data}">'
         f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
-
-
-def what_ran(told: Mapping[str, Any]) -> str:
-    """The section on the run itself, from what run.json holds."""
-    nodes = told.get("nodes", {})
-    counts = ", ".join(f"{count} {name}" for name, count in nodes.items() if count)
-    parts = [f"<p>{escape(str(told.get('run', '')))} {escape(str(told.get('status', '')))}: {escape(counts)}"]
-    parts.append(f" in {told['seconds']:.1f} s.</p>" if "seconds" in told else "</p>")
-    tasks = told.get("tasks") or {}
-    if tasks:
-        rows = [
-            (name, t.get("ran", 0), t.get("fresh", 0), t.get("failed", 0), round(float(t.get("seconds", 0)), 2))
-            for name, t in tasks.items()
-        ]
-        parts.append(table(("task", "ran", "reused", "failed", "seconds"), rows))
-    for key, name in FOLDED.items():
-        if told.get(key):
-            text = told[key] if isinstance(told[key], str) else json.dumps(told[key], indent=2, ensure_ascii=False)
-            parts.append(f"<details><summary>{name}</summary><pre>{escape(text)}</pre></details>")
-    return "".join(parts)
 
 
 def _text(value: object) -> str:

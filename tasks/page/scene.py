@@ -56,14 +56,17 @@ def scene(
     leaves: Leaves,
     intervals: Intervals,
     limits: Limits,
+    up: int | None = None,
 ) -> Scene:
     """The body playing, reduced to what a page can hold.
 
     Vertices are turned so that across is x, up is y and towards the eye is z.
+
+    up : axis of the coordinates that points up; None guesses it
     """
     shown = spread(len(skeleton.frames), limits.frames)
     frames = [skeleton.frames[t] for t in shown]
-    axes = view([meshes[frame].vertices for frame in frames], None)
+    axes = view([meshes[frame].vertices for frame in frames], up)
     kept, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([aligned[frame].vertices[kept] @ axes for frame in frames])
     sights = [_sight(meshes[f], projections[f], skeleton, limits.sighted) for f in frames]

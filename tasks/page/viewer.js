@@ -149,7 +149,7 @@ class Player {
 
   home() {
     this.controls.target.copy(new THREE.Vector3(...this.scene.centre));
-    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(this.scene.size * 2.1));
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(this.scene.size * 1.75));
     this.followed = null;
     this.controls.update();
   }
@@ -305,7 +305,49 @@ function wire(player) {
   new ResizeObserver(() => player.resize()).observe(byId("stage"));
 }
 
+function element(name, text, parent) {
+  const made = document.createElement(name);
+  if (text !== undefined) made.textContent = text;
+  parent.append(made);
+  return made;
+}
+
+function row(kind, cells, parent) {
+  const line = element("tr", undefined, parent);
+  for (const cell of cells) {
+    const made = element(kind, typeof cell === "number" && !Number.isInteger(cell) ? cell.toFixed(2) : String(cell ?? ""), line);
+    if (typeof cell === "number") made.className = "n";
+  }
+}
+
+// What ran is known only when the run is over, and is laid into the page then.
+function whatRan(run) {
+  const place = byId("ran");
+  place.textContent = "";
+  const counts = Object.entries(run.nodes || {}).filter(([, n]) => n).map(([name, n]) => `${n} ${name}`).join(", ");
+  element("p", `${run.run || "This run"} ${run.status}: ${counts || "nothing to do"}${run.seconds === undefined ? "" : ` in ${run.seconds} s`}.`, place);
+  for (const failure of run.failures || []) element("p", `${failure.node} failed: ${failure.message}`, place).className = "warnings";
+  const scroll = element("div", undefined, place);
+  scroll.className = "scroll";
+  scroll.tabIndex = 0;
+  const table = element("table", undefined, scroll);
+  row("th", ["task", "per", "reads", "ran", "reused", "failed", "seconds"], element("thead", undefined, table));
+  const body = element("tbody", undefined, table);
+  for (const [name, task] of Object.entries(run.graph || {})) {
+    const told = (run.tasks || {})[name] || {};
+    row("td", [name, task.over, task.reads.join(", "), told.ran || 0, told.fresh || 0, told.failed || 0, Number(told.seconds || 0)], body);
+  }
+  for (const [heading, told] of [["Configuration, where it differs from the default", run.config], ["Versions", run.versions]]) {
+    if (!told) continue;
+    const folded = element("details", undefined, place);
+    element("summary", heading, folded);
+    element("pre", typeof told === "string" ? told : JSON.stringify(told, null, 2), folded);
+  }
+}
+
 async function begin() {
+  const run = JSON.parse(byId("told").textContent.replace("/*what ran*/", ""));
+  if (run) whatRan(run);
   const scene = JSON.parse(byId("scene").textContent);
   if (!scene.frames.length) return;
   let player;

@@ -5,15 +5,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinetree.pipeline.errors import ConfigError
+from kinetree.tasks.plots.alignment import alignment
 from kinetree.tasks.plots.drawing import Fetch
 from kinetree.tasks.plots.macroscopic import correlation, mu
+from kinetree.tasks.plots.structure import confidence, skeleton, tree
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = (".png", ".svg", ".pdf")
 
-WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {"correlation": correlation, "mu": mu}
+WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
+    "correlation": correlation,
+    "mu": mu,
+    "alignment": alignment,
+    "skeleton": skeleton,
+    "tree": tree,
+    "confidence": confidence,
+}
 """What can be drawn, by the word of the command line."""
 
 

@@ -1,0 +1,44 @@
+"""One page that shows what a run found and how far it is to be believed."""
+
+import json
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from kinetree.schemas.array import Array, Artifact, Params
+from kinetree.schemas.dims import BYTE
+
+RUN = "null/*what ran*/"
+"""Stands in a page where what ran is to be told."""
+
+
+class ReportParams(Params):
+    """How much of a sequence the page holds."""
+
+    title: str = ""
+    """What the page is called; empty names it after the number of frames."""
+    frames: int = Field(default=90, ge=1, le=1000)
+    """Frames that play at most; more make the page slow to open."""
+    vertices: int = Field(default=4000, ge=50)
+    """Vertices of the aligned mesh at most."""
+    input_vertices: int = Field(default=2500, ge=50)
+    """Vertices of an input mesh at most."""
+    views: int = Field(default=4, ge=1, le=12)
+    """Frames of which still pictures are drawn."""
+    up: Literal["x", "y", "z"] | None = None
+    """Axis of the coordinates that points up; None guesses it."""
+
+
+class Report(Artifact):
+    """A page of HTML, but for what is known only when the run is over."""
+
+    page: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
+    """The page in UTF-8."""
+
+    def told_of(self, run: Mapping[str, Any]) -> bytes:
+        """The page with what ran, as JSON that cannot end the element it lies in."""
+        text = json.dumps(run, ensure_ascii=True).replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+        return self.page.tobytes().replace(RUN.encode(), text.encode(), 1)

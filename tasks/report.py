@@ -1,0 +1,149 @@
+"""One page that shows what a run found: the body playing, the curves and the tables a person needs to trust it."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.correlation import Correlation
+from kinetree.schemas.geodesics import Geodesics
+from kinetree.schemas.intervals import Intervals
+from kinetree.schemas.leaves import Leaves
+from kinetree.schemas.mesh import Mesh
+from kinetree.schemas.projection import Projection
+from kinetree.schemas.reference import Reference
+from kinetree.schemas.report import Report, ReportParams
+from kinetree.schemas.sequence import Sequence
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.numerics.scene import spread
+from kinetree.tasks.page.document import Page, Section, document, picture, table
+from kinetree.tasks.page.scene import Limits, scene
+from kinetree.tasks.plots.alignment import alignment as alignment_figure
+from kinetree.tasks.plots.macroscopic import correlation as correlation_figure
+from kinetree.tasks.plots.macroscopic import mu as mu_figure
+from kinetree.tasks.plots.structure import confidence, tree
+from kinetree.tasks.plots.structure import skeleton as skeleton_figure
+
+SHORT = 5
+"""Frames below which an interval is worth a warning."""
+
+
+@task()
+def report(
+    skeleton: Skeleton,
+    reference: Reference,
+    sequence: Sequence,
+    correlation: Correlation,
+    intervals: Intervals,
+    leaves: Leaves,
+    alignment: Mapping[int, Alignment],
+    projection: Mapping[int, Projection],
+    mesh: Mapping[int, Mesh],
+    geodesics: Mapping[int, Geodesics],
+    params: ReportParams,
+) -> Report:
+    """Draws and tells the run on one page that needs no network (ours)."""
+    once = {"skeleton": skeleton, "reference": reference, "correlation": correlation, "intervals": intervals, "leaves": leaves}
+    framed = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
+
+    def fetch(name: str, frame: int | None = None) -> Any:
+        return once[name] if frame is None else framed[name][frame]
+
+    limits = Limits(params.frames, params.vertices, params.input_vertices)
+    up = None if params.up is None else "xyz".index(params.up)
+    frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
+    page = Page(
+        title=params.title or f"kinetree: {skeleton.kinds.count('joint')} joints in {len(skeleton.frames)} frames",
+        facts=_facts(skeleton, sequence, reference, intervals),
+        warnings=list(_warnings(skeleton, intervals, leaves, alignment, mesh)),
+        scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
+        sections=[
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton)),
+            Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
+            Section("alignment", "Alignment", _aligned(fetch, frames, up)),
+        ],
+    )
+    return Report(page=np.frombuffer(document(page).encode(), dtype=np.uint8))
+
+
+def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton) -> str:
+    unit = skeleton.unit or "unit of the input"
+    rows = [
+        (
+            name,
+            skeleton.kinds[j],
+            skeleton.names[parent] if parent >= 0 else "–",
+            float(skeleton.lengths[j]),
+            float(skeleton.degrees[j]),
+            float(skeleton.drift[j]),
+            int(skeleton.support[j]),
+            float(skeleton.confidence[:, j].mean()),
+        )
+        for j, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True))
+    ]
+    head = ("joint", "kind", "parent", f"bone, {unit}", "turns, °", f"parts disagree by, {unit}", "frames", "confidence")
+    return (
+        picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
+        + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
+        + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
+        + table(head, rows)
+    )
+
+
+def _macroscopic(fetch: Any, frames: list[int], up: int | None) -> str:
+    return picture(
+        correlation_figure(fetch, frames, up),
+        "C(t) of Eq. 2 with the cuts and the intervals; below, how near every cue came to its threshold.",
+    ) + picture(mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high, with the leaves.", vector=False)
+
+
+def _aligned(fetch: Any, frames: list[int], up: int | None) -> str:
+    caption = "Distance of the aligned mesh to every frame, over time and on the surface."
+    return picture(alignment_figure(fetch, frames, up), caption, vector=False)
+
+
+def _facts(skeleton: Skeleton, sequence: Sequence, reference: Reference, intervals: Intervals) -> list[tuple[str, str]]:
+    return [
+        ("frames", str(len(skeleton.frames))),
+        ("joints", str(skeleton.kinds.count("joint"))),
+        ("ends of bones", str(skeleton.kinds.count("leaf"))),
+        ("intervals", str(len(intervals.begin))),
+        ("reference frame", str(reference.frame)),
+        ("unit", sequence.unit or "not known"),
+        ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),
+    ]
+
+
+def _warnings(
+    skeleton: Skeleton, intervals: Intervals, leaves: Leaves, aligned: Mapping[int, Alignment], meshes: Mapping[int, Mesh]
+) -> Iterator[str]:
+    """What a person should know before believing the page, in plain words."""
+    if "joint" not in skeleton.kinds:
+        yield from skeleton.remarks()
+    doubted = [str(frame) for frame, a in aligned.items() if float(np.mean(a.trust)) < 0.5]
+    if doubted:
+        yield f"the alignment is not trusted in {_some(doubted, 'frame')}; poses there come from the whole model"
+    weak = [n for n, k, s in zip(skeleton.names, skeleton.kinds, skeleton.support, strict=True) if k == "joint" and s < SHORT]
+    if weak:
+        yield f"little support, seen in fewer than {SHORT} frames: {_some(weak, 'joint')}"
+    low = [
+        name
+        for j, name in enumerate(skeleton.names)
+        if skeleton.kinds[j] == "joint" and float(skeleton.confidence[:, j].mean()) < 0.5
+    ]
+    if low:
+        yield f"low confidence: {_some(low, 'joint')}"
+    yield from (text for text in leaves.remarks() if "not seen" in text or "no leaves" in text)
+    for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
+        if end - begin + 1 < SHORT < len(intervals.frames):
+            yield f"interval {number} is short: {end - begin + 1} frames from frame {intervals.frames[int(begin)]}"
+    removed = [str(frame) for frame, m in meshes.items() if m.cleaning.components > m.cleaning.components_kept]
+    if removed:
+        yield f"components that are not the body were removed in {_some(removed, 'frame')}"
+
+
+def _some(names: list[str], what: str, most: int = 12) -> str:
+    rest = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{what}{'s' if len(names) > 1 else ''} {', '.join(names[:most])}{rest}"
