@@ -2,6 +2,9 @@
 
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params, PathLike
 from kinetree.schemas.dims import FRAME, JOINT, VERTEX, XYZ
 
@@ -42,7 +45,7 @@ class Truth(Artifact):
     """How far each joint turns against its parent over the clip; NaN where nobody says."""
     positions: Annotated[Floats, Array("float64", FRAME, JOINT, XYZ, unit="length")]
     """Of every joint in every frame."""
-    vertices: Annotated[Floats, Array("float32", FRAME, VERTEX, XYZ, unit="length")]
+    vertices: Annotated[NDArray[np.float32], Array("float32", FRAME, VERTEX, XYZ, unit="length")]
     """The true body in every frame; no vertices where it is not known."""
     carrier: Annotated[Ints, Array("int32", VERTEX)]
     """The joint that each vertex of the true body follows most."""

@@ -4,13 +4,19 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinetree.pipeline.errors import InputError
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
+from kinetree.schemas.source import Source
 from kinetree.schemas.truth import Truth, TruthParams
-from kinetree.tasks.numerics.evaluation.truth import TrueMotion, of_told, read_truth
+from kinetree.tasks.numerics.evaluation.body import nearest
+from kinetree.tasks.numerics.evaluation.truth import TrueMotion, factor, of_told, read_truth
 from kinetree.tasks.synth import body
+
+SYNTH = "synth"
+"""What the truth of a generated sequence is called."""
 
 
 @origin()
@@ -25,7 +31,23 @@ def truth(params: TruthParams, files: object) -> Truth:
 
 def synthetic(recipe: str) -> Truth:
     """The truth of a generated sequence, from the recipe its frames are made by."""
-    return _told(of_told(body(recipe).truth(), "the synthetic body"), "synth", None)
+    return _told(of_told(body(recipe).truth(), SYNTH), SYNTH, None)
+
+
+def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> Ints | None:
+    """(vertex,) the true joint that carries the surface at each of the vertices V of a frame; None where nobody knows.
+
+    V, unit : (vertex, xyz) vertices in the sequence's unit, and that unit
+    """
+    if source.recipe and truth.source == SYNTH:
+        made = body(source.recipe)
+        told = made.truth()
+        first = np.array([truth.names.index(joints[0]) for joints in told["parts"]], dtype=np.int32)
+        return first[made.parts(source.part or 0, V)]
+    if not truth.vertices.shape[1]:
+        return None
+    scale = factor(truth.unit, unit, truth.source)
+    return truth.carrier[nearest(truth.vertices[truth.frames.index(frame)] * scale, V)]
 
 
 def _stamp(path: str) -> tuple[int, int]:
@@ -53,7 +75,8 @@ def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) ->
     """The artifact; without joints where there is no motion."""
     if motion is None:
         motion = TrueMotion((), (), (), (), (), (), np.zeros((0, 0, 3)), None, None, None)
-    vertices, carrier = np.zeros((len(motion.X), 0, 3), np.float32), np.zeros(0, np.int32)
+    vertices: NDArray[np.float32] = np.zeros((len(motion.X), 0, 3), np.float32)
+    carrier: Ints = np.zeros(0, np.int32)
     if params is not None and params.body:
         vertices, carrier = _body(Path(params.body), motion)
     return Truth(
@@ -73,7 +96,7 @@ def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) ->
     )
 
 
-def _body(path: Path, motion: TrueMotion) -> tuple[Floats, Ints]:
+def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints]:
     """(frame, vertex, xyz) the true body and (vertex,) the joint each vertex follows most."""
     try:
         with np.load(path, allow_pickle=False) as held:

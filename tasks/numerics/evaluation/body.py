@@ -6,9 +6,10 @@ from scipy.spatial import KDTree
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Indices = npt.NDArray[np.integer]
 
 
-def skinned(V: Floats, influence: Ints, weight: Floats, rest: Floats, R: Floats, X: Floats) -> Floats:
+def skinned(V: Floats, influence: Indices, weight: Floats, rest: Floats, R: Floats, X: Floats) -> Floats:
     """One frame's surface, x(v) = Σ_i w_vi [R_i (v − rest_i) + x_i].
 
     V                 : (vertex, xyz) reference mesh, mesh unit

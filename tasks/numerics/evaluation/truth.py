@@ -1,5 +1,6 @@
 """A true skeleton as somebody wrote it down: truth.json, a skeleton.json of kinetree's own, or a BVH."""
 
+import itertools
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -130,7 +131,7 @@ def factor(unit: str | None, wanted: str | None, name: str) -> float:
         return 1.0
     for one in (unit, wanted):
         if one not in METRES:
-            raise InputError(f"{name}: the truth is in {unit} and the sequence in {wanted}; {one} is none of {', '.join(METRES)}")
+            raise InputError(f"{name} is in {unit} and the sequence in {wanted}; {one} is none of {', '.join(METRES)}")
     return METRES[unit] / METRES[wanted]
 
 
@@ -183,7 +184,7 @@ def _frames(told: Any, count: int, name: str) -> tuple[int, ...]:
         return tuple(range(count))
     if not isinstance(told, list) or len(told) != count or not all(isinstance(n, int) for n in told):
         raise InputError(f"{name}: frames must be {count} whole numbers, one for each frame of positions")
-    if any(a >= b for a, b in zip(told[:-1], told[1:], strict=True)):
+    if any(a >= b for a, b in itertools.pairwise(told)):
         raise InputError(f"{name}: frames must ascend")
     return tuple(told)
 

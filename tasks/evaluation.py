@@ -1,0 +1,238 @@
+"""How good the skeleton is against the truth, where somebody knows it."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.pipeline.errors import InputError
+from kinetree.pipeline.task import task
+from kinetree.schemas.array import Bools, Floats
+from kinetree.schemas.evaluation import Chamfer, Evaluation, EvaluationParams, JointScore, Overlap, PartScore, Summary
+from kinetree.schemas.mesh import Mesh
+from kinetree.schemas.projection import Projection
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.schemas.source import Source
+from kinetree.schemas.truth import Truth
+from kinetree.tasks.numerics.evaluation import body, rignet
+from kinetree.tasks.numerics.evaluation.jitter import jitter
+from kinetree.tasks.numerics.evaluation.lengths import length_variation
+from kinetree.tasks.numerics.evaluation.matching import Matching, errors, matching
+from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, mean_iou, rand_index
+from kinetree.tasks.numerics.evaluation.rates import detection_rate, nearest_distance
+from kinetree.tasks.numerics.evaluation.tree_edit import contracted, tree_edit_distance
+from kinetree.tasks.numerics.evaluation.truth import factor
+from kinetree.tasks.truth import synthetic, true_carriers
+
+SAME_RATE = 0.01
+"""Frame rates that differ by less than this share are the same, rounded."""
+
+
+class Sides(NamedTuple):
+    """Both skeletons in the sequence's unit, frame by frame, and who is whose partner."""
+
+    skeleton: Skeleton
+    truth: Truth
+    X: Floats
+    Y: Floats
+    height: float
+    found: Matching
+    error: Floats
+
+
+@task()
+def evaluation(
+    skeleton: Skeleton,
+    truth: Truth,
+    source: Mapping[int, Source],
+    mesh: Mapping[int, Mesh],
+    projection: Mapping[int, Projection],
+    params: EvaluationParams,
+) -> Evaluation:
+    """Compares the skeleton with the truth: joints, tree, parts, lengths and smoothness (2014, Sec. 7.1)."""
+    recipe = next((s.recipe for s in source.values()), "")
+    if not truth.names and recipe:
+        truth = synthetic(recipe)
+    if not truth.names:
+        none = np.zeros(len(skeleton.frames))
+        return Evaluation(truth="", frames=skeleton.frames, unit=skeleton.unit, height=0.0, joints=(), spurious=(),
+                          true_frames=0, summary=None, error=none[:, None][:, :0], detection=none, distance=none)  # fmt: skip
+    sides = _sides(skeleton, truth, params)
+    rate, distance = (f(sides.X, sides.Y[:, _moving(truth)]) for f in (detection_rate, nearest_distance))
+    told = {
+        "detection": float(rate.mean()),
+        "distance": float(distance.mean() / sides.height),
+        "parts": _parts(sides, source, mesh, projection),
+    }
+    return Evaluation(
+        truth=truth.source,
+        frames=skeleton.frames,
+        true_frames=len(truth.frames),
+        unit=skeleton.unit,
+        height=sides.height,
+        joints=tuple(_row(sides, j) for j in range(len(truth.names))),
+        spurious=tuple(skeleton.names[i] for i in sides.found.spurious),
+        summary=_summary(sides, params).model_copy(update=told),
+        error=sides.error,
+        detection=rate,
+        distance=distance / sides.height,
+    )
+
+
+def _sides(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> Sides:
+    """Brings the truth to the sequence's frames and unit, and matches; raises InputError where it is of another one."""
+    missing = [frame for frame in skeleton.frames if frame not in set(truth.frames)]
+    if missing:
+        raise InputError(
+            f"{truth.source}: it has frames {truth.frames[0]} to {truth.frames[-1]}, but not {len(missing)} of the"
+            f" {len(skeleton.frames)} of the sequence, the first {missing[0]}; is it the truth of another sequence?"
+        )
+    if truth.fps and skeleton.fps and abs(truth.fps / skeleton.fps - 1.0) > SAME_RATE:
+        raise InputError(
+            f"{truth.source}: it has {truth.fps:g} frames a second and the sequence {skeleton.fps:g}; frames are compared by"
+            " number, so resample the truth, or correct sequence.fps"
+        )
+    scale = factor(truth.unit, skeleton.unit, truth.source)
+    at = {frame: t for t, frame in enumerate(truth.frames)}
+    Y = truth.positions[[at[frame] for frame in skeleton.frames]] * scale
+    height = truth.height * scale if truth.height else body.side(skeleton.vertices)
+    is_joint = np.array([kind == "joint" for kind in skeleton.kinds])
+    asked = np.array([s or kind == "tip" for s, kind in zip(truth.scored, truth.kinds, strict=True)])
+    found = matching(
+        skeleton.positions, Y, _may(skeleton, truth), scored=asked, may_be_spurious=is_joint, limit=params.found * height
+    )
+    return Sides(skeleton, truth, skeleton.positions, Y, height, found, errors(skeleton.positions, Y, found.partner))
+
+
+def _may(skeleton: Skeleton, truth: Truth) -> Bools:
+    """(joint, true) joints with joints, ends of bones with tips, and the root, which turns against nothing, with the root."""
+    joint = np.array([kind == "joint" for kind in truth.kinds])
+    root = np.array(truth.parents) < 0
+    return np.array([{"root": root, "joint": joint, "leaf": ~joint}[kind] for kind in skeleton.kinds])
+
+
+def _moving(truth: Truth) -> Bools:
+    """(true,) the joints that motion can show: root, tips and those that are scored."""
+    told = zip(truth.scored, truth.kinds, truth.parents, strict=True)
+    return np.array([s or kind == "tip" or p < 0 for s, kind, p in told])
+
+
+def _seen(sides: Sides) -> Bools:
+    """(true,) the joints that divide the body: root, scored ones, and others where a joint was found."""
+    joint = np.array([kind == "joint" for kind in sides.truth.kinds])
+    return joint & (np.array(sides.truth.scored) | (np.array(sides.truth.parents) < 0) | (sides.found.partner >= 0))
+
+
+def _row(sides: Sides, j: int) -> JointScore:
+    truth, partner, error = sides.truth, int(sides.found.partner[j]), sides.error[:, j]
+    nearest, turns = float(sides.found.nearest[j]), float(truth.turns[j])
+    told = {} if partner < 0 else {
+        "found": sides.skeleton.names[partner], "mean": float(error.mean()), "deviation": float(error.std()),
+        "worst": float(error.max()), "percent": float(error.mean() / sides.height * 100.0),
+    }  # fmt: skip
+    return JointScore(
+        name=truth.names[j],
+        kind=truth.kinds[j],
+        scored=truth.scored[j],
+        turns=turns if np.isfinite(turns) else None,
+        nearest=nearest / sides.height * 100.0 if np.isfinite(nearest) else None,
+        **told,
+    )
+
+
+def _summary(sides: Sides, params: EvaluationParams) -> Summary:
+    """Counts and means; what needs the surface is added by others."""
+    truth, found, height = sides.truth, sides.found, sides.height
+    tip, scored = np.array([kind == "tip" for kind in truth.kinds]), np.array(truth.scored)
+    hit = scored & (found.partner >= 0)
+    mean = sides.error[:, hit].mean(axis=0)
+    rough, smooth = jitter(sides.X[:, found.partner[hit]], sides.Y[:, hit], sides.skeleton.frames)
+    claims = np.array([kind == "joint" for kind in sides.skeleton.kinds])
+    excused = np.flatnonzero(~scored & ~tip & (found.partner >= 0))
+    moving = _moving(truth)
+    tree = contracted(sides.skeleton.parents, [kind != "leaf" for kind in sides.skeleton.kinds])
+    tolerance, side = _surface(sides)
+    Y, above = sides.Y[:, moving], contracted(truth.parents, list(moving))
+    return Summary(
+        scored=int(scored.sum()),
+        found=int(hit.sum()),
+        close=int((mean <= params.close * height).sum()),
+        missing=int((scored & ~hit).sum()),
+        spurious=len(found.spurious),
+        excused=int(claims[found.partner[excused]].sum()),
+        tips=int(tip.sum()),
+        tips_found=int((tip & (found.partner >= 0)).sum()),
+        error=float(mean.mean()) if hit.any() else None,
+        percent=float(mean.mean() / height * 100.0) if hit.any() else None,
+        deviation=float(sides.error[:, hit].std(axis=0).mean()) if hit.any() else None,
+        chamfer=_chamfer(sides, sides.Y, truth.parents, side),
+        chamfer_moving=_chamfer(sides, Y, above, side),
+        overlap=_overlap(sides, sides.Y, tolerance),
+        overlap_moving=_overlap(sides, Y, tolerance[moving]),
+        tree_edit=tree_edit_distance(tree, contracted(truth.parents, list(_seen(sides)))),
+        length_variation=float(length_variation(sides.X, sides.skeleton.parents).max(initial=0.0) * 100.0),
+        true_length_variation=float(length_variation(sides.Y, truth.parents).max(initial=0.0) * 100.0),
+        jitter=rough / smooth if smooth > 0.0 else None,
+        jitter_percent=rough / height * 100.0,
+    )
+
+
+def _surface(sides: Sides) -> tuple[Floats, float]:
+    """(true,) half the body's diameter at every true joint, median over the frames, and the side of the body's cube.
+
+    raises : InputError where the true joints are not in the body
+    """
+    s = sides.skeleton
+    within, radius = [], []
+    for R, x, y in zip(s.rotation, sides.X, sides.Y, strict=True):
+        V = body.skinned(s.vertices, s.influence, s.weight, s.rest, R, x)
+        within.append(body.inside(V, y))
+        radius.append(body.radii(V, y))
+    if np.median(within) < 0.5:
+        spans = f"true joints span {body.side(sides.Y[0]):.4g} and the body {body.side(s.vertices):.4g}"
+        raise InputError(
+            f"{sides.truth.source}: most true joints lie outside the body: it is the truth of another sequence, or in another"
+            f" unit or other axes; {spans}; say the unit with truth.unit"
+        )
+    return np.median(radius, axis=0), body.side(s.vertices)
+
+
+def _chamfer(sides: Sides, Y: Floats, above: "tuple[int, ...] | list[int]", side: float) -> Chamfer:
+    return Chamfer(**rignet.chamfer(sides.X, sides.skeleton.parents, Y, above, side)._asdict())
+
+
+def _overlap(sides: Sides, Y: Floats, tolerance: Floats) -> Overlap:
+    told = rignet.overlap(sides.X, Y, tolerance)._asdict()
+    return Overlap(**{name: 100.0 * value for name, value in told.items()})
+
+
+def _parts(
+    sides: Sides, source: Mapping[int, Source], mesh: Mapping[int, Mesh], projection: Mapping[int, Projection]
+) -> PartScore | None:
+    """Labels of the user's own vertices in all frames, found and true; None where the true ones are not known."""
+    s = sides.skeleton
+    part = np.where(s.label >= 0, s.label, s.influence[np.arange(len(s.label)), s.weight.argmax(axis=1)])
+    part = np.where([kind == "leaf" for kind in s.kinds], s.parents, np.arange(len(s.names)))[part]
+    seen = _seen(sides)
+    above = np.arange(len(seen))
+    while not seen[above].all():
+        above = np.where(seen[above], above, np.array(sides.truth.parents)[above])
+    labels, others = [], []
+    for frame in s.frames:
+        carrier = None
+        if frame in mesh:
+            carrier = true_carriers(sides.truth, source[frame], mesh[frame].vertices, frame, s.unit)
+        if carrier is None:
+            return None
+        vertex, where = mesh[frame].vertex_of_input, projection[frame]
+        known = (vertex >= 0) & (where.face >= 0)
+        labels.append(part[s.faces[where.face[known], where.share[known].argmax(axis=1)]])
+        others.append(above[carrier[vertex[known]]])
+    table = contingency(np.concatenate(labels), np.concatenate(others))
+    return PartScore(
+        rand=rand_index(table),
+        adjusted_rand=adjusted_rand_index(table),
+        mean_iou=mean_iou(table),
+        parts=table.shape[0],
+        true_parts=table.shape[1],
+    )
