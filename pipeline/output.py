@@ -9,7 +9,7 @@ import yaml
 
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
-from kinetree.pipeline.errors import DamagedArtifactError
+from kinetree.pipeline.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline.place import Folder
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.schemas.array import Artifact
@@ -63,6 +63,25 @@ def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
     return [*files, *([name] if name else [])]
 
 
+def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
+    """Leaves what one task's artifacts leave at a path of the user's: one file or group is named so, several lie in it.
+
+    raises : as `write_results`; ConfigError where that would overwrite what the sequence is read from
+    """
+    done = [e for e in schedule.entries.values() if e.node.task == task and e.artifact is not None]
+    files = {name: data for e in done for name, data in schedule.value(e.node).files(e.node.at).items()}
+    names = {name: name.rpartition("/")[2] for name in files}
+    group = done[0].task.returns.left_as if done else ""
+    is_folder = path.is_dir() and not group
+    targets = {name: path / short if is_folder or len(files) > 1 else path for name, short in names.items()}
+    _refuse_input([*targets.values(), *([path] if group else [])], schedule)
+    for name, target in targets.items():
+        Folder(target.parent, "output folder", beside="").put(target.name, files[name])
+    if group:
+        _put_group(Folder(path.parent, "output folder", beside=""), path.name, schedule.store.group(str(done[0].artifact)))
+    return [*targets.values(), *([path] if group else [])]
+
+
 def leaves(cls: type[Artifact]) -> bool:
     """Whether artifacts of this class leave anything in an output folder."""
     return bool(cls.left_as) or cls.files is not Artifact.files
@@ -72,8 +91,19 @@ def _put_group(place: Folder, name: str, files: Mapping[str, bytes]) -> None:
     """A group's attributes hold the digests of its arrays: where they and all sizes agree, so does the rest."""
     sizes = {path: len(data) for path, data in files.items()}
     if place.get(f"{name}/zarr.json") != files["zarr.json"] or place.tree(name) != sizes:
+        if place.tree(name) and place.size(f"{name}/zarr.json") is None:
+            raise StoreError(f"output folder {place.url}: {name} is there and no zarr group; remove it or name another")
         place.remove(name)
         place.put_all(name, files)
+
+
+def _refuse_input(targets: list[Path], schedule: Schedule) -> None:
+    """What the sequence is read from is the user's own and may be all there is."""
+    found = [artifact for given in schedule.given.values() for artifact in given.values()]
+    places = {Path(str(getattr(a, name))).absolute() for a in found for name in a.location_fields() if name == "path"}
+    for target in targets:
+        if target.absolute() in places:
+            raise ConfigError(f"{target}: the sequence is read from it; name another place with --output")
 
 
 def _write(folder: Path, name: str, text: str) -> None:

@@ -1,0 +1,13 @@
+"""The motion as motion-capture programs take it."""
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.bvh import Bvh
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.exports.bvh import bvh as written
+
+
+@task()
+def bvh(skeleton: Skeleton) -> Bvh:
+    """Writes skeleton.bvh, the motion with constant bone lengths."""
+    text, between = written(skeleton)
+    return Bvh.of({"skeleton.bvh": text.encode()}, between=between)

@@ -1,0 +1,93 @@
+"""`kinetree export`: what a run found as a file that other programs open."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinetree.pipeline.errors import ConfigError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
+from kinetree.pipeline.output import write_elsewhere, write_result
+from kinetree.pipeline.printable import printable
+from kinetree.pipeline.suggest import nearest
+from kinetree.tasks.exports.document import schema
+
+FORMATS = {
+    "glb": "glb",
+    "bvh": "bvh",
+    "json": "skeleton_json",
+    "csv": "tables",
+    "ply": "ply",
+    "rignet": "rignet",
+    "usd": "usd",
+    "zarr": "segmentation",
+}
+"""The task that writes each format."""
+SCHEMA = "json-schema"
+EXAMPLES = (
+    "Examples: kinetree export walk/ --to csv · kinetree export walk/ --to glb -o walk.glb --set glb.up=z --set glb.scale=0.001"
+    " · kinetree export walk/ --to ply -o coloured/"
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to the command line."""
+    app.command(epilog=EXAMPLES)(export)
+
+
+def export(
+    run: Target = None,
+    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help=f"{', '.join(FORMATS)} or {SCHEMA}.")] = "glb",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="File or folder; default: the run's own folder.")
+    ] = None,
+    sets: Set = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write what a run found as a file for other programs; nothing but the file is computed.
+
+    glb and usd hold the skinned, moving body, bvh the motion, json the joints, csv tables of trajectories, angles and
+    lengths, ply your own meshes coloured by part, rignet the rig as text, zarr part labels and aligned meshes.
+    """
+    if to not in (*FORMATS, SCHEMA):
+        raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")
+    if to == SCHEMA:
+        _tell_schema(output)
+        return
+    pipeline = pipeline_of(run, sets=sets)
+    written, remarks = _written(pipeline, FORMATS[to], output)
+    if as_json:
+        print_json({"files": [str(path) for path in written], "remarks": remarks})
+        return
+    for text in remarks:
+        typer.echo(printable(text), err=True)
+    shown = written if len(written) <= 4 else written[:1]
+    for path in shown:
+        typer.echo(printable(path))
+    if len(shown) < len(written):
+        typer.echo(f"… and {len(written) - len(shown)} more files beside it")
+
+
+def _written(pipeline: Pipeline, task: str, output: Path | None) -> tuple[list[Path], list[str]]:
+    """Where the files are, and what there is to say of them."""
+    schedule = pipeline.computed(task)
+    done = [entry for entry in schedule.entries.values() if entry.node.task == task]
+    remarks = list(dict.fromkeys(text for entry in done for text in schedule.value(entry.node).remarks()))
+    if output is not None:
+        return write_elsewhere(output, schedule, task), remarks
+    folder = pipeline.config.output
+    return [folder / name for entry in done for name in write_result(folder, schedule, entry)], remarks
+
+
+def _tell_schema(output: Path | None) -> None:
+    text = json.dumps(schema(), indent=2) + "\n"
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    try:
+        output.write_text(text)
+    except OSError as error:
+        raise ConfigError(f"{output}: cannot be written: {error.strerror}; name another file") from None
+    typer.echo(printable(output))

@@ -1,0 +1,12 @@
+"""The rig as learning programs take it."""
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.rignet import Rignet
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.exports.rignet import rignet as written
+
+
+@task(on_request=True)
+def rignet(skeleton: Skeleton) -> Rignet:
+    """Writes the rig as RigNet's text, with the mesh it belongs to."""
+    return Rignet.of({f"rignet/{name}": data for name, data in written(skeleton).items()})
