@@ -203,7 +203,7 @@ def test_truth_of_other_frames_altogether_is_refused():
 
 
 def test_truth_of_another_sequence_is_refused():
-    with pytest.raises(InputError, match="the true joints do not lie in the body as joints do: it is the truth of another sequence"):
+    with pytest.raises(InputError, match="do not lie in the body as joints do: it is the truth of another sequence"):
         evaluated(true=TRUTH.model_copy(update={"positions": TRUTH.positions + 10 * HEIGHT}))
 
 

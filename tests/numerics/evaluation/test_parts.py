@@ -26,7 +26,7 @@ def test_chance_agrees_by_nothing_once_adjusted():
 
 
 def test_pairs_counted_one_by_one_are_the_same():
-    """a a b b b against x x x y y: of ten pairs ab·xx … agree 4 together or apart (1–2, 4–5, and 1, 2 apart from 4, 5)."""
+    """Five points, a a b b b against x x x y y: all ten pairs."""
     a, b = np.array([0, 0, 1, 1, 1]), np.array([0, 0, 0, 1, 1])
     agree = sum((a[i] == a[j]) == (b[i] == b[j]) for i in range(5) for j in range(i))
     assert rand_index(contingency(a, b)) == pytest.approx(agree / 10)

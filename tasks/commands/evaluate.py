@@ -1,0 +1,141 @@
+"""`kinetree evaluate`: how good a run's skeleton is against the truth."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from kinetree.pipeline.errors import ConfigError, InputError, NodesFailedError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.options import AsJson, Set, out, print_json
+from kinetree.pipeline.printable import printable
+from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
+from kinetree.tasks.plots.evaluation import drawn
+
+EXAMPLES = (
+    "Examples: kinetree evaluate walk-out walk/truth.json · kinetree evaluate walk-out dance.bvh --set truth.unit=cm"
+    " · kinetree evaluate walk-out other-run/skeleton.json --plot errors.png"
+)
+ENDINGS = (".png", ".svg", ".pdf")
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to the command line."""
+    app.command(epilog=EXAMPLES)(evaluate)
+
+
+def evaluate(
+    run: Annotated[str, typer.Argument(metavar="RUN", help="A configuration or the output folder of a run.")],
+    truth: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[TRUTH]",
+            help="A truth.json, a skeleton.json or a BVH; left out: the run's own.",
+            show_default=False,
+        ),
+    ] = None,
+    body: Annotated[
+        Path | None, typer.Option("--body", help="An npz of the true body with skinning weights, for the true parts.")
+    ] = None,
+    plot: Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw every joint's error over time.")] = None,
+    sets: Set = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say how far every joint is from the true one, what is missing and what is spurious.
+
+    Frames are compared by their numbers in the source. Computes nothing but the comparison.
+    """
+    if plot is not None and plot.suffix.lower() not in ENDINGS:
+        raise ConfigError(f"--plot {plot}: pictures end in {', '.join(ENDINGS)}")
+    told = evaluated(run, truth, body, sets)
+    if plot is not None:
+        _draw(told, plot)
+    if as_json:
+        print_json(json.loads(told.files(())["evaluation.json"]))
+        return
+    _print(told)
+    if plot is not None:
+        out.print(printable(plot), markup=False)
+
+
+def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list[str] | None = None) -> Evaluation:
+    """The comparison of a run with a truth; raises InputError where they are not of the same sequence."""
+    given = {"truth.file": truth, "truth.body": body}
+    told = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in given.items() if path is not None]
+    pipeline = Pipeline.of(run, sets=[*(sets or ()), *told])
+    try:
+        schedule = pipeline.computed("evaluation")
+    except NodesFailedError as error:
+        if f": {InputError.__name__}: " in str(error):
+            raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None
+        raise
+    found: Any = pipeline.artifact("evaluation", within=schedule)
+    if found.summary is None:
+        raise ConfigError(f"{run}: nobody knows the truth of it; name one, e.g. kinetree evaluate {run} truth.json")
+    return Evaluation.model_validate({**found.plain(), **found.arrays()})
+
+
+def _print(told: Evaluation) -> None:
+    """One line a joint, then what sums it up."""
+    unit = told.unit or "length"
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name, left in (("joint", True), ("turns", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
+        table.add_column(name, justify="left" if left else "right", overflow="fold")
+    for row in sorted(told.joints, key=lambda j: (j.kind == "tip", not j.scored)):
+        if row.scored or row.kind == "tip" or row.found is not None:
+            table.add_row(*(escape(printable(cell)) for cell in _cells(row)))
+    out.print(table)
+    for line in told.remarks():
+        out.print(printable(line), markup=False)
+    if told.spurious:
+        out.print(printable(f"spurious: {', '.join(told.spurious)}"), markup=False)
+    if told.summary is not None:
+        for line in _lines(told.summary):
+            out.print(printable(line), markup=False)
+
+
+def _cells(row: JointScore) -> list[str]:
+    turns = "" if row.turns is None or row.kind == "tip" else f"{row.turns:.0f}°"
+    name = row.name if row.scored or row.kind == "tip" else f"{row.name} (not asked for)"
+    if row.found is None:
+        near = "" if row.nearest is None else f"missing; the nearest is at {row.nearest:.1f} %"
+        return [name, turns, near, "", "", ""]
+    return [name, turns, row.found, f"{row.mean:.4g}", f"{row.deviation:.2g}", f"{row.percent:.2f}"]
+
+
+def _lines(s: Summary) -> list[str]:
+    """The summary in words."""
+    lines = [
+        f"within the closer limit: {s.close} of {s.scored}; excused: {s.excused}; tips found: {s.tips_found} of {s.tips}",
+        f"R_detection {s.detection:.2f}, E_dist {s.distance:.4f} of the height (2009, Eqs. 7–9)",
+        f"tree edit distance {s.tree_edit}",
+    ]
+    sides = (("all true joints", s.chamfer, s.overlap), ("those that move", s.chamfer_moving, s.overlap_moving))
+    for name, c, o in sides:
+        lines.append(
+            f"against {name}: CD-J2J {c.j2j:.2f}, CD-J2B {c.j2b:.2f}, CD-B2B {c.b2b:.2f} ×10⁻²;"
+            f" IoU {o.iou:.1f} %, precision {o.precision:.1f} %, recall {o.recall:.1f} %"
+        )
+    if s.parts is not None:
+        p = s.parts
+        agree = f"Rand {p.rand:.3f}, adjusted {p.adjusted_rand:.3f}, mean IoU {p.mean_iou:.3f}"
+        lines.append(f"parts: {p.parts} found, {p.true_parts} true; {agree}")
+    rough = "" if s.jitter is None else f", {s.jitter:.2f} of the truth's own"
+    lines.append(f"bone lengths vary by {s.length_variation:.2g} %")
+    lines.append(f"jitter {s.jitter_percent:.3f} % of the height a frame²{rough}")
+    return lines
+
+
+def _draw(told: Evaluation, path: Path) -> None:
+    """Draws into a file, complete or not at all."""
+    beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        drawn(told).savefig(beside, dpi=150, bbox_inches="tight")
+        beside.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        beside.unlink(missing_ok=True)
