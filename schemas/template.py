@@ -12,7 +12,7 @@ class TemplateParams(Params):
     """How finely the reference is covered with nodes."""
 
     nodes: int = Field(default=900, ge=10, le=100_000)
-    """Nodes, fewer if the mesh has fewer vertices."""
+    """Nodes, at most one for every two vertices."""
     finest: float = Field(default=0.4, gt=0, le=1)
     """Spacing of nodes where the body is thinnest, share of the spacing where it is thick."""
     thick: float = Field(default=0.08, gt=0)

@@ -16,9 +16,7 @@ from kinetree.tasks.pose import graph, pose, target
 
 
 @task(over="frame")
-def alignment(
-    mesh: Mesh, reference: Reference, template: Template, refit: ThirdRefit, suspects: Suspects
-) -> Alignment:
+def alignment(mesh: Mesh, reference: Reference, template: Template, refit: ThirdRefit, suspects: Suspects) -> Alignment:
     """Puts every vertex of the reference where it is in this frame, and says how far to believe that (2014, Sec. 5.3)."""
     if reference.fixed:
         return _given(mesh, reference)

@@ -34,9 +34,7 @@ def third_refit(mesh: Mesh, template: Template, refit: SecondRefit, stiffness: T
     return _fitted(ThirdRefit, mesh, template, refit, stiffness, PASSES[2])
 
 
-def _fitted(
-    cls: type[P], mesh: Mesh, template: Template, start: Pose, stiffness: Stiffness, settings: FitSettings
-) -> P:
+def _fitted(cls: type[P], mesh: Mesh, template: Template, start: Pose, stiffness: Stiffness, settings: FitSettings) -> P:
     """The pose after one more pass; the reference stays what it is."""
     found = pose(start)
     if start.steps > 0 and len(template.nodes):

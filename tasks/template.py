@@ -13,7 +13,9 @@ def template(reference: Reference, params: TemplateParams) -> Template:
     """Covers the reference mesh with nodes, binds its vertices to them and ties neighbours (ours, for 2014, Sec. 5.2)."""
     if reference.fixed:
         return _empty(reference.size)
-    settings = numerics.TemplateSettings(params.nodes, params.finest, params.thick, params.strut, params.samples)
+    # with a node on every vertex nothing lies between nodes, and nothing would tie them
+    nodes = max(min(params.nodes, len(reference.vertices) // 2), 1)
+    settings = numerics.TemplateSettings(nodes, params.finest, params.thick, params.strut, params.samples)
     made = numerics.template(np.array(reference.vertices), np.array(reference.faces), settings)
     return Template(
         vertices=made.V,

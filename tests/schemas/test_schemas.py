@@ -76,17 +76,18 @@ def test_every_other_field_is_plain_json(model):
 def test_task_artifact_and_params_share_one_stem(name):
     task = TASKS[name]
     artifact = task.returns.__name__
+    stem = task.module.removeprefix("kinetree.tasks.")
+    assert name == stem or name.endswith(f"_{stem}"), "a later pass of an operation is named first_refit, second_refit, …"
     assert artifact.lower() == name.replace("_", "")
-    assert task.returns.__module__ == f"kinetree.schemas.{name}"
-    assert task.module == f"kinetree.tasks.{name}"
+    assert task.returns.__module__ == f"kinetree.schemas.{stem}"
     if task.params is not None:
         assert task.params.__name__ == f"{artifact}Params"
-        assert task.params.__module__ == f"kinetree.schemas.{name}"
+        assert task.params.__module__ == f"kinetree.schemas.{stem}"
 
 
 @pytest.mark.parametrize("model", ARTIFACTS, ids=named)
-def test_every_schema_is_written_by_a_task(model):
-    assert model in {task.returns for task in TASKS.values()}
+def test_every_schema_is_written_by_a_task_or_is_what_several_have_in_common(model):
+    assert any(issubclass(task.returns, model) for task in TASKS.values())
 
 
 def test_version_is_a_number_from_one_on():

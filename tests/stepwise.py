@@ -1,0 +1,101 @@
+"""Step II, task after task, called as the plain functions they are, on generated bodies."""
+
+from collections.abc import Sequence
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from kinetree.schemas.distribution import DistributionParams
+from kinetree.schemas.geodesics import GeodesicsParams
+from kinetree.schemas.mesh import Cleaning, Mesh
+from kinetree.schemas.synth import SynthParams
+from kinetree.schemas.template import TemplateParams
+from kinetree.schemas.tips import TipsParams
+from kinetree.tasks.alignment import alignment
+from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.distribution import distribution
+from kinetree.tasks.geodesics import geodesics
+from kinetree.tasks.numerics.mesh import clean
+from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.projection import projection
+from kinetree.tasks.reference import reference
+from kinetree.tasks.refit import first_refit, second_refit, third_refit
+from kinetree.tasks.repair import repair
+from kinetree.tasks.stiffness import first_stiffness, second_stiffness, third_stiffness
+from kinetree.tasks.suspects import suspects
+from kinetree.tasks.synth import body, recipe
+from kinetree.tasks.template import template
+from kinetree.tasks.tips import tips
+from kinetree.tasks.tracking import tracking
+
+
+def cleaned(V: np.ndarray, F: np.ndarray) -> Mesh:
+    """One frame as the task `mesh` leaves it."""
+    made = clean(V, F.astype(np.int32))
+    told = Cleaning(area=made.area, euler=made.euler)
+    return Mesh(vertices=made.V, faces=made.F, vertex_of_input=made.vertex_map, cleaning=told)
+
+
+def bodied(**told: Any) -> Body:
+    """A generated body; a walking human of five frames, but for what is told."""
+    return body(recipe(SynthParams(**{"figure": "human", "frames": 5, "vertices": 1500, **told})))
+
+
+def generated(**told: Any) -> dict[int, Mesh]:
+    """Every frame of it."""
+    made = bodied(**told)
+    return {t: cleaned(*made.frame(t)) for t in range(len(made.X))}
+
+
+def along(task: Any, order: Any, frames: Sequence[int], **per_frame: Any) -> dict[int, Any]:
+    """A task that reads its own previous artifact, over all frames in the order of its traversal."""
+    made: dict[int, Any] = {}
+
+    def at(frame: int) -> Any:
+        if frame not in made:
+            before = order.previous(frame)
+            previous = None if before is None else at(before)
+            here = {k: v[frame] if isinstance(v, dict) else v for k, v in per_frame.items()}
+            made[frame] = task(**here, previous=previous)
+        return made[frame]
+
+    return {frame: at(frame) for frame in frames}
+
+
+def referred(meshes: dict[int, Mesh]) -> Any:
+    """The reference of a sequence."""
+    mu = {t: geodesics(m, GeodesicsParams(bases=40)) for t, m in meshes.items()}
+    return reference(
+        mesh=meshes,
+        distribution={t: distribution(g, DistributionParams()) for t, g in mu.items()},
+        tips={t: tips(meshes[t], g, TipsParams()) for t, g in mu.items()},
+        connectivity=connectivity(meshes),
+    )
+
+
+def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
+    """Every artifact of Step II, by the name of its task; per frame as a mapping."""
+    made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
+    made.template = template(made.reference, TemplateParams(nodes=nodes))
+    both = {"mesh": meshes, "template": made.template}
+    made.tracking = along(tracking, made.reference, list(meshes), **both)
+    made.suspects = suspects(made.tracking, made.reference)
+    made.repair = along(repair, made.suspects, list(meshes), tracking=made.tracking, suspects=made.suspects, **both)
+    last = made.repair
+    passes = ((first_stiffness, first_refit), (second_stiffness, second_refit), (third_stiffness, third_refit))
+    for learn, fit in passes:
+        stiffness = learn(made.template, tuple(last.values()))
+        last = {t: fit(meshes[t], made.template, pose, stiffness) for t, pose in last.items()}
+        setattr(made, learn.name, stiffness)
+        setattr(made, fit.name, last)
+    made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
+    made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
+    return made
+
+
+@cache
+def walk() -> SimpleNamespace:
+    """A walking human, aligned: what most tests look at."""
+    return aligned(generated())
