@@ -49,3 +49,5 @@ class Truth(Artifact):
     """The true body in every frame; no vertices where it is not known."""
     carrier: Annotated[Ints, Array("int32", VERTEX)]
     """The joint that each vertex of the true body follows most."""
+    bone_end: Annotated[Ints, Array("int32", VERTEX)]
+    """The other end of the one bone that the vertex follows; −1 where the joint carries all its bones as one."""

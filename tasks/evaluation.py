@@ -18,6 +18,7 @@ from kinetree.tasks.numerics.evaluation import body, rignet
 from kinetree.tasks.numerics.evaluation.jitter import jitter
 from kinetree.tasks.numerics.evaluation.lengths import length_variation
 from kinetree.tasks.numerics.evaluation.matching import Matching, errors, matching
+from kinetree.tasks.numerics.evaluation.meeting import Divided, divided
 from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, mean_iou, rand_index
 from kinetree.tasks.numerics.evaluation.rates import detection_rate, nearest_distance
 from kinetree.tasks.numerics.evaluation.tree_edit import contracted, tree_edit_distance
@@ -34,15 +35,24 @@ LEAST_SPAN = 0.2
 
 
 class Sides(NamedTuple):
-    """Both skeletons in the sequence's unit, frame by frame, and who is whose partner."""
+    """Both skeletons in the sequence's unit, frame by frame, and who is whose partner.
+
+    Y is of the joints as the truth tells them; `tree`, `found` and `error` are of those that carry one rigid piece each.
+    """
 
     skeleton: Skeleton
     truth: Truth
     X: Floats
     Y: Floats
     height: float
+    tree: Divided
     found: Matching
     error: Floats
+
+    @property
+    def tip(self) -> Bools:
+        """(true,) which joints are tips."""
+        return np.array([kind == "tip" for kind in self.truth.kinds])[self.tree.origin]
 
 
 @task()
@@ -75,7 +85,7 @@ def evaluation(
         true_frames=len(truth.frames),
         unit=skeleton.unit,
         height=sides.height,
-        joints=tuple(_row(sides, j) for j in range(len(truth.names))),
+        joints=tuple(_row(sides, j) for j in range(len(sides.tree.parents))),
         spurious=tuple(skeleton.names[i] for i in sides.found.spurious),
         summary=_summary(sides, params).model_copy(update=told),
         error=sides.error,
@@ -102,18 +112,13 @@ def _sides(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> Sides:
     Y = truth.positions[[at[frame] for frame in skeleton.frames]] * scale
     height = truth.height * scale if truth.height else body.side(skeleton.vertices)
     is_joint = np.array([kind == "joint" for kind in skeleton.kinds])
-    asked = np.array([s or kind == "tip" for s, kind in zip(truth.scored, truth.kinds, strict=True)])
-    found = matching(
-        skeleton.positions, Y, _may(skeleton, truth), scored=asked, may_be_spurious=is_joint, limit=params.found * height
-    )
-    return Sides(skeleton, truth, skeleton.positions, Y, height, found, errors(skeleton.positions, Y, found.partner))
-
-
-def _may(skeleton: Skeleton, truth: Truth) -> Bools:
-    """(joint, true) joints with joints, ends of bones with tips, and the root, which turns against nothing, with the root."""
-    joint = np.array([kind == "joint" for kind in truth.kinds])
-    root = np.array(truth.parents) < 0
-    return np.array([{"root": root, "joint": joint, "leaf": ~joint}[kind] for kind in skeleton.kinds])
+    tree = divided(Y, truth.parents, truth.scored, height)
+    tip = np.array([kind == "tip" for kind in truth.kinds])[tree.origin]
+    pairs = {"root": np.array(tree.parents) < 0, "joint": ~tip, "leaf": tip}  # a root turns against nothing
+    may = np.array([pairs[kind] for kind in skeleton.kinds])
+    X, Z = skeleton.positions, Y[:, tree.origin]
+    found = matching(X, Z, may, scored=tree.scored | tip, may_be_spurious=is_joint, limit=params.found * height)
+    return Sides(skeleton, truth, X, Y, height, tree, found, errors(X, Z, found.partner))
 
 
 def _moving(truth: Truth) -> Bools:
@@ -124,21 +129,20 @@ def _moving(truth: Truth) -> Bools:
 
 def _seen(sides: Sides) -> Bools:
     """(true,) the joints that divide the body: root, scored ones, and others where a joint was found."""
-    joint = np.array([kind == "joint" for kind in sides.truth.kinds])
-    return joint & (np.array(sides.truth.scored) | (np.array(sides.truth.parents) < 0) | (sides.found.partner >= 0))
+    return ~sides.tip & (sides.tree.scored | (np.array(sides.tree.parents) < 0) | (sides.found.partner >= 0))
 
 
 def _row(sides: Sides, j: int) -> JointScore:
-    truth, partner, error = sides.truth, int(sides.found.partner[j]), sides.error[:, j]
-    nearest, turns = float(sides.found.nearest[j]), float(truth.turns[j])
+    truth, partner, error, of = sides.truth, int(sides.found.partner[j]), sides.error[:, j], int(sides.tree.origin[j])
+    nearest, turns = float(sides.found.nearest[j]), float(truth.turns[of])
     told = {} if partner < 0 else {
         "found": sides.skeleton.names[partner], "mean": float(error.mean()), "deviation": float(error.std()),
         "worst": float(error.max()), "percent": float(error.mean() / sides.height * 100.0),
     }  # fmt: skip
     return JointScore(
-        name=truth.names[j],
-        kind=truth.kinds[j],
-        scored=truth.scored[j],
+        name=truth.names[of],
+        kind=truth.kinds[of],
+        scored=bool(sides.tree.scored[j]),
         turns=turns if np.isfinite(turns) else None,
         nearest=nearest / sides.height * 100.0 if np.isfinite(nearest) else None,
         **told,
@@ -148,10 +152,10 @@ def _row(sides: Sides, j: int) -> JointScore:
 def _summary(sides: Sides, params: EvaluationParams) -> Summary:
     """Counts and means; what needs the surface is added by others."""
     truth, found, height = sides.truth, sides.found, sides.height
-    tip, scored = np.array([kind == "tip" for kind in truth.kinds]), np.array(truth.scored)
+    tip, scored = sides.tip, sides.tree.scored
     hit = scored & (found.partner >= 0)
     mean = sides.error[:, hit].mean(axis=0)
-    rough, smooth = jitter(sides.X[:, found.partner[hit]], sides.Y[:, hit], sides.skeleton.frames)
+    rough, smooth = jitter(sides.X[:, found.partner[hit]], sides.Y[:, sides.tree.origin[hit]], sides.skeleton.frames)
     claims = np.array([kind == "joint" for kind in sides.skeleton.kinds])
     excused = np.flatnonzero(~scored & ~tip & (found.partner >= 0))
     moving = _moving(truth)
@@ -174,7 +178,7 @@ def _summary(sides: Sides, params: EvaluationParams) -> Summary:
         chamfer_moving=_chamfer(sides, Y, above, side),
         overlap=_overlap(sides, sides.Y, tolerance),
         overlap_moving=_overlap(sides, Y, tolerance[moving]),
-        tree_edit=tree_edit_distance(tree, contracted(truth.parents, list(_seen(sides)))),
+        tree_edit=tree_edit_distance(tree, contracted(sides.tree.parents, list(_seen(sides)))),
         length_variation=float(length_variation(sides.X, sides.skeleton.parents).max(initial=0.0) * 100.0),
         true_length_variation=float(length_variation(sides.Y, truth.parents).max(initial=0.0) * 100.0),
         jitter=rough / smooth if smooth > 0.0 else None,
@@ -222,7 +226,7 @@ def _parts(
     seen = _seen(sides)
     above = np.arange(len(seen))
     while not seen[above].all():
-        above = np.where(seen[above], above, np.array(sides.truth.parents)[above])
+        above = np.where(seen[above], above, np.array(sides.tree.parents)[above])
     labels, others = [], []
     for frame in s.frames:
         carrier = None
@@ -233,7 +237,8 @@ def _parts(
         vertex, where = mesh[frame].vertex_of_input, projection[frame]
         known = (vertex >= 0) & (where.face >= 0)
         labels.append(part[s.faces[where.face[known], where.share[known].argmax(axis=1)]])
-        others.append(above[carrier[vertex[known]]])
+        joint, end = (side[vertex[known]] for side in carrier)
+        others.append(above[np.where(end >= 0, np.array(sides.tree.parents)[end], joint)])
     table = contingency(np.concatenate(labels), np.concatenate(others))
     return PartScore(
         rand=rand_index(table),

@@ -1,5 +1,6 @@
 """The true skeleton of a sequence, read from the user's file before anything is computed."""
 
+import re
 from functools import lru_cache
 from pathlib import Path
 
@@ -34,20 +35,23 @@ def synthetic(recipe: str) -> Truth:
     return _told(of_told(body(recipe).truth(), SYNTH), SYNTH, None)
 
 
-def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> Ints | None:
-    """(vertex,) the true joint that carries the surface at each of the vertices V of a frame; None where nobody knows.
+def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> tuple[Ints, Ints] | None:
+    """(vertex,) the true joint that carries the surface at each of the vertices V, and the end of its bone, or −1 for all.
 
-    V, unit : (vertex, xyz) vertices in the sequence's unit, and that unit
+    V, unit : (vertex, xyz) vertices of a frame in the sequence's unit, and that unit
+    returns : None where nobody knows
     """
     if source.recipe and truth.source == SYNTH:
         made = body(source.recipe)
         told = made.truth()
         first = np.array([truth.names.index(joints[0]) for joints in told["parts"]], dtype=np.int32)
-        return first[made.parts(source.part or 0, V)]
+        carrier = first[made.parts(source.part or 0, V)]
+        return carrier, np.full_like(carrier, -1)
     if not truth.vertices.shape[1]:
         return None
     scale = factor(truth.unit, unit, truth.source)
-    return truth.carrier[nearest(truth.vertices[truth.frames.index(frame)] * scale, V)]
+    at = nearest(truth.vertices[truth.frames.index(frame)] * scale, V)
+    return truth.carrier[at], truth.bone_end[at]
 
 
 def _stamp(path: str) -> tuple[int, int]:
@@ -76,9 +80,9 @@ def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) ->
     if motion is None:
         motion = TrueMotion((), (), (), (), (), (), np.zeros((0, 0, 3)), None, None, None)
     vertices: NDArray[np.float32] = np.zeros((len(motion.X), 0, 3), np.float32)
-    carrier: Ints = np.zeros(0, np.int32)
+    carrier, end = np.zeros(0, np.int32), np.zeros(0, np.int32)
     if params is not None and params.body:
-        vertices, carrier = _body(Path(params.body), motion)
+        vertices, carrier, end = _body(Path(params.body), motion)
     return Truth(
         source=source,
         frames=motion.frames,
@@ -93,11 +97,12 @@ def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) ->
         positions=motion.X,
         vertices=vertices,
         carrier=carrier,
+        bone_end=end,
     )
 
 
-def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints]:
-    """(frame, vertex, xyz) the true body and (vertex,) the joint each vertex follows most."""
+def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, Ints]:
+    """(frame, vertex, xyz) the true body, (vertex,) the joint each vertex follows most, and the end of its bone or −1."""
     try:
         with np.load(path, allow_pickle=False) as held:
             V, W, told = held["vertices"], held["weights"], [str(n) for n in held["weight_names"]]
@@ -105,12 +110,23 @@ def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints]:
         raise InputError(
             f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one connectivity"
         ) from None
-    unknown = [n for n in told if n not in motion.names]
+    follows = [_followed(name, motion) for name in told]
+    unknown = [name for name, joint in zip(told, follows, strict=True) if joint is None]
     if unknown or W.ndim != 2 or W.shape[1] != len(told):
         raise InputError(f"{path}: weights must be (vertex, joint) of the truth's joints; {unknown[:3]} are none of them")
     if len(V) != len(motion.frames) * len(W):
         raise InputError(
             f"{path}: {len(V)} vertices are not {len(motion.frames)} frames of {len(W)}; the truth and the body differ"
         )
-    joint = np.array([motion.names.index(n) for n in told], dtype=np.int32)
-    return V.reshape(len(motion.frames), len(W), 3).astype(np.float32), joint[W.argmax(axis=1)]
+    joint, end = np.array([f for f in follows if f], dtype=np.int32)[W.argmax(axis=1)].T
+    return V.reshape(len(motion.frames), len(W), 3).astype(np.float32), joint, end
+
+
+def _followed(name: str, motion: TrueMotion) -> tuple[int, int] | None:
+    """What a column of weights follows: a joint by name, with all its bones, or one bone, as bone_3_4 by both joints' numbers."""
+    if name in motion.names:
+        return motion.names.index(name), -1
+    bone = re.fullmatch(r"bone_(\d+)_(\d+)", name)
+    if bone and int(bone[2]) < len(motion.names) and motion.parents[int(bone[2])] == int(bone[1]):
+        return int(bone[1]), int(bone[2])
+    return None
