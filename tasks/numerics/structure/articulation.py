@@ -1,0 +1,192 @@
+"""Fitting an articulated body to a sequence: rotations of all parts and the place of the root, all at once (2014, Sec. 6.3).
+
+x_v(t) = Σ_a w_va [R_a(t) (v − rest_a) + x_a(t)], and x_j(t) = x_p(t) + R_p(t) (rest_j − rest_p) for the parent p. With
+s_vj = Σ w_va over the parts a at or beyond joint j this is linear in a vertex's few numbers φ_v = (w_va v, s_vj):
+
+    x_v(t) = x_0(t) + Σ_a R_a w_va v + Σ_j s_vj (R_p(j) − R_j) rest_j
+
+so that the sequence is seen only through Σ φ φᵀ and Σ x φᵀ, whatever the number of vertices. Bone lengths are the same
+in all frames because the model has no others.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+DAMPING = 1e-7
+STILL = 1e-7  # radians
+
+
+class Sums(NamedTuple):
+    """What a fit needs to know of the sequence; the number n of a vertex's numbers φ is four times that of the parts.
+
+    G : (frame or 1, n, n) Σ τ φ φᵀ, C : (frame, xyz, n) Σ τ x φᵀ; φ is w_va v, by part, then s_vj
+    """
+
+    G: Floats
+    C: Floats
+
+
+class Motion(NamedTuple):
+    """An articulated body in motion.
+
+    rest : (part, xyz) the joint about which each part turns, in the reference mesh
+    R    : (frame, part, 3, 3) from the reference to each frame
+    x    : (frame, xyz) where the reference's origin goes with the root's part
+    """
+
+    rest: Floats
+    R: Floats
+    x: Floats
+
+
+class Expected(NamedTuple):
+    """What is believed of poses beforehand.
+
+    turn : (frame, part, 3, 3) rotation R_pᵀ R_a of each part against its parent; the root's against the space around
+    firm : (frame, part) how firmly it is held there, mesh unit² times the vertices' weight
+    """
+
+    turn: Floats
+    firm: Floats
+
+
+def beyond(parents: Ints) -> Floats:
+    """(part, part) 1 where the second part is the first or hangs on it; parents come before children."""
+    below = np.eye(len(parents))
+    for j in range(len(parents) - 1, 0, -1):
+        below[parents[j]] += below[j]
+    return below
+
+
+def sums(V: Floats, x: Floats, W: Floats, parents: Ints, tau: Floats) -> Sums:
+    """The sums over vertices.
+
+    V, x : (vertex, xyz) in the reference, (frame, vertex, xyz) mesh unit
+    W    : (vertex, part) skinning weights, a part after its parent
+    tau  : (vertex,) weight of every vertex in all frames, or (frame, vertex)
+    """
+    phi = np.concatenate([(W[:, :, None] * V[:, None]).reshape(len(V), -1), W @ beyond(parents).T], axis=1)
+    if tau.ndim == 1:
+        weighted = tau[:, None] * phi
+        rows = np.ascontiguousarray(x.transpose(0, 2, 1)).reshape(-1, len(V))
+        return Sums((phi.T @ weighted)[None], (rows @ weighted).reshape(len(x), 3, -1))
+    G, C = [], []
+    for row, at in zip(tau, x, strict=True):
+        weighted = row[:, None] * phi
+        G.append(phi.T @ weighted)
+        C.append(at.T @ weighted)
+    return Sums(np.stack(G), np.stack(C))
+
+
+def fitted(s: Sums, start: Motion, parents: Ints, expected: Expected | None = None, *, rounds: int = 10) -> Motion:
+    """The poses that leave least, Σ τ |x − x̂|² + Σ firm |log|², by Gauss–Newton; the joints stay.
+
+    rounds : at most; it ends earlier when nothing turns any more
+    """
+    motion = start
+    levers = _levers(start.rest, parents)
+    for _ in range(rounds):
+        H, g = _normal_equations(s, motion, parents, levers)
+        if expected is not None:
+            _hold(H, g, motion.R, parents, expected)
+        diagonal = np.arange(H.shape[1])
+        H[:, diagonal, diagonal] += DAMPING * np.trace(H, axis1=1, axis2=2)[:, None] / len(diagonal)
+        move = np.linalg.solve(H, g[..., None])[..., 0]
+        omega = np.asarray(move[:, :-3].reshape(*motion.R.shape[:2], 3), dtype=np.float64)
+        motion = Motion(motion.rest, _turns(omega) @ motion.R, motion.x + move[:, -3:])
+        if np.abs(omega).max(initial=0.0) < STILL:
+            break
+    return motion
+
+
+def placed(motion: Motion, parents: Ints) -> Floats:
+    """(frame, part, xyz) where the joints are, x_j = x_p + R_p (rest_j − rest_p)."""
+    X = np.empty((*motion.R.shape[:2], 3))
+    X[:, 0] = motion.x + motion.R[:, 0] @ motion.rest[0]
+    for j in range(1, len(parents)):
+        p = parents[j]
+        X[:, j] = X[:, p] + motion.R[:, p] @ (motion.rest[j] - motion.rest[p])
+    return X
+
+
+def predicted(V: Floats, W: Floats, motion: Motion, parents: Ints) -> Floats:
+    """(frame, vertex, xyz) where the body's surface goes."""
+    T, P = motion.R.shape[:2]
+    t = placed(motion, parents) - np.einsum("tpxy,py->tpx", motion.R, motion.rest)
+    phi = np.concatenate([(W[:, :, None] * V[:, None]).reshape(len(V), -1), W], axis=1)
+    theta = np.concatenate([motion.R.transpose(0, 2, 1, 3).reshape(T, 3, 3 * P), t.transpose(0, 2, 1)], axis=2)
+    return (theta.reshape(-1, 4 * P) @ phi.T).reshape(T, 3, len(V)).transpose(0, 2, 1)
+
+
+def _normal_equations(s: Sums, motion: Motion, parents: Ints, levers: Floats) -> tuple[Floats, Floats]:
+    """(frame, m, m) and (frame, m): rotation vectors of all parts, then the shift."""
+    T, P = motion.R.shape[:2]
+    held = np.einsum("tpxy,py->tpx", motion.R[:, parents] - motion.R, motion.rest)
+    held[:, 0] = motion.x
+    theta = np.concatenate([motion.R.transpose(0, 2, 1, 3).reshape(T, 3, 3 * P), held.transpose(0, 2, 1)], axis=2)
+    left = s.C - theta @ s.G
+    Z = np.einsum("tpxy,pyn->tpxn", motion.R, levers).reshape(T, 3 * P, -1)
+    ZG = Z @ s.G
+    S = (ZG @ Z.transpose(0, 2, 1)).reshape(T, P, 3, P, 3)
+    trace = np.einsum("tpxqx->tpq", S)
+    H = np.empty((T, 3 * P + 3, 3 * P + 3))
+    H[:, :-3, :-3] = (np.einsum("tpq,xy->tpxqy", trace, np.eye(3)) - S.transpose(0, 1, 4, 3, 2)).reshape(T, 3 * P, 3 * P)
+    H[:, :-3, -3:] = _crossing(ZG[:, :, 3 * P].reshape(T, P, 3)).reshape(T, 3 * P, 3)
+    H[:, -3:, :-3] = H[:, :-3, -3:].transpose(0, 2, 1)
+    H[:, -3:, -3:] = s.G[:, 3 * P, 3 * P, None, None] * np.eye(3)
+    torque = _axial((Z @ left.transpose(0, 2, 1)).reshape(T, P, 3, 3))
+    return H, np.concatenate([torque.reshape(T, -1), left[:, :, 3 * P]], axis=1)
+
+
+def _levers(rest: Floats, parents: Ints) -> Floats:
+    """(part, xyz, n) U with x_v = x_0 + Σ_a R_a U_a φ_v: what each part's rotation carries of a vertex."""
+    P = len(parents)
+    U = np.zeros((P, 3, 4 * P))
+    for a in range(P):
+        U[a, :, 3 * a : 3 * a + 3] = np.eye(3)
+        if a:
+            U[a, :, 3 * P + a] -= rest[a]
+            U[parents[a], :, 3 * P + a] += rest[a]
+    return U
+
+
+def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Expected) -> None:
+    """Adds firm |log(R_p turn R_aᵀ)|² for every part a."""
+    above = R[:, parents].copy()
+    above[:, 0] = np.eye(3)
+    away = -_axial(above @ expected.turn @ R.transpose(0, 1, 3, 2)) / 2
+    for a in range(R.shape[1]):
+        i, j = slice(3 * a, 3 * a + 3), slice(3 * int(parents[a]), 3 * int(parents[a]) + 3)
+        block = expected.firm[:, a, None, None] * np.eye(3)
+        H[:, i, i] += block
+        g[:, i] += expected.firm[:, a, None] * away[:, a]
+        if a:
+            H[:, j, j] += block
+            H[:, i, j] -= block
+            H[:, j, i] -= block
+            g[:, j] -= expected.firm[:, a, None] * away[:, a]
+
+
+def _axial(N: Floats) -> Floats:
+    """(…, 3) Σ p × q of N = Σ p qᵀ."""
+    return np.stack([N[..., 1, 2] - N[..., 2, 1], N[..., 2, 0] - N[..., 0, 2], N[..., 0, 1] - N[..., 1, 0]], axis=-1)
+
+
+def _crossing(p: Floats) -> Floats:
+    """(…, 3, 3) the matrix of p ×."""
+    o = np.zeros_like(p[..., 0])
+    rows = [[o, -p[..., 2], p[..., 1]], [p[..., 2], o, -p[..., 0]], [-p[..., 1], p[..., 0], o]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _turns(omega: Floats) -> Floats:
+    """(…, 3, 3) rotation by the vector ω (Rodrigues)."""
+    angle = np.maximum(np.linalg.norm(omega, axis=-1)[..., None, None], 1e-12)
+    K = _crossing(omega)
+    turned: Floats = np.eye(3) + np.sin(angle) / angle * K + (1 - np.cos(angle)) / angle**2 * (K @ K)
+    return turned

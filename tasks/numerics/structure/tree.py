@@ -1,0 +1,72 @@
+"""One tree over all parts: the spanning tree of the borders that turn best about a point, and its root (2014, Sec. 6.3)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class Tree(NamedTuple):
+    """Parts in an order in which parents come before children.
+
+    order   : (part,) the part at each place of the order, the root's first
+    parents : (part,) place of each one's parent, −1 for the root
+    border  : (part,) the border at which each hangs on its parent, −1 for the root
+    """
+
+    order: Ints
+    parents: Ints
+    border: Ints
+
+
+def spanning(pair: Ints, cost: Floats, parts: int) -> Ints:
+    """The borders of a minimum spanning tree, ascending; of equally good ones the earlier (Kruskal).
+
+    pair : (border, 2) parts that meet, cost : (border,)
+    """
+    of = np.arange(parts)
+    kept = []
+    for row in np.argsort(cost, kind="stable"):
+        a, b = of[pair[row]]
+        if a != b:
+            of[of == max(a, b)] = min(a, b)
+            kept.append(row)
+    return np.sort(np.array(kept, dtype=np.int64))
+
+
+def rooted(pair: Ints, kept: Ints, area: Floats) -> Tree:
+    """The tree hung from the part at which no branch has more than half of the body's area.
+
+    pair : (border, 2) parts that meet, kept : borders of the tree, area : (part,) mesh unit²
+    """
+    hung = [_hung(pair, kept, root, len(area)) for root in range(len(area))]
+    return hung[int(np.argmin([_heaviest(tree, area) for tree in hung]))]
+
+
+def branch_area(tree: Tree, area: Floats) -> Floats:
+    """(part,) area of each part and all that hangs on it, in the tree's order."""
+    below = area[tree.order].astype(np.float64)
+    for k in range(len(below) - 1, 0, -1):
+        below[tree.parents[k]] += below[k]
+    return below
+
+
+def _heaviest(tree: Tree, area: Floats) -> float:
+    return float(branch_area(tree, area)[tree.parents == 0].max(initial=0.0))
+
+
+def _hung(pair: Ints, kept: Ints, root: int, parts: int) -> Tree:
+    order, parents, border, used = [root], [-1], [-1], set[int]()
+    for place, part in enumerate(order):
+        for row in kept:
+            if part in pair[row] and int(row) not in used:
+                used.add(int(row))
+                order.append(int(pair[row].sum()) - part)
+                parents.append(place)
+                border.append(int(row))
+    if len(order) < parts:
+        raise ValueError(f"{parts - len(order)} parts meet no other part of the tree")
+    return Tree(np.array(order), np.array(parents), np.array(border))
