@@ -123,7 +123,7 @@ def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, In
 
 
 def _followed(name: str, motion: TrueMotion) -> tuple[int, int] | None:
-    """What a column of weights follows: a joint by name, with all its bones, or one bone, as bone_3_4 by both joints' numbers."""
+    """What a column of weights follows: a joint by its name, or one bone by the numbers of both joints, as bone_3_4."""
     if name in motion.names:
         return motion.names.index(name), -1
     bone = re.fullmatch(r"bone_(\d+)_(\d+)", name)

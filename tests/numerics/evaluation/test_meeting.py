@@ -47,7 +47,7 @@ def test_root_whose_bones_part_hands_its_score_to_the_joint_beside_it():
 def test_joint_beside_another_hangs_where_that_one_came_to_hang():
     """The root's second piece holds a joint that is divided too: both of its joints hang on the root's second."""
     Y = np.concatenate([turning(1, 0, -1), np.zeros((12, 1, 3))], axis=1)
-    Y[:, 5] = [0, 0, -1] + 0.5 * np.stack([np.sin(9 * T), np.cos(9 * T), 0 * T], axis=1)
+    Y[:, 5] = [0, 0, -1] + 0.5 * np.stack([np.sin(9 * T), 0 * T, np.cos(9 * T)], axis=1)
     tree = divided(Y, (-1, 0, 1, 1, 1, 0), [False] * 6, 2.0)
     assert tree.origin[6:].tolist() == [0, 1, 1]
     assert tree.parents == [-1, 0, 1, 7, 8, 6, 0, 0, 0]
