@@ -25,8 +25,11 @@ class Glb(Exported):
 
     assumed_fps: float | None
     """Frames a second that were assumed since nobody knows; None where the sequence tells."""
+    life_size: float | None
+    """The `scale` that would make the body as large as it is; None where it is, and where the unit is not known."""
 
     def remarks(self) -> tuple[str, ...]:
-        """That the pace is a guess, where it is."""
-        told = f"nobody says how fast the sequence is: played at {self.assumed_fps} frames a second; set sequence.fps"
-        return () if self.assumed_fps is None else (told,)
+        """That the pace is a guess and the size not that of life, where it is so."""
+        pace = f"nobody says how fast the sequence is: played at {self.assumed_fps} frames a second; set sequence.fps"
+        size = f"in the coordinates of the input, which other programs take for metres; life-size with glb.scale={self.life_size}"
+        return (*([] if self.assumed_fps is None else [pace]), *([] if self.life_size is None else [size]))

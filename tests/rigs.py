@@ -1,5 +1,7 @@
 """Skeletons whose answers are known: synthetic bodies with the rig that moved them, and what skinning them gives."""
 
+from functools import cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -38,7 +40,12 @@ SPIDER = {
 
 def spider(**changes: object) -> Skeleton:
     """A small body with its skeleton; `changes` replace fields."""
-    return skeleton_of(Body.of(Figure.of(SPIDER), frames=12, fps=10.0, vertices=500, connectivity="fixed"), **changes)
+    return skeleton_of(_spider(), **changes)
+
+
+@cache
+def _spider() -> Body:
+    return Body.of(Figure.of(SPIDER), frames=12, fps=10.0, vertices=500, connectivity="fixed")
 
 
 def skeleton_of(body: Body, **changes: object) -> Skeleton:

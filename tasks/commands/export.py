@@ -1,6 +1,7 @@
 """`kinetree export`: what a run found as a file that other programs open."""
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -25,6 +26,8 @@ FORMATS = {
     "zarr": "segmentation",
 }
 """The task that writes each format."""
+EXTRAS = {"usd": "pxr"}
+"""The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
 EXAMPLES = (
     "Examples: kinetree export walk/ --to csv · kinetree export walk/ --to glb -o walk.glb --set glb.up=z --set glb.scale=0.001"
@@ -56,6 +59,8 @@ def export(
     if to == SCHEMA:
         _tell_schema(output)
         return
+    if to in EXTRAS and find_spec(EXTRAS[to]) is None:
+        raise ConfigError(f"--to {to} needs a package that is not installed: pip install 'kinetree[{to}]' brings it")
     pipeline = pipeline_of(run, sets=sets)
     written, remarks = _written(pipeline, FORMATS[to], output)
     if as_json:

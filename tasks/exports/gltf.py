@@ -75,8 +75,8 @@ class _Block:
 
     def add(self, array: NDArray[Any], target: int | None = None, *, bounded: bool = False, share: bool = False) -> int:
         """Adds an array of elements and returns its accessor; `share` makes bytes stand for 0 to 1."""
-        element: dict[str, Any] = {"bufferView": len(self._views), "componentType": COMPONENTS[str(array.dtype)], "count": len(array)}
-        element |= {"type": TYPES[array.shape[1:]]}
+        element: dict[str, Any] = {"bufferView": len(self._views), "componentType": COMPONENTS[str(array.dtype)]}
+        element |= {"count": len(array), "type": TYPES[array.shape[1:]]}
         if bounded:
             rows = array.reshape(len(array), -1)
             element |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}

@@ -24,8 +24,8 @@ def children(parents: Sequence[int]) -> list[list[int]]:
 def rest_frames(rest: Floats, parents: Sequence[int]) -> Floats:
     """Orientation of every joint in the reference pose: y along its bone, turned out of its parent's by the least turn.
 
-    The bone of a joint with several children leads to the one with most below it; a leaf goes on as its parent does, and
-    so does a bone without length. The root starts from the axes of space.
+    The bone of a joint with several children leads to the one with the longest bones, all below it counted; a leaf goes on
+    as its parent does, and so does a bone without length. The root starts from the axes of space.
 
     rest    : (joint, xyz) mesh unit
     parents : parents first, −1 for the root
@@ -33,8 +33,8 @@ def rest_frames(rest: Floats, parents: Sequence[int]) -> Floats:
     """
     below = children(parents)
     reach = np.zeros(len(parents))
-    for joint in reversed(range(len(parents))):
-        reach[joint] = sum(reach[c] + np.linalg.norm(rest[c] - rest[joint]) for c in below[joint])
+    for joint in reversed(range(1, len(parents))):
+        reach[joint] = np.linalg.norm(rest[joint] - rest[parents[joint]]) + sum(reach[c] for c in below[joint])
     B = np.empty((len(parents), 3, 3))
     for joint, parent in enumerate(parents):
         before = B[parent] if parent >= 0 else np.eye(3)

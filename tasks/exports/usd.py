@@ -16,8 +16,7 @@ from kinetree.schemas.usd import UsdParams
 from kinetree.tasks.exports.colours import linear, part_colours
 from kinetree.tasks.exports.names import identifiers
 from kinetree.tasks.exports.rig import local_offsets, local_rotations, quaternions, rest_frames
-
-METRES = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "km": 1000.0, "in": 0.0254, "ft": 0.3048}
+from kinetree.tasks.exports.units import METRES
 
 
 def usd(skeleton: Skeleton, params: UsdParams) -> bytes:
@@ -96,7 +95,8 @@ def _weights(binding: Any, skeleton: Skeleton) -> None:
     slots = skeleton.influence.shape[1]
     joints = np.where(skeleton.weight > 0, skeleton.influence, 0).astype(np.int32)
     binding.CreateJointIndicesPrimvar(False, slots).Set(_pxr().Vt.IntArray.FromNumpy(joints.ravel()))
-    binding.CreateJointWeightsPrimvar(False, slots).Set(_pxr().Vt.FloatArray.FromNumpy(skeleton.weight.astype(np.float32).ravel()))
+    weights = skeleton.weight.astype(np.float32)
+    binding.CreateJointWeightsPrimvar(False, slots).Set(_pxr().Vt.FloatArray.FromNumpy(weights.ravel()))
     binding.CreateGeomBindTransformAttr(_matrices(np.eye(3)[None], np.zeros((1, 3)))[0])
 
 

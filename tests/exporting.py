@@ -1,0 +1,84 @@
+"""A small graph that ends in every export: a body whose rig is known in place of the analysis."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from rigs import skinned, spider
+
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.array import Params
+from kinetree.schemas.projection import Projection
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.schemas.source import Source
+from kinetree.tasks.bvh import bvh
+from kinetree.tasks.glb import glb
+from kinetree.tasks.ply import ply
+from kinetree.tasks.rignet import rignet
+from kinetree.tasks.segmentation import segmentation
+from kinetree.tasks.skeleton_json import skeleton_json
+from kinetree.tasks.source import source, surface
+from kinetree.tasks.tables import tables
+from kinetree.tasks.usd import usd
+
+
+class SkeletonParams(Params):
+    """What the body is called."""
+
+    root: str = "trunk"
+    """Name of the first joint."""
+    fails: bool = False
+    """Whether there is none."""
+
+
+@task(over="frame")
+def alignment(source: Source) -> Alignment:
+    """The file's vertices, put back into the order of the reference mesh."""
+    V, _ = surface(source)
+    at = V[np.argsort(order(int(Path(source.path).stem)))]
+    n = len(at)
+    return Alignment(vertices=at, residual=np.zeros(n), stretch=np.ones(n), trust=np.ones(n), uncovered=0.0)
+
+
+@task(over="frame")
+def projection(source: Source) -> Projection:
+    """Every vertex of the file as the corner of a face of the reference mesh that it is; the first one was dropped."""
+    turned = order(int(Path(source.path).stem))
+    faces = spider().faces
+    first = {int(v): (f, c) for f, row in reversed(list(enumerate(faces))) for c, v in enumerate(row)}
+    found = np.array([first[int(v)] for v in turned])
+    share = np.eye(3)[found[:, 1]]
+    face = found[:, 0].astype(np.int32)
+    face[0], share[0] = -1, 0.0
+    return Projection(face=face, share=share, distance=np.zeros(len(face)))
+
+
+@task()
+def skeleton(source: Mapping[int, Source], params: SkeletonParams) -> Skeleton:
+    """The rig that moved the body."""
+    if params.fails:
+        raise ValueError("there is no body in it")
+    names = spider().names
+    return spider(names=(params.root, *names[1:]), frames=tuple(source))
+
+
+def order(frame: int) -> np.ndarray:
+    """(vertex,) which vertex of the reference mesh each vertex of a frame's file is."""
+    return np.random.default_rng(frame).permutation(len(spider().vertices))
+
+
+def write_frames(folder: Path) -> None:
+    """The body as a person would have it: a file a frame, the vertices in another order in each."""
+    body = spider()
+    for frame, V in enumerate(skinned(body)):
+        turned = order(frame)
+        F = np.argsort(turned)[body.faces]
+        trimesh.Trimesh(V[turned], F, process=False).export(folder / f"{frame:04d}.ply")
+
+
+GRAPH = Graph.of(
+    (source, alignment, projection, skeleton, glb, bvh, skeleton_json, segmentation, tables, rignet, ply, usd)
+)

@@ -1,0 +1,283 @@
+"""Exports through the loom: what a run leaves, what changing an option computes, and what kinetree export says."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+import trimesh
+import zarr
+from exporting import GRAPH, order, write_frames
+from rigs import spider
+from typer.testing import CliRunner
+
+from kinetree.pipeline import inspect
+from kinetree.pipeline.cli import command_line
+from kinetree.pipeline.errors import ConfigError, InputError, NodesFailedError, StoreError, UnknownNodeError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks.commands.export import EXTRAS, export
+
+LEFT = ["segmentation.zarr", "skeleton.bvh", "skeleton.glb", "skeleton.json"]
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scans")
+    write_frames(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def computed(scans, tmp_path_factory):
+    """The store of a run that is done, of which every test has a copy."""
+    folder = tmp_path_factory.mktemp("computed")
+    told = {"source": {"input": str(scans)}, "output": str(folder), "compute": {"executor": "sync"}}
+    assert Pipeline.of(told, methods={"mesoscopic": GRAPH}).run()["status"] == "done"
+    return folder / "store"
+
+
+@pytest.fixture
+def configured(scans, computed, tmp_path, monkeypatch):
+    monkeypatch.setattr(inspect, "_methods", lambda: {"mesoscopic": GRAPH})
+    shutil.copytree(computed, tmp_path / "out" / "store")
+    return {"source": {"input": str(scans)}, "output": str(tmp_path / "out"), "compute": {"executor": "sync"}}
+
+
+@pytest.fixture
+def out(configured, tmp_path):
+    """The folder of a run that is done."""
+    told = Pipeline.of(configured).run()
+    assert told["status"] == "done", told
+    assert sorted(told["files"]) == LEFT
+    return tmp_path / "out"
+
+
+def names(folder):
+    return sorted(p.name for p in folder.iterdir())
+
+
+def ran(told):
+    return {task for task, row in told["tasks"].items() if row["ran"]}
+
+
+def test_run_leaves_what_people_take_away_and_says_so(out):
+    assert names(out) == sorted([*LEFT, "config.yaml", "run.json", "store"])
+    assert json.loads((out / "run.json").read_text())["files"]
+    assert json.loads((out / "skeleton.json").read_text())["joints"][0]["name"] == "trunk"
+
+
+def test_second_run_computes_nothing_and_touches_no_file(out, configured):
+    before = {name: (out / name).stat().st_mtime_ns for name in LEFT}
+    told = Pipeline.of(configured).run()
+    assert ran(told) == set()
+    assert {name: (out / name).stat().st_mtime_ns for name in LEFT} == before
+
+
+def test_file_that_was_deleted_or_altered_is_left_again_without_computing(out, configured):
+    before = (out / "skeleton.glb").read_bytes()
+    (out / "skeleton.glb").write_bytes(before[:-1] + b"x")
+    (out / "skeleton.bvh").unlink()
+    (out / "segmentation.zarr" / "label" / "zarr.json").unlink()
+    assert ran(Pipeline.of(configured).run()) == set()
+    assert (out / "skeleton.glb").read_bytes() == before
+    assert (out / "skeleton.bvh").is_file()
+    assert (out / "segmentation.zarr" / "label" / "zarr.json").is_file()
+
+
+def test_option_of_an_export_runs_that_export_alone(out, configured):
+    before = {name: (out / name).read_bytes() for name in LEFT[1:]}
+    told = Pipeline.of(configured, sets=["glb.up=z"]).run()
+    assert ran(told) == {"glb"}
+    changed = {name for name in before if (out / name).read_bytes() != before[name]}
+    assert changed == {"skeleton.glb"}
+
+
+def test_exports_on_request_are_in_the_graph_and_run_when_they_are_named(out, configured):
+    pipeline = Pipeline.of(configured)
+    assert pipeline.plan().is_done
+    assert {"usd", "ply", "tables", "rignet"} & {row.task for row in pipeline.plan().tasks} == set()
+    assert pipeline.why("rignet").state == "stale"
+    assert ran(pipeline.run(until=["rignet"])) == {"rignet"}
+    assert names(out / "rignet") == ["skeleton.obj", "skeleton.txt"]
+
+
+def test_failed_skeleton_leaves_no_file(configured, tmp_path):
+    told = Pipeline.of({**configured, "skeleton": {"fails": True}}).run()
+    assert told["status"] == "failed"
+    assert told["files"] == []
+    assert names(tmp_path / "out") == ["config.yaml", "run.json", "store"]
+
+
+def test_damaged_export_is_made_again_by_the_next_run(out, configured):
+    pipeline = Pipeline.of(configured)
+    node = pipeline.why("bvh")
+    (chunk,) = (out / "store" / "artifacts" / node.artifact[:2] / node.artifact / "content" / "c").iterdir()
+    chunk.write_bytes(bytes(len(chunk.read_bytes())))
+    with pytest.raises(Exception, match="will be computed again"):
+        pipeline.run()
+    assert ran(Pipeline.of(configured).run()) == {"bvh"}
+
+
+def test_labels_come_back_to_the_vertices_of_every_file(out):
+    group = zarr.open_group(out / "segmentation.zarr", mode="r")
+    body = spider()
+    label, begin, end = (group[name][...] for name in ("label", "begin", "end"))
+    for frame in range(12):
+        mine = label[begin[frame] : end[frame]]
+        np.testing.assert_array_equal(mine[1:], body.label[order(frame)][1:])
+        assert mine[0] == -1
+    assert group["aligned"].shape == (12, len(body.vertices), 3)
+    assert group["label"].metadata.dimension_names == ("input_vertex",)
+
+
+def test_skeleton_that_moved_the_body_explains_it(configured, out):
+    told = Pipeline.of(configured).artifact("segmentation")
+    assert told.error < 1e-6
+    assert "skinned to the skeleton" in told.remarks()[0]
+
+
+def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):
+    export(str(out), "ply", tmp_path / "coloured")
+    assert names(tmp_path / "coloured") == [f"frame_{t:04d}.ply" for t in range(12)]
+    found = trimesh.load(tmp_path / "coloured" / "frame_0003.ply", process=False)
+    given = trimesh.load(scans / "0003.ply", process=False)
+    np.testing.assert_allclose(found.vertices, given.vertices, atol=1e-6)
+    np.testing.assert_array_equal(found.faces, given.faces)
+    part = found.metadata["_ply_raw"]["vertex"]["data"]["part"]
+    np.testing.assert_array_equal(part[1:], spider().label[order(3)][1:])
+    colour = found.visual.vertex_colors
+    assert (colour[part == -1, :3] == 255).all()
+    assert len(np.unique(colour[part >= 0], axis=0)) == len(set(part.tolist()) - {-1})
+
+
+@pytest.mark.parametrize(
+    ("form", "left"),
+    [
+        ("glb", ["skeleton.glb"]),
+        ("csv", ["angles.csv", "bones.csv", "confidence.csv", "positions.csv"]),
+        ("rignet", ["skeleton.obj", "skeleton.txt"]),
+    ],
+)
+def test_export_writes_into_a_folder_that_is_named(out, tmp_path, form, left):
+    (tmp_path / "there").mkdir()
+    export(str(out), form, tmp_path / "there")
+    assert names(tmp_path / "there") == left
+
+
+def test_export_names_a_single_file_as_it_is_told(out, tmp_path, capsys):
+    before = (out / "run.json").read_bytes()
+    export(str(out), "glb", tmp_path / "deep" / "walk.glb", ["glb.scale=0.001"])
+    assert names(tmp_path / "deep") == ["walk.glb"]
+    assert (tmp_path / "deep" / "walk.glb").read_bytes() != (out / "skeleton.glb").read_bytes()
+    assert capsys.readouterr().out == f"{tmp_path}/deep/walk.glb\n"
+    assert (out / "run.json").read_bytes() == before
+
+
+def test_export_without_a_place_goes_into_the_folder_of_the_run(out, capsys):
+    export(str(out), "csv")
+    assert "tables" in names(out)
+    assert str(out / "tables") in capsys.readouterr().out
+    export(str(out), "bvh", as_json=True)
+    assert json.loads(capsys.readouterr().out) == {"files": [str(out / "skeleton.bvh")], "remarks": []}
+
+
+def test_zarr_is_exported_whole_and_over_nothing_else(out, tmp_path):
+    export(str(out), "zarr", tmp_path / "labels.zarr")
+    assert zarr.open_group(tmp_path / "labels.zarr", mode="r")["label"].size == 12 * len(spider().vertices)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.txt").write_text("all I have")
+    with pytest.raises(StoreError, match="no zarr group"):
+        export(str(out), "zarr", tmp_path / "mine")
+    assert names(tmp_path / "mine") == ["thesis.txt"]
+
+
+def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_path):
+    pipeline = Pipeline.of({**configured, "skeleton": {"fails": True}})
+    pipeline.run()
+    for form in ("glb", "csv", "ply", "usd"):
+        with pytest.raises(UnknownNodeError, match=r"is made from skeleton.*kinetree run computes what is missing"):
+            export(str(tmp_path / "out"), form, tmp_path / "x")
+    assert not (tmp_path / "x").exists()
+
+
+def test_export_of_what_was_never_run_says_so(configured, tmp_path):
+    shutil.rmtree(tmp_path / "out")
+    (tmp_path / "walk.yaml").write_text(json.dumps(configured))
+    with pytest.raises(UnknownNodeError, match="skeleton: stale"):
+        export(str(tmp_path / "walk.yaml"), "glb")
+    assert not (tmp_path / "out").exists()
+
+
+def test_frames_without_alignment_are_named(out, scans, tmp_path, configured):
+    pipeline = Pipeline.of(configured)
+    for frame in (3, 4):
+        pipeline.store.discard(pipeline.why(f"projection[frame={frame}]").artifact)
+    with pytest.raises(UnknownNodeError, match=r"projection\[frame=3\].* and 1 more like it"):
+        export(str(out), "ply", tmp_path / "x")
+    assert not (tmp_path / "x").exists()
+
+
+def test_unknown_format_names_the_nearest(out):
+    with pytest.raises(ConfigError, match="--to glbb: no such format; did you mean 'glb'"):
+        export(str(out), "glbb")
+    with pytest.raises(ConfigError, match="there are: bvh, csv, glb"):
+        export(str(out), "fbx")
+
+
+def test_place_that_cannot_be_written_is_told_and_nothing_is_half_written(out, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(StoreError, match="cannot write"):
+        export(str(out), "csv", tmp_path / "file")
+    assert (tmp_path / "file").read_text() == "mine"
+    with pytest.raises(StoreError, match="cannot write"):
+        export(str(out), "glb", tmp_path / "file" / "walk.glb")
+
+
+def test_own_input_is_never_overwritten(out, scans):
+    before = (scans / "0003.ply").read_bytes()
+    with pytest.raises(ConfigError, match="the sequence is read from it"):
+        export(str(out), "glb", scans / "0003.ply")
+    assert (scans / "0003.ply").read_bytes() == before
+
+
+def test_missing_extra_says_what_to_install(out, monkeypatch, tmp_path):
+    monkeypatch.setitem(EXTRAS, "usd", "no_such_package")
+    with pytest.raises(InputError, match=r"--to usd needs a package.*pip install 'kinetree\[usd\]'"):
+        export(str(out), "usd", tmp_path / "x.usda")
+    assert not (tmp_path / "x.usda").exists()
+
+
+def test_failed_export_names_node_and_cause(out, monkeypatch, tmp_path):
+    from kinetree.tasks import rignet
+
+    def broken(skeleton):
+        raise ValueError("no ink")
+
+    monkeypatch.setattr(rignet, "written", broken)
+    with pytest.raises(NodesFailedError, match="rignet: ValueError: no ink"):
+        export(str(out), "rignet", tmp_path / "x")
+
+
+def test_schema_is_published_without_a_run(tmp_path, capsys):
+    export(None, "json-schema")
+    assert json.loads(capsys.readouterr().out)["title"] == "Document"
+    export(None, "json-schema", tmp_path / "schema.json")
+    assert json.loads((tmp_path / "schema.json").read_text())["title"] == "Document"
+    with pytest.raises(ConfigError, match="cannot be written"):
+        export(None, "json-schema", tmp_path / "no" / "schema.json")
+
+
+def test_shown_skeleton_is_a_tree_with_lengths_turns_and_support(out):
+    shown = CliRunner().invoke(command_line(), ["show", "skeleton", str(out)])
+    assert shown.exit_code == 0, shown.output
+    lines = [line.rstrip() for line in shown.output.splitlines()]
+    at = next(n for n, line in enumerate(lines) if line.startswith("trunk"))
+    assert lines[at : at + 7] == [
+        "trunk       root, 12 frames",
+        "├─ arm      bone 4 mm, turns 172°, ±0.01 mm, seen in 12 of 12 frames",
+        "│  └─ hand  bone 4.123 mm",
+        "├─ tail     bone 6.782 mm",
+        "└─ knee     bone 5.831 mm, turns 133°, ±0.01 mm, seen in 12 of 12 frames",
+        "   ├─ foot  bone 4.123 mm",
+        "   └─ spur  bone 3.742 mm",
+    ]
