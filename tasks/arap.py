@@ -1,0 +1,53 @@
+"""An interval's reference in one of its frames: as rigid as possible where the geodesic mapping wants it."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import ArapParams
+from kinetree.schemas.array import Floats
+from kinetree.schemas.connectivity import Connectivity
+from kinetree.schemas.matching import Matching
+from kinetree.schemas.mesh import Mesh
+from kinetree.schemas.middle import Middle
+from kinetree.tasks.numerics.belief import belief
+from kinetree.tasks.numerics.correspondence import Target
+from kinetree.tasks.numerics.mesoscopic.arap import Factorised, soft_weights
+from kinetree.tasks.numerics.normals import smoothed_normals
+from kinetree.tasks.numerics.trust import stretches
+
+
+@task(over="interval/frame")
+def arap(middle: Middle, matching: Matching, mesh: Mesh, connectivity: Connectivity, params: ArapParams) -> Alignment:
+    """Deforms the reference as rigidly as possible, softly held where the mapping takes its vertices (2014, Sec. 5.3)."""
+    rest, F = np.array(middle.vertices), middle.faces.astype(np.int64)
+    if connectivity.fixed:
+        x = np.array(mesh.vertices)
+        return Alignment(
+            vertices=x, residual=np.zeros(len(x)), stretch=stretches(rest, x, F), trust=np.ones(len(x)), uncovered=0.0
+        )
+    x = _deformed(middle, matching, mesh, params)
+    target = Target.of(np.array(mesh.vertices), mesh.faces, middle.size)
+    # the mapping leaves much uncovered everywhere: that is no sign of a lost limb, and `uncovered` tells it
+    found = belief(rest, x, smoothed_normals(x, F), F, target, usual=1.0)
+    return Alignment(vertices=x, residual=found.residual, stretch=found.stretch, trust=found.trust, uncovered=found.uncovered)
+
+
+def _deformed(middle: Middle, matching: Matching, mesh: Mesh, params: ArapParams) -> Floats:
+    """A frame in which nothing is matched has the reference as it is, which nobody will trust."""
+    held = matching.image >= 0
+    if not held.any():
+        return np.array(middle.vertices)
+    soft = soft_weights(np.where(held, middle.area, 0.0), params.length * middle.size)
+    system = _factorised(middle.vertices.tobytes(), middle.faces.tobytes(), soft.tobytes())
+    wanted = np.where(held[:, None], mesh.vertices[matching.image], middle.vertices)
+    return system.solve(wanted, steps=params.steps, tolerance=params.tolerance).x
+
+
+@lru_cache(maxsize=2)
+def _factorised(vertices: bytes, faces: bytes, soft: bytes) -> Factorised:
+    """One factorisation for all frames of an interval that this process deforms, known by what it is made of."""
+    F = np.frombuffer(faces, np.int32).reshape(-1, 3).astype(np.int64)
+    return Factorised.of(np.frombuffer(vertices).reshape(-1, 3), F, np.frombuffer(soft))
