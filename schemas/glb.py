@@ -31,5 +31,5 @@ class Glb(Exported):
     def remarks(self) -> tuple[str, ...]:
         """That the pace is a guess and the size not that of life, where it is so."""
         pace = f"nobody says how fast the sequence is: played at {self.assumed_fps} frames a second; set sequence.fps"
-        size = f"in the coordinates of the input, which other programs take for metres; life-size with glb.scale={self.life_size}"
+        size = f"in the input's own unit, which other programs take for metres; life-size with glb.scale={self.life_size}"
         return (*([] if self.assumed_fps is None else [pace]), *([] if self.life_size is None else [size]))

@@ -396,7 +396,7 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert "mesh.component_share = 0.05" in printed
     rows = told(kinetree("tasks", "--json")[1])
     mesh = next(r for r in rows if r["task"] == "mesh")
-    assert set(mesh) == {"task", "over", "reads", "writes", "params", "paper", "summary"}
+    assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "paper", "summary"}
     assert mesh["params"]["component_share"]["default"] == 0.05
     assert mesh["reads"] == [{"argument": "source", "artifact": "Source", "form": "one"}]
 
