@@ -14,6 +14,8 @@ Ints = npt.NDArray[np.int64]
 
 SPREAD = 0.5  # standard deviation of a joint about the middle of its border, in radii of the border
 ROUNDS = 4
+SLENDER = 20.0
+"""Length of a line, in radii, at which it is taken for wider than it is: a single edge has a width."""
 
 
 class Borders(NamedTuple):
@@ -68,7 +70,7 @@ def borders(V: Floats, F: Ints, label: Ints) -> Borders:
     return Borders(
         np.stack([key // max(count, 1), key % max(count, 1)], axis=1),
         centre,
-        np.sqrt(square),
+        np.maximum(np.sqrt(square), length / SLENDER),
         np.asarray(length, dtype=np.float64),
     )
 

@@ -8,10 +8,12 @@ from scipy.spatial import KDTree
 
 from kinetree.tasks.numerics.structure.articulation import Motion, placed
 from kinetree.tasks.numerics.structure.ends import bone_ends
+from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
 from kinetree.tasks.numerics.structure.naming import named
 from kinetree.tasks.numerics.structure.pose import SEEN, posed, seen_share
-from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Jointed, pruned, turning_range
+from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
+from kinetree.tasks.numerics.structure.turning import turning_range
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -84,14 +86,14 @@ def skeleton(
     F, label = np.array(F, dtype=np.int64), _filled(V, np.array(label, dtype=np.int64))
     label, R, t, residual = _used(label, R, t, residual)
     seen = None if trust is None else seen_share(label, area, trust, len(x), R.shape[1])
-    found = pruned(V, F, x, area, label, R, t, residual, seen, degrees=degrees, ratio=ratio)
-    tree = found.tree
+    found = pruned(Surfaces(V, F, x, area), Carried(label, R, t, residual, seen), leaves, degrees=degrees, ratio=ratio)
+    tree = found.hung.tree
     place = np.argsort(tree.order)
-    label = place[found.label]
+    label = place[found.parts.label]
     motion, drift = _start(V, area, label, found)
     size = float(np.sqrt(area.sum()))
     tau = np.ones(x.shape[:2]) if trust is None else np.array(trust, dtype=np.float64)
-    t = np.ascontiguousarray(found.t[:, tree.order])
+    t = np.ascontiguousarray(found.parts.t[:, tree.order])
     W = skinning(V, F, x, label, motion.R, t, tree.parents, tau, NOISE * size)
     body = posed(V, x, area, label, W, motion, tree.parents, trust)
     shown = seen_share(label, area, trust, len(x), len(tree.order))
@@ -143,15 +145,15 @@ def _assembled(
     )
 
 
-def _start(V: Floats, area: Floats, label: Ints, found: Jointed) -> tuple[Motion, Floats]:
+def _start(V: Floats, area: Floats, label: Ints, found: Pruned) -> tuple[Motion, Floats]:
     """Joints and motion in the tree's order, and each joint's drift; the root turns about the middle of its surface."""
-    tree = found.tree
+    tree, joints = found.hung.tree, found.hung.joints
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
     rest[0] = area[root] @ V[root] / area[root].sum()
-    rest[1:] = found.joints.rest[tree.border[1:]]
-    drift[1:] = found.joints.drift[tree.border[1:]]
-    return Motion(rest, np.ascontiguousarray(found.R[:, tree.order]), found.t[:, tree.order[0]].copy()), drift
+    rest[1:] = joints.rest[tree.border[1:]]
+    drift[1:] = joints.drift[tree.border[1:]]
+    return Motion(rest, np.ascontiguousarray(found.parts.R[:, tree.order]), found.parts.t[:, tree.order[0]].copy()), drift
 
 
 def _filled(V: Floats, label: Ints) -> Ints:

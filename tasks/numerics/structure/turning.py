@@ -1,0 +1,56 @@
+"""How far parts turn against each other: ranges of angles, the ways of a surface, turnings that lie between turnings."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+Floats = npt.NDArray[np.float64]
+
+POSES = 96
+"""Frames whose rotations are compared each with each."""
+
+
+def turning_range(turns: Floats) -> float:
+    """The third largest, for two frames that may err, angle in degrees between any two of the rotations (frame, 3, 3)."""
+    every = turns[:: max(1, len(turns) // POSES)].reshape(-1, 9)
+    cosine = (every @ every.T - 1.0) / 2.0
+    rank = min(3, len(every))
+    angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+    third = np.sort(angle, axis=1)[:, -rank]
+    return float(np.degrees(np.sort(third)[-rank]))
+
+
+def mean_rotation(turns: Floats) -> Floats:
+    """(3, 3) the rotation nearest to the mean of those given (frame, 3, 3)."""
+    U, _, Vt = np.linalg.svd(turns.mean(axis=0))
+    U[:, 2] *= np.sign(np.linalg.det(U @ Vt))
+    return U @ Vt
+
+
+def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool) -> float:
+    """Root mean square way, over frames and a part's surface, of turning about the joint against the mean pose, mesh unit.
+
+    V, area : (vertex, xyz), (vertex,) of the part; centre : (xyz)
+    turns   : (frame, 3, 3) R_pᵀ R_a of a part a against the part p above it; above : whether V is of p
+    """
+    mean = mean_rotation(turns)
+    arm = V - centre if above else (V - centre) @ mean.T
+    spread = (area[:, None] * arm).T @ arm / max(float(area.sum()), np.finfo(float).tiny)
+    away = turns @ mean.T - np.eye(3)
+    return float(np.sqrt(np.einsum("txy,yz,txz->t", away, spread, away).mean()))
+
+
+def in_between(turns: Floats, beyond: Floats) -> float:
+    """How far, up to 1, a part's turning is a fixed share, between none and all, of that of the part beyond it.
+
+    Flesh around a joint turns by a share of what the joint turns by; a bone of its own would turn by itself.
+
+    turns, beyond : (frame, 3, 3) of the part and of that beyond it, against the part above both
+    returns       : the share of its variance, or of the variance of the rest if that is less, that is explained so; 0 if none
+    """
+    u, v = (Rotation.from_matrix(r @ mean_rotation(r).T).as_rotvec() for r in (turns, beyond))
+    share = float((u * v).sum() / max(float((v * v).sum()), 1e-300))
+    least = min(float((u * u).sum()), float(((v - u) ** 2).sum()))
+    if not 0.0 < share < 1.0 or least <= 0.0:
+        return 0.0
+    return max(0.0, 1.0 - float(((u - share * v) ** 2).sum()) / least)
