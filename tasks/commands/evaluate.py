@@ -109,7 +109,7 @@ def _cells(row: JointScore) -> list[str]:
 def _lines(s: Summary) -> list[str]:
     """The summary in words."""
     lines = [
-        f"within the closer limit: {s.close} of {s.scored}; excused: {s.excused}; tips found: {s.tips_found} of {s.tips}",
+        f"found closely: {s.close} of {s.scored}; found though not asked for: {s.excused}; tips: {s.tips_found} of {s.tips}",
         f"R_detection {s.detection:.2f}, E_dist {s.distance:.4f} of the height (2009, Eqs. 7–9)",
         f"tree edit distance {s.tree_edit}",
     ]

@@ -6,7 +6,9 @@ from known import generated, observed, perfect
 
 from kinetree.pipeline.errors import InputError
 from kinetree.schemas.evaluation import EvaluationParams
+from kinetree.schemas.truth import TruthParams
 from kinetree.tasks.evaluation import evaluation
+from kinetree.tasks.exports.bvh import bvh
 from kinetree.tasks.truth import synthetic, truth
 
 RECIPE = generated()
@@ -189,6 +191,21 @@ def test_frames_are_compared_by_their_numbers():
     told = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **some, "frames": (1, 3, 5)}))
     assert told.summary.percent == 0.0
     assert told.remarks()[-1] == "synth has 6 frames, of which 3 are compared"
+
+
+def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
+    carried = PERFECT.positions.copy()
+    for j, p in enumerate(PERFECT.parents):
+        if p >= 0:
+            carried[:, j] = carried[:, p] + PERFECT.rotation[:, p] @ (PERFECT.rest[j] - PERFECT.rest[p])
+    skeleton = changed(positions=carried)
+    path = tmp_path / "walk.bvh"
+    path.write_text(bvh(skeleton)[0])
+    true = truth.function(params=TruthParams(file=str(path)), files=None)
+    told = evaluated(skeleton=skeleton, true=true)
+    assert told.summary.found == told.summary.scored > 5
+    assert told.summary.percent < 1e-3
+    assert told.summary.spurious == 0
 
 
 def test_truth_with_too_few_frames_is_refused():
