@@ -1,7 +1,8 @@
 """What a run leaves in its output folder: what artifacts hold for other programs, run.json, the configuration."""
 
+import contextlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -40,26 +41,19 @@ def write_results(folder: Path, schedule: Schedule) -> list[str]:
     One that lies there with the same bytes is not touched.
     raises : StoreError where the folder cannot be written; DamagedArtifactError, after which a run makes it again
     """
-    left: list[str] = []
-    for entry in schedule.entries.values():
-        if entry.state in DONE and entry.artifact is not None and leaves(entry.task.returns):
-            try:
-                left += write_result(folder, schedule, entry)
-            except DamagedArtifactError:
-                schedule.store.discard(entry.artifact)
-                raise
-    return left
+    done = [e for e in schedule.entries.values() if e.state in DONE and leaves(e.task.returns)]
+    return [name for entry in done for name in write_result(folder, schedule, entry)]
 
 
 def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
-    """Leaves the files and the group of one node that has its artifact; see `write_results`."""
+    """Leaves the files and the group of one node that is done; see `write_results`."""
     place, name = Folder(folder, "output folder", beside=""), entry.task.returns.left_as
-    files = schedule.value(entry.node).files(entry.node.at)
+    files = _files(schedule, entry)
     for path, data in files.items():
         if place.size(path) != len(data) or place.get(path) != data:
             place.put(path, data)
     if name:
-        _put_group(place, name, schedule.store.group(str(entry.artifact)))
+        _put_group(place, name, schedule, entry)
     return [*files, *([name] if name else [])]
 
 
@@ -68,18 +62,22 @@ def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
 
     raises : as `write_results`; ConfigError where that would overwrite what the sequence is read from
     """
-    done = [e for e in schedule.entries.values() if e.node.task == task and e.artifact is not None]
-    files = {name: data for e in done for name, data in schedule.value(e.node).files(e.node.at).items()}
-    names = {name: name.rpartition("/")[2] for name in files}
-    group = done[0].task.returns.left_as if done else ""
-    is_folder = path.is_dir() and not group
-    targets = {name: path / short if is_folder or len(files) > 1 else path for name, short in names.items()}
-    _refuse_input([*targets.values(), *([path] if group else [])], schedule)
-    for name, target in targets.items():
-        Folder(target.parent, "output folder", beside="").put(target.name, files[name])
-    if group:
-        _put_group(Folder(path.parent, "output folder", beside=""), path.name, schedule.store.group(str(done[0].artifact)))
-    return [*targets.values(), *([path] if group else [])]
+    done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
+    files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
+    beside = Folder(path.parent, "output folder", beside="")
+    if any(e.task.returns.left_as for e in done):
+        _refuse_input([path], schedule)
+        _put_group(beside, path.name, schedule, done[0])
+        return [path]
+    is_folder = path.is_dir() or len(files) > 1
+    targets = [path / name for name in files] if is_folder else [path]
+    _refuse_input([path, *targets], schedule)
+    if is_folder and not path.exists():
+        beside.put_all(path.name, files)
+    else:
+        for target, data in zip(targets, files.values(), strict=True):
+            Folder(target.parent, "output folder", beside="").put(target.name, data)
+    return targets
 
 
 def leaves(cls: type[Artifact]) -> bool:
@@ -87,22 +85,48 @@ def leaves(cls: type[Artifact]) -> bool:
     return bool(cls.left_as) or cls.files is not Artifact.files
 
 
-def _put_group(place: Folder, name: str, files: Mapping[str, bytes]) -> None:
+def _files(schedule: Schedule, entry: Entry) -> Mapping[str, bytes]:
+    with _damage_discarded(schedule, entry):
+        return schedule.value(entry.node).files(entry.node.at)
+
+
+def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> None:
     """A group's attributes hold the digests of its arrays: where they and all sizes agree, so does the rest."""
-    sizes = {path: len(data) for path, data in files.items()}
-    if place.get(f"{name}/zarr.json") != files["zarr.json"] or place.tree(name) != sizes:
-        if place.tree(name) and place.size(f"{name}/zarr.json") is None:
-            raise StoreError(f"output folder {place.url}: {name} is there and no zarr group; remove it or name another")
-        place.remove(name)
-        place.put_all(name, files)
+    with _damage_discarded(schedule, entry):
+        files = schedule.store.group(str(entry.artifact))
+        there = place.get(f"{name}/zarr.json")
+        if there == files["zarr.json"] and place.tree(name) == {path: len(data) for path, data in files.items()}:
+            return
+        schedule.value(entry.node).arrays()  # checks every byte against its digest
+    if place.tree(name) and not _is_ours(there, entry.task.returns):
+        raise StoreError(f"output folder {place.url}: {name} is there and is not kinetree's; remove it or name another place")
+    place.remove(name)
+    place.put_all(name, files)
+
+
+def _is_ours(head: bytes | None, cls: type[Artifact]) -> bool:
+    try:
+        return bool(json.loads(head or b"")["attributes"]["kinetree"]["schema"] == cls.__name__)
+    except (ValueError, KeyError, TypeError):
+        return False
+
+
+@contextlib.contextmanager
+def _damage_discarded(schedule: Schedule, entry: Entry) -> Iterator[None]:
+    """What cannot be read is removed, so that the next run makes it again."""
+    try:
+        yield
+    except DamagedArtifactError:
+        schedule.store.discard(str(entry.artifact))
+        raise
 
 
 def _refuse_input(targets: list[Path], schedule: Schedule) -> None:
     """What the sequence is read from is the user's own and may be all there is."""
     found = [artifact for given in schedule.given.values() for artifact in given.values()]
-    places = {Path(str(getattr(a, name))).absolute() for a in found for name in a.location_fields() if name == "path"}
+    places = {Path(str(getattr(a, name))).resolve() for a in found for name in a.location_fields() if name == "path"}
     for target in targets:
-        if target.absolute() in places:
+        if target.resolve() in places:
             raise ConfigError(f"{target}: the sequence is read from it; name another place with --output")
 
 

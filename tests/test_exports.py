@@ -1,7 +1,9 @@
 """Exports through the loom: what a run leaves, what changing an option computes, and what kinetree export says."""
 
+import errno
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +15,17 @@ from typer.testing import CliRunner
 
 from kinetree.pipeline import inspect
 from kinetree.pipeline.cli import command_line
-from kinetree.pipeline.errors import ConfigError, InputError, NodesFailedError, StoreError, UnknownNodeError
+from kinetree.pipeline.errors import (
+    ConfigError,
+    DamagedArtifactError,
+    InputError,
+    NodesFailedError,
+    StoreError,
+    StoreFullError,
+    UnknownNodeError,
+)
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.output import write_elsewhere
 from kinetree.tasks.commands.export import EXTRAS, export
 
 LEFT = ["segmentation.zarr", "skeleton.bvh", "skeleton.glb", "skeleton.json"]
@@ -108,14 +119,18 @@ def test_failed_skeleton_leaves_no_file(configured, tmp_path):
     assert names(tmp_path / "out") == ["config.yaml", "run.json", "store"]
 
 
-def test_damaged_export_is_made_again_by_the_next_run(out, configured):
+@pytest.mark.parametrize(("task", "array", "left"), [("bvh", "content", "skeleton.bvh"), ("segmentation", "part", LEFT[0])])
+def test_damaged_export_is_made_again_by_the_next_run(out, configured, task, array, left):
     pipeline = Pipeline.of(configured)
-    node = pipeline.why("bvh")
-    (chunk,) = (out / "store" / "artifacts" / node.artifact[:2] / node.artifact / "content" / "c").iterdir()
+    node = pipeline.why(task)
+    (chunk,) = (out / "store" / "artifacts" / node.artifact[:2] / node.artifact / array / "c").iterdir()
     chunk.write_bytes(bytes(len(chunk.read_bytes())))
-    with pytest.raises(Exception, match="will be computed again"):
+    shutil.rmtree(out / left) if (out / left).is_dir() else (out / left).unlink()
+    with pytest.raises(DamagedArtifactError, match="will be computed again"):
         pipeline.run()
-    assert ran(Pipeline.of(configured).run()) == {"bvh"}
+    assert left not in names(out)
+    assert ran(Pipeline.of(configured).run()) == {task}
+    assert left in names(out)
 
 
 def test_labels_come_back_to_the_vertices_of_every_file(out):
@@ -186,9 +201,12 @@ def test_zarr_is_exported_whole_and_over_nothing_else(out, tmp_path):
     assert zarr.open_group(tmp_path / "labels.zarr", mode="r")["label"].size == 12 * len(spider().vertices)
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("all I have")
-    with pytest.raises(StoreError, match="no zarr group"):
-        export(str(out), "zarr", tmp_path / "mine")
+    zarr.create_group(tmp_path / "other.zarr", attributes={"kinetree": "of another kind"})
+    for other in ("mine", "other.zarr"):
+        with pytest.raises(StoreError, match="is not kinetree's"):
+            export(str(out), "zarr", tmp_path / other)
     assert names(tmp_path / "mine") == ["thesis.txt"]
+    assert names(tmp_path / "other.zarr") == ["zarr.json"]
 
 
 def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_path):
@@ -231,6 +249,20 @@ def test_place_that_cannot_be_written_is_told_and_nothing_is_half_written(out, t
     assert (tmp_path / "file").read_text() == "mine"
     with pytest.raises(StoreError, match="cannot write"):
         export(str(out), "glb", tmp_path / "file" / "walk.glb")
+
+
+def test_tables_that_cannot_all_be_written_are_not_there_at_all(out, tmp_path, monkeypatch):
+    schedule, whole = Pipeline.of(str(out)).computed("tables"), Path.write_bytes
+
+    def full(path, data):
+        if path.name == "bones.csv":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return whole(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(StoreFullError, match="no space left"):
+        write_elsewhere(tmp_path / "tables", schedule, "tables")
+    assert names(tmp_path) == ["out"]
 
 
 def test_own_input_is_never_overwritten(out, scans):
