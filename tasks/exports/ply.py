@@ -11,7 +11,7 @@ from kinetree.tasks.exports.colours import part_colours
 
 
 def ply(V: Floats, F: Ints, label: Ints, skeleton: Skeleton) -> bytes:
-    """The mesh with two properties more on every vertex: its part's colour, and `part`, the joint whose part it is or −1.
+    """The mesh, in 32-bit floats, with each vertex in its part's colour and with `part`, the joint whose part it is or −1.
 
     V, F  : (input_vertex, xyz) · (face, corner)
     label : (input_vertex,) as `input_labels` gives it
