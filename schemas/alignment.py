@@ -16,6 +16,10 @@ class Alignment(Artifact):
     stretch: Annotated[Floats, Array("float64", VERTEX)]
     """Length of the edges around every vertex against their length in the reference."""
     trust: Annotated[Floats, Array("float64", VERTEX)]
-    """Weight of every vertex in later steps, 1 where it is to be believed, 0 where it is not."""
+    """Weight of every vertex in later steps, 1 where it is to be believed, near 0 where it is not."""
     uncovered: float
     """Share of the frame's surface that the body does not explain."""
+    distance: float = 0.0
+    """Median residual, length: what is missing in a frame does not make the rest worse."""
+    doubted: float = 0.0
+    """Share of the vertices whose trust is below a half."""

@@ -26,6 +26,7 @@ from kinetree.tasks.suspects import suspects
 from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
 from kinetree.tasks.tracking import tracking
+from kinetree.tasks.trust import trust
 
 MESOSCOPIC = (
     source,  # Sec. 3
@@ -51,6 +52,7 @@ MESOSCOPIC = (
     third_refit,
     alignment,  # Sec. 5.3
     projection,
+    trust,
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}

@@ -29,6 +29,8 @@ def alignment(mesh: Mesh, reference: Reference, template: Template, refit: Third
         stretch=found.stretch,
         trust=found.trust,
         uncovered=found.uncovered,
+        distance=float(np.median(found.residual)),
+        doubted=float((found.trust < 0.5).mean()),
     )
 
 

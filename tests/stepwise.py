@@ -29,6 +29,7 @@ from kinetree.tasks.synth import body, recipe
 from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
 from kinetree.tasks.tracking import tracking
+from kinetree.tasks.trust import trust
 
 
 def cleaned(V: np.ndarray, F: np.ndarray) -> Mesh:
@@ -92,6 +93,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         setattr(made, fit.name, last)
     made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
     made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
+    made.trust = trust(made.alignment, made.reference)
     return made
 
 

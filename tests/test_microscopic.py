@@ -1,0 +1,137 @@
+"""Step II from end to end: a body aligned to all frames, on good input and on bad, with any number of workers."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+from kinetree.pipeline import Pipeline
+from kinetree.schemas.synth import SynthParams
+from kinetree.tasks.synth import body, recipe
+
+STEP_TWO = ("projection", "trust")
+COARSE = {"geodesics": {"bases": 40}, "template": {"nodes": 120}}
+HUMAN = {"figure": "human", "frames": 5, "vertices": 1200}
+
+
+def ran(folder: Path, executor: str = "sync", workers: int = 1, **blocks: Any) -> tuple[Pipeline, dict[str, Any]]:
+    compute = {"executor": executor, "workers": workers}
+    pipeline = Pipeline.of({"output": str(folder), "compute": compute, **COARSE, **blocks})
+    return pipeline, pipeline.run(until=STEP_TWO)
+
+
+def digests(pipeline: Pipeline, task: str) -> list[str]:
+    return [str(entry.artifact) for node, entry in pipeline.schedule(until=STEP_TWO).entries.items() if node.task == task]
+
+
+def changed(tmp_path: Path, name: str, frame: int, change: Any, **told: Any) -> dict[str, Any]:
+    """A generated sequence as files, one frame of it changed."""
+    made = body(recipe(SynthParams(**{**HUMAN, **told})))
+    folder = tmp_path / name
+    folder.mkdir()
+    for t in range(len(made.X)):
+        mesh = trimesh.Trimesh(*made.frame(t), process=False)
+        (change(mesh) if t == frame else mesh).export(folder / f"frame_{t}.ply")
+    return {"input": str(folder)}
+
+
+def said(pipeline: Pipeline) -> str:
+    return "\n".join(f"{node}: {text}" for node, text in pipeline.remarks())
+
+
+def far(pipeline: Pipeline, t: int) -> float:
+    """Mean distance of the aligned body to a frame, share of its size."""
+    here, reference = pipeline.artifact("alignment", frame=t), pipeline.artifact("reference")
+    return float(here.residual.mean() / reference.size)  # type: ignore[attr-defined]
+
+
+def test_alignment_is_the_same_bit_for_bit_for_any_number_of_workers(tmp_path: Path) -> None:
+    alone, told = ran(tmp_path / "alone", source={"synth": HUMAN})
+    assert told["status"] == "done"
+    assert [far(alone, t) < 0.005 for t in range(5)] == [True] * 5
+    several, _ = ran(tmp_path / "several", "threads", 4, source={"synth": HUMAN})
+    for task in ("tracking", "repair", "third_stiffness", "alignment", "projection", "trust"):
+        assert digests(alone, task) == digests(several, task), task
+
+
+def test_fixed_connectivity_is_aligned_already(tmp_path: Path) -> None:
+    pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "frames": 3, "connectivity": "fixed"}})
+    assert told["status"] == "done"
+    for t in range(3):
+        here, mesh = pipeline.artifact("alignment", frame=t), pipeline.artifact("mesh", frame=t)
+        assert np.array_equal(here.vertices, mesh.vertices)  # type: ignore[attr-defined]
+    assert pipeline.artifact("template").nodes.size == 0  # type: ignore[attr-defined]
+    assert len(set(digests(pipeline, "third_refit"))) <= 2, "nothing is fitted, so there is next to nothing to store"
+
+
+def test_two_frames_are_aligned(tmp_path: Path) -> None:
+    pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "frames": 2}})
+    assert told["status"] == "done"
+    assert max(far(pipeline, t) for t in range(2)) < 0.005
+
+
+def test_ball_without_limbs_is_aligned_and_the_run_says_what_is_amiss(tmp_path: Path) -> None:
+    (tmp_path / "scans").mkdir()
+    for t in range(3):
+        ball = trimesh.creation.icosphere(subdivisions=3, radius=1 + t / 20).subdivide_loop(0)
+        ball.faces = np.roll(ball.faces, t, axis=0)
+        ball.export(tmp_path / "scans" / f"{t}.ply")
+    pipeline, told = ran(tmp_path / "out", source={"input": str(tmp_path / "scans")})
+    assert told["status"] == "done"
+    assert not pipeline.artifact("reference").fixed  # type: ignore[attr-defined]
+    assert "reference: no limb is seen in any frame" in said(pipeline)
+    assert max(far(pipeline, t) for t in range(3)) < 0.01
+
+
+def test_limb_cut_off_in_some_frames_is_told_and_doubted_there_alone(tmp_path: Path) -> None:
+    lost = {"limb": "elbow_r", "begin": 3, "end": 4}
+    pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "dropped": [lost]}})
+    assert told["status"] == "done"
+    assert "trust: frames 3–4 are trusted in part: up to" in said(pipeline)
+    assert far(pipeline, 1) < 0.005
+
+
+def test_teleport_is_not_trusted_and_the_frames_around_it_are(tmp_path: Path) -> None:
+    def teleported(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+        turn = trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1])
+        return mesh.copy().apply_transform(turn).apply_translation([0.4 * mesh.scale] * 3)
+
+    source = changed(tmp_path, "teleport", 4, teleported)
+    pipeline, told = ran(tmp_path / "out", source=source)
+    assert told["status"] == "done"
+    trust = pipeline.artifact("trust")
+    assert trust.trusted.tolist() == [True, True, True, True, False]  # type: ignore[attr-defined]
+    assert pipeline.artifact("alignment", frame=4).trust.mean() < 0.3  # type: ignore[attr-defined]
+    assert "frame 4 is not trusted" in said(pipeline)
+    assert max(far(pipeline, t) for t in range(4)) < 0.005
+
+
+def test_frame_with_a_tenth_of_the_vertices_is_aligned_as_well_as_it_is_sampled(tmp_path: Path) -> None:
+    fine = {"frames": 3, "vertices": 6000}
+
+    def coarse(_: trimesh.Trimesh) -> trimesh.Trimesh:
+        return trimesh.Trimesh(*body(recipe(SynthParams(**{**HUMAN, "vertices": 600}))).frame(2), process=False)
+
+    pipeline, told = ran(tmp_path / "out", source=changed(tmp_path, "coarse", 2, coarse, **fine))
+    assert told["status"] == "done"
+    assert len(pipeline.artifact("mesh", frame=2).vertices) < 600  # type: ignore[attr-defined]
+    assert far(pipeline, 2) < 0.01
+    assert max(far(pipeline, t) for t in (0, 1)) < 0.005
+
+
+def test_limbs_that_meet_do_not_swap(tmp_path: Path) -> None:
+    touch = {"limb": "hand_r", "target": "hip_r", "begin": 4, "end": 5, "ramp": 3}
+    synth = {**HUMAN, "frames": 9, "contacts": [touch]}
+    pipeline, told = ran(tmp_path, source={"synth": synth})
+    assert told["status"] == "done"
+    made, reference = body(recipe(SynthParams(**synth))), pipeline.artifact("reference")
+    start: int = reference.frame  # type: ignore[attr-defined]
+    assert start not in (4, 5)
+    hand = made.figure.index("hand_r", "")
+    near = np.linalg.norm(reference.vertices - made.X[start, hand], axis=1) < 0.05 * made.figure.height  # type: ignore[attr-defined]
+    for t in range(9):
+        here = pipeline.artifact("alignment", frame=t)
+        away = np.linalg.norm(here.vertices[near].mean(axis=0) - made.X[t, hand])  # type: ignore[attr-defined]
+        assert away == pytest.approx(0.0, abs=0.05 * made.figure.height)
