@@ -92,23 +92,25 @@ def _files(schedule: Schedule, entry: Entry) -> Mapping[str, bytes]:
 
 def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> None:
     """A group's attributes hold the digests of its arrays: where they and all sizes agree, so does the rest."""
+    digest, there = str(entry.artifact), _attributes(place.get(f"{name}/zarr.json"))
     with _damage_discarded(schedule, entry):
-        files = schedule.store.group(str(entry.artifact))
-        there = place.get(f"{name}/zarr.json")
-        if there == files["zarr.json"] and place.tree(name) == {path: len(data) for path, data in files.items()}:
+        head = schedule.store.head(digest)
+        if there == head and place.tree(name) == schedule.store.sizes(digest):
             return
         schedule.value(entry.node).arrays()  # checks every byte against its digest
-    if place.tree(name) and not _is_ours(there, entry.task.returns):
+        files = schedule.store.group(digest)
+    if place.tree(name) and there.get("schema") != head["schema"]:
         raise StoreError(f"output folder {place.url}: {name} is there and is not kinetree's; remove it or name another place")
     place.remove(name)
     place.put_all(name, files)
 
 
-def _is_ours(head: bytes | None, cls: type[Artifact]) -> bool:
+def _attributes(data: bytes | None) -> dict[str, Any]:
+    """What kinetree wrote into a group's metadata; empty where it did not."""
     try:
-        return bool(json.loads(head or b"")["attributes"]["kinetree"]["schema"] == cls.__name__)
+        return dict(json.loads(data or b"")["attributes"]["kinetree"])
     except (ValueError, KeyError, TypeError):
-        return False
+        return {}
 
 
 @contextlib.contextmanager

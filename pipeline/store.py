@@ -162,6 +162,10 @@ class Store:
             raise DamagedArtifactError(digest, "a file is missing")
         return {name: data for name, data in files.items() if data is not None}
 
+    def sizes(self, digest: str) -> Mapping[str, int]:
+        """Size of every file of an artifact's zarr group, by path within it."""
+        return self.place.tree(artifact_path(digest))
+
     def discard(self, digest: str) -> None:
         """Removes an artifact; records that name it then make nothing fresh."""
         self.place.remove(artifact_path(digest))

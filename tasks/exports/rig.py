@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from kinetree.schemas.array import Floats
 from kinetree.schemas.skeleton import Skeleton
 
-OPPOSITE = 1e-9
-"""Below this 1 + cos θ two directions are opposite."""
+OPPOSITE = 1e-6
+"""Below this length of their sum two directions are opposite."""
 
 
 def children(parents: Sequence[int]) -> list[list[int]]:
@@ -82,14 +82,14 @@ def skinned(skeleton: Skeleton, t: int) -> Floats:
 
 
 def _turned(frame: Floats, along: Floats) -> Floats:
-    """A frame turned by the least turn that takes its y axis along a direction."""
+    """A frame turned by the least turn that takes its y axis along a direction: mirrored across y, then across what halves."""
     length = float(np.linalg.norm(along))
     if length == 0.0:
         return frame
     y, d = frame[:, 1], along / length
-    c = float(y @ d)
-    if 1.0 + c < OPPOSITE:
+    half = y + d
+    if np.linalg.norm(half) < OPPOSITE:
         return np.asarray(frame * np.array([1.0, -1.0, -1.0]))
-    v = np.cross(y, d)
-    K = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
-    return np.asarray((np.eye(3) + K + K @ K / (1.0 + c)) @ frame)
+    half /= np.linalg.norm(half)
+    mirrored = frame - 2.0 * np.outer(y, y @ frame)
+    return np.asarray(mirrored - 2.0 * np.outer(half, half @ mirrored))
