@@ -67,13 +67,12 @@ def _doubtful(body: Surfaces, parts: Carried, found: Hung, leaves: Ints, degrees
     """Parts that may be none, the most doubtful first: flesh, then what turns too little, then what drifts too much."""
     tree, mass = found.tree, np.bincount(parts.label, body.area, parts.R.shape[1])
     has_leaf = np.isin(np.arange(len(mass)), parts.label[leaves])
-    doubts: list[tuple[float, int]] = []
+    doubts = [(_flesh(parts.R, found, k), int(part)) for k, part in enumerate(tree.order)]
     for k in range(1, len(mass)):
         part, above = int(tree.order[k]), int(tree.order[tree.parents[k]])
         smaller = min((part, above), key=lambda p: (mass[p], p))
         last = not (tree.parents == k).any()
         least = ratio if not last else LEAF_RATIO / LEAST_RATIO * ratio if has_leaf[part] else FLAP_RATIO / LEAST_RATIO * ratio
-        doubts.append((_flesh(parts.R, found, k), above))
         doubts.append((found.degrees[k] / max(degrees, 1e-9), smaller))
         if not _bears(found, smaller, k):
             doubts.append((found.ratio[k] / max(least, 1e-9), smaller))
@@ -90,14 +89,23 @@ def _bears(found: Hung, part: int, k: int) -> bool:
 
 
 def _flesh(R: Floats, found: Hung, k: int) -> float:
-    """Below 1, and the lower the clearer, where the part above the k-th is a ring of flesh between its neighbours."""
+    """Below 1, and the lower the clearer, where the part at the k-th place is a ring of flesh between two neighbours."""
     tree = found.tree
-    middle = int(tree.parents[k])
-    if middle < 1:
+    children = np.flatnonzero(tree.parents == k)
+    if k == 0 and len(children) != 2:
         return np.inf
-    rows = tree.border[[k, middle]]
+    ends = [(int(children[0]), int(children[1]))] if k == 0 else [(k, int(c)) for c in children]
+    return min((_ring(R, found, k, *pair) for pair in ends), default=np.inf)
+
+
+def _ring(R: Floats, found: Hung, k: int, one: int, other: int) -> float:
+    """The same, asked of two of its joints: how near they are, if it turns by a share of what both turn by."""
+    tree = found.tree
+    rows = tree.border[[one, other]]
     apart = float(np.linalg.norm(np.diff(found.joints.rest[rows], axis=0)))
-    top, ring, end = (int(tree.order[j]) for j in (tree.parents[middle], middle, k))
-    if apart > THIN * found.borders.radius[rows].min() or in_between(against(R, top, ring), against(R, top, end)) < FLESH:
+    reach = THIN * float(found.borders.radius[rows].min())
+    top = int(tree.order[one if k == 0 else tree.parents[k]])
+    ring, end = int(tree.order[k]), int(tree.order[other])
+    if apart > reach or in_between(against(R, top, ring), against(R, top, end)) < FLESH:
         return np.inf
-    return apart / float(THIN * found.borders.radius[rows].min()) - 1.0
+    return apart / reach - 1.0

@@ -1,0 +1,50 @@
+"""Which parts are parts."""
+
+import numpy as np
+import pytest
+from articulated import Known, chain, moved, swings, three_arms
+
+from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
+from kinetree.tasks.numerics.structure.pruning import Pruned, pruned
+
+
+def of(body: Known, leaves: tuple[int, ...] = ()) -> Pruned:
+    parts = Carried(body.label, body.R, body.t, body.residual)
+    return pruned(Surfaces(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
+
+
+@pytest.mark.parametrize("body", [chain((-2.0, 2.0)), chain((0.0,)), three_arms()], ids=["three links", "two links", "arms"])
+def test_true_parts_stay(body: Known) -> None:
+    found = of(body)
+    assert found.parts.label.tolist() == body.label.tolist()
+
+
+def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
+    hinge = swings(24, 1, 40, axes=1)[:, 0]
+    half = swings(24, 1, 20, axes=1)[:, 0]
+    turn = np.stack([np.broadcast_to(np.eye(3), (24, 3, 3)), half, half], axis=1)
+    assert half @ half == pytest.approx(hinge, abs=1e-9)
+    body = chain((-0.4, 0.4), turn)
+    found = of(body)
+    assert found.parts.R.shape[1] == 2
+    assert found.hung.joints.rest[found.hung.tree.border[1]][2] == pytest.approx(0, abs=0.2)
+
+
+def test_parts_that_do_not_turn_are_one() -> None:
+    turn = swings(24, 3)
+    turn[:, 2] = np.eye(3)
+    found = of(chain((-1.0, 2.0), turn))
+    assert found.parts.R.shape[1] == 2
+    assert of(chain((-1.0, 2.0), np.tile(np.eye(3), (24, 3, 1, 1)))).parts.R.shape[1] == 1
+
+
+def test_patch_that_slides_is_no_part() -> None:
+    body = chain((-2.0, 2.0))
+    patch = (np.abs(body.V[:, 2]) < 0.8) & (body.V[:, 0] > 0.5)
+    W = np.eye(4)[np.where(patch, 3, body.label)]
+    known = moved(body.V, body.F, W, np.vstack([body.joints, [1.0, 0, 0]]), np.array([-1, 0, 1, 1]), swings(24, 4, 10))
+    slide = 0.5 * np.random.default_rng(2).normal(size=(24, 3))
+    t, x = known.t.copy(), known.x.copy()
+    t[:, 3] += slide
+    x[:, patch] += slide[:, None]
+    assert of(known._replace(t=t, x=x)).parts.R.shape[1] == 3
