@@ -2,9 +2,11 @@
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.geodesics import geodesic_distance
-from kinetree.tasks.numerics.nodes import covering, nearest_nodes
+from kinetree.tasks.numerics.nodes import covering
 from kinetree.tasks.numerics.structure.cones import cones
 from kinetree.tasks.numerics.structure.moments import moments
 from kinetree.tasks.numerics.structure.patches import merged
@@ -49,33 +51,37 @@ def cone_runs(
     return label
 
 
-def patch_groups(
-    surface: Surface,
-    V: Floats,
-    x: Floats,
-    weight: Floats,
-    where: npt.NDArray[np.bool_],
-    start: Ints,
-    ring: Ints,
-    count: int,
-    left: int,
-) -> Ints:
-    """Patches of part of the surface, merged while they move as one.
-
-    where   : (vertex,) the part of the surface
-    count   : patches the whole surface is cut into
-    left    : groups to leave
-    returns : (vertex,) group, −1 elsewhere
-    """
-    group = np.full(len(V), -1, np.int64)
-    if not where.any():
-        return group
+def patches(surface: Surface, V: Floats, start: Ints, ring: Ints, count: int) -> Ints:
+    """(vertex,) patch of the surface, of about equal size: the nearest of farthest points."""
     node = covering(surface, np.ones(len(V)), count)
-    cell = nearest_nodes(surface, node, 1)[0][:, 0]
-    used, patch = np.unique(cell[where], return_inverse=True)
-    group[where] = patch.reshape(-1)
-    M = moments(V, x, weight, group, len(used))
-    pairs = np.stack([np.repeat(group, np.diff(start)), group[ring]], axis=1)
-    pairs = np.unique(pairs[(pairs[:, 0] >= 0) & (pairs[:, 0] < pairs[:, 1])], axis=0)
-    group[where] = merged(M, pairs, left)[group[where]]
-    return group
+    tail = np.repeat(np.arange(len(V)), np.diff(start))
+    length = np.linalg.norm(V[tail] - V[ring], axis=1)
+    way = csr_array((length, ring, start), shape=(len(V), len(V)))
+    nearest: Ints = dijkstra(way, indices=node, return_predecessors=True, min_only=True)[2]
+    return np.unique(nearest, return_inverse=True)[1].reshape(-1)
+
+
+def grouped(
+    V: Floats, x: Floats, weight: Floats, patch: Ints, label: Ints, start: Ints, ring: Ints, left: int, limit: float
+) -> Ints:
+    """Pieces of patches that lie in one label, merged within it while they move as one.
+
+    weight  : (frame, vertex) belief times area
+    patch   : (vertex,) see `patches`
+    label   : (vertex,) −1 for what is left out
+    left    : groups to leave at least
+    limit   : growth of the residual beyond which nothing is merged, mesh unit² times weight, summed over frames
+    returns : (vertex,) group, −1 where label is
+    """
+    if not (label >= 0).any():
+        return label
+    code = np.where(label >= 0, label * (patch.max() + 1) + patch, -1)
+    used, group = np.unique(code, return_inverse=True)
+    group = group.reshape(-1) - (used[0] < 0)
+    count = int(group.max()) + 1
+    M = moments(V, x, weight, group, count)
+    tail = np.repeat(np.arange(len(V)), np.diff(start))
+    same = (label[tail] == label[ring]) & (label[tail] >= 0) & (group[tail] < group[ring])
+    pairs = np.unique(np.stack([group[tail], group[ring]], axis=1)[same], axis=0)
+    to = merged(M, pairs, left, limit)
+    return np.where(group >= 0, to[group], -1)

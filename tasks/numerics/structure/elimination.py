@@ -1,194 +1,169 @@
-"""Backward elimination: parts whose neighbours explain them are given to their neighbours, the least missed first."""
+"""Backward elimination: parts that would not be missed are given to their neighbours, the least missed first."""
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.labelling import connected, fitted, neighbouring
+from kinetree.tasks.numerics.structure.fitting import fit, squared
+from kinetree.tasks.numerics.structure.labelling import connected, neighbouring
+from kinetree.tasks.numerics.structure.missing import candidates, missed
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
+ENOUGH = 120  # vertices of a part that are asked
+
+
+class Body(NamedTuple):
+    """One connected surface and the ways of its vertices, in the root of its area and about its middle.
+
+    V, N        : (vertex, xyz) · (vertex, xyz) unit normals, 0 where there is none
+    F           : (face, corner)
+    x           : (frame, vertex, xyz)
+    weight      : (frame, vertex) belief, 0 to 1
+    area        : (vertex,) summing to 1
+    start, ring : neighbours of every vertex, see `rings.rings`
+    """
+
+    V: Floats
+    N: Floats
+    F: Ints
+    x: Floats
+    weight: Floats
+    area: Floats
+    start: Ints
+    ring: Ints
+
+
+class Bar(NamedTuple):
+    """What a part must pass to stay; lengths in the root of the body's area, areas as shares of it.
+
+    missed : by how much it must be missed
+    slip   : what a displacement along the surface counts against one across it, 0 to 1
+    short  : length by girth of a part from which on blends explain it less, and at twice which not at all
+    small  : area of a part below which its shape is that of its few triangles
+    large  : area of a part from which on blends explain it less, and at twice which not at all
+    least  : area of a part that must be missed √2 times as much
+    loose  : how much its median vertex's own residual counts against it
+    floor  : least mean squared residual that tells clearly rigid vertices from others
+    """
+
+    missed: float = 0.004
+    slip: float = 1.0
+    short: float = 0.2
+    small: float = 0.005
+    large: float = 0.04
+    least: float = 0.004
+    loose: float = 1.0
+    floor: float = 1e-10
+
 
 @compiled
-def eliminated(
-    V: Floats,
-    N: Floats,
-    x: Floats,
-    weight: Floats,
-    area: Floats,
-    label: Ints,
-    R: Floats,
-    t: Floats,
-    start: Ints,
-    ring: Ints,
-    threshold: float,
-    slip: float,
-    floor: float,
-) -> tuple[Ints, Floats, Floats]:
-    """Drops parts until each one left would be missed by more than `threshold`; see `_missed`.
+def eliminated(body: Body, bar: Bar, label: Ints, R: Floats, t: Floats) -> tuple[Ints, Floats, Floats]:
+    """Drops parts until each one left passes the bar; motions of parts that inherit are fitted anew.
 
-    V, N        : (vertex, xyz) reference, mesh unit · (vertex, xyz) its unit normals
-    x           : (frame, vertex, xyz) mesh unit
-    weight      : (frame, vertex) belief
-    area        : (vertex,) mesh unit²
-    label       : (vertex,) part
-    R, t        : (frame, part, 3, 3) · (frame, part, xyz)
-    start, ring : neighbours of every vertex
-    threshold   : mesh unit
-    slip        : what a displacement along the surface counts against one across it, 0 to 1
-    floor       : mesh unit², see `labelling.fitted`
-    returns     : (vertex,) label · R · t, of the parts dropped too
+    label   : (vertex,) part
+    R, t    : (frame, part, 3, 3) · (frame, part, xyz)
+    returns : (vertex,) label · R · t, of the parts dropped too
     """
     parts = R.shape[1]
     label, R, t = label.copy(), R.copy(), t.copy()
-    alive = np.zeros(parts, np.bool_)
+    alive, stale, refit = np.zeros(parts, np.bool_), np.ones(parts, np.bool_), np.zeros(parts, np.bool_)
     for v in range(len(label)):
-        if label[v] >= 0:
-            alive[label[v]] = True
+        alive[label[v]] = True
     score = np.full(parts, np.inf)
-    heir = np.full(len(label), -1, np.int64)
-    stale = alive.copy()
     while True:
-        near = neighbouring(label, parts, start, ring)
-        for p in range(parts):
-            if alive[p] and stale[p]:
-                score[p] = _missed(V, N, x, weight, area, label, p, R, t, near, slip, heir)
-        stale[:] = False
+        near = neighbouring(label, parts, body.start, body.ring)
+        _score(body, bar, label, R, t, near, alive, stale, score)
         worst = -1
         for p in range(parts):
-            if alive[p] and score[p] < threshold and (worst < 0 or score[p] < score[worst]):
+            stale[p] = refit[p] = False
+            if alive[p] and score[p] < bar.missed and (worst < 0 or score[p] < score[worst]):
                 worst = p
         if worst < 0:
-            break
-        refit = np.zeros(parts, np.bool_)
-        for v in range(len(label)):
-            if label[v] == worst:
-                label[v] = heir[v]
-                refit[heir[v]] = True
+            return label, R, t
         alive[worst] = False
-        label = connected(label, parts, start, ring)
+        _inherit(body, label, worst, near, R, t, refit)
+        label = connected(label, parts, body.start, body.ring)
+        fit(body.V, body.x, body.weight, body.area, label, refit, True, bar.floor, R, t)
         for p in range(parts):
-            refit[p] |= near[worst, p] > 0
-        fitted(V, x, weight, area, label, refit, R, t, floor)
-        near = neighbouring(label, parts, start, ring)
-        for p in range(parts):
-            if refit[p]:
-                stale[p] = True
-                for q in range(parts):
-                    stale[q] |= near[p, q] > 0
-    return label, R, t
+            for q in range(parts):
+                if near[worst, p] > 0 and (q == p or near[p, q] > 0):
+                    stale[q] = True
 
 
 @compiled
-def _missed(
-    V: Floats,
-    N: Floats,
-    x: Floats,
-    weight: Floats,
-    area: Floats,
-    label: Ints,
-    part: int,
-    R: Floats,
-    t: Floats,
-    near: Ints,
-    slip: float,
-    heir: Ints,
-) -> float:
-    """By how much a part would be missed: L4 norm over frames of the root mean square of what its neighbours leave.
+def _score(
+    body: Body, bar: Bar, label: Ints, R: Floats, t: Floats, near: Ints, alive: Flags, stale: Flags, score: Floats
+) -> None:
+    """Writes by how much every stale part would be missed: infinite without a neighbour."""
+    parts = len(near)
+    size, rim = np.zeros(parts), rims(body.V, body.F, label, parts)
+    total = np.zeros(parts, np.int64)
+    for v in range(len(label)):
+        size[label[v]] += body.area[v]
+        total[label[v]] += 1
+    for p in range(parts):
+        if not alive[p] or not stale[p]:
+            continue
+        other, touches = candidates(near, size, p)
+        if touches == 0:
+            score[p] = np.inf
+            continue
+        member = np.empty(ENOUGH, np.int64)
+        count = passed = 0
+        for v in range(len(label)):
+            if label[v] == p:
+                # of more than enough, evenly many
+                if passed * min(ENOUGH, total[p]) // total[p] == count:
+                    member[count] = v
+                    count += 1
+                passed += 1
+        # of a tube, area / girth² is length / girth, and its two ends are the rim
+        long = _ramp(4.0 * size[p] / max(rim[p], 1e-12) ** 2, bar.short) * _ramp(size[p], bar.small)
+        bone = max(long, _ramp(size[p], bar.large))
+        fine = np.sqrt(size[p] / (size[p] + bar.least))
+        score[p] = fine * missed(
+            body.V, body.N, body.x, body.weight, body.area, member[:count], p, other, touches, R, t, bone, bar.slip, bar.loose
+        )
 
-    Each vertex goes to the neighbour, or the blend of two in shares that are the same in all frames, that leaves least.
-    What the part leaves itself is taken off. Writes each vertex's best single neighbour to `heir`.
-    returns : mesh unit; infinite for a part without neighbours
-    """
-    count = 0
-    for q in range(len(near)):
-        count += near[part, q] > 0
-    if count == 0:
-        return np.inf
-    other = np.empty(count, np.int64)
-    count = 0
-    for q in range(len(near)):
-        if near[part, q] > 0:
-            other[count] = q
-            count += 1
-    frames = x.shape[0]
-    loss, mass = np.zeros(frames), np.zeros(frames)
-    r = np.empty((count, frames, 3))
-    own = np.empty((frames, 3))
-    E = np.empty((count, count))
+
+@compiled
+def _inherit(body: Body, label: Ints, part: int, near: Ints, R: Floats, t: Floats, heir: Flags) -> None:
+    """Gives every vertex of a part to the neighbour whose motion leaves least of its own; marks the heirs."""
     for v in range(len(label)):
         if label[v] != part:
             continue
-        _left(V, N, x, weight, v, part, part, R, t, slip, own)
-        for a in range(count):
-            _left(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
-        for a in range(count):
-            for b in range(a + 1):
-                total = 0.0
-                for f in range(frames):
-                    total += r[a, f, 0] * r[b, f, 0] + r[a, f, 1] * r[b, f, 1] + r[a, f, 2] * r[b, f, 2]
-                E[a, b] = total
-        first, second, share, least, single = 0, 0, 1.0, np.inf, np.inf
-        for a in range(count):
-            if E[a, a] < single:
-                single = E[a, a]
-                heir[v] = other[a]
-            if E[a, a] < least:
-                first, second, share, least = a, a, 1.0, E[a, a]
-            for b in range(a):
-                bend = E[a, a] - 2.0 * E[a, b] + E[b, b]
-                if bend <= 0.0:
-                    continue
-                w = (E[b, b] - E[a, b]) / bend
-                if 0.0 < w < 1.0 and E[b, b] - w * w * bend < least:
-                    first, second, share, least = a, b, w, E[b, b] - w * w * bend
-        for f in range(frames):
-            for i in range(3):
-                left = share * r[first, f, i] + (1.0 - share) * r[second, f, i]
-                loss[f] += area[v] * (left * left - own[f, i] * own[f, i])
-            mass[f] += area[v] * weight[f, v]
-    full = max(mass.max(), 1e-300)
-    total, frames_seen = 0.0, 0.0
-    for f in range(frames):
-        seen = mass[f] / full
-        if mass[f] > 0.0:
-            total += seen * max(loss[f] / mass[f], 0.0) ** 2
-        frames_seen += seen
-    return (total / max(frames_seen, 1e-300)) ** 0.25
+        best, least = -1, np.inf
+        for p in range(len(near)):
+            if near[part, p] > 0:
+                left = 0.0
+                for f in range(body.x.shape[0]):
+                    left += body.weight[f, v] * squared(body.V, body.x, R, t, v, f, p)
+                if left < least:
+                    best, least = p, left
+        label[v] = best
+        heir[best] = True
 
 
 @compiled
-def _left(
-    V: Floats,
-    N: Floats,
-    x: Floats,
-    weight: Floats,
-    v: int,
-    part: int,
-    home: int,
-    R: Floats,
-    t: Floats,
-    slip: float,
-    out: Floats,
-) -> None:
-    """Writes (frame, xyz) √w · what a part's motion leaves of a vertex's; along the surface as it stands in `home`, less."""
-    for f in range(x.shape[0]):
-        n0 = n1 = n2 = 0.0
-        for j in range(3):
-            n0 += R[f, home, 0, j] * N[v, j]
-            n1 += R[f, home, 1, j] * N[v, j]
-            n2 += R[f, home, 2, j] * N[v, j]
-        r0 = t[f, part, 0] - x[f, v, 0]
-        r1 = t[f, part, 1] - x[f, v, 1]
-        r2 = t[f, part, 2] - x[f, v, 2]
-        for j in range(3):
-            r0 += R[f, part, 0, j] * V[v, j]
-            r1 += R[f, part, 1, j] * V[v, j]
-            r2 += R[f, part, 2, j] * V[v, j]
-        across = (1.0 - slip) * (n0 * r0 + n1 * r1 + n2 * r2)
-        w = np.sqrt(weight[f, v])
-        out[f, 0] = w * (slip * r0 + across * n0)
-        out[f, 1] = w * (slip * r1 + across * n1)
-        out[f, 2] = w * (slip * r2 + across * n2)
+def _ramp(value: float, begin: float) -> float:
+    """0 up to `begin`, 1 from twice that on."""
+    return min(max(value / begin - 1.0, 0.0), 1.0)
+
+
+@compiled
+def rims(V: Floats, F: Ints, label: Ints, parts: int) -> Floats:
+    """(part,) length of every part's border, half-way between the vertices on its two sides, mesh unit."""
+    out = np.zeros(parts)
+    for f in range(len(F)):
+        for i in range(3):
+            a, b, c = F[f, i], F[f, (i + 1) % 3], F[f, (i + 2) % 3]
+            if label[a] == label[b] and label[c] != label[a]:
+                half = 0.5 * np.sqrt((V[a, 0] - V[b, 0]) ** 2 + (V[a, 1] - V[b, 1]) ** 2 + (V[a, 2] - V[b, 2]) ** 2)
+                out[label[a]] += half
+                out[label[c]] += half
+    return out

@@ -27,25 +27,25 @@ def moments(V: Floats, x: Floats, weight: Floats, label: Ints, count: int) -> Fl
     count   : sets
     returns : (set, frame, 17) see `MOMENTS`
     """
-    frames = x.shape[0]
-    M = np.zeros((count, frames, MOMENTS))
-    for t in range(frames):
+    M = np.zeros((count, x.shape[0], MOMENTS))
+    for t in range(x.shape[0]):
         for v in range(len(label)):
-            k = label[v]
-            w = weight[t, v]
-            if k < 0 or w <= 0.0:
-                continue
-            M[k, t, 0] += w
-            square = 0.0
-            for i in range(3):
-                q, y = w * V[v, i], x[t, v, i]
-                square += q * V[v, i] + w * y * y
-                M[k, t, 1 + i] += q
-                M[k, t, 4 + i] += w * y
-                for j in range(3):
-                    M[k, t, 8 + 3 * i + j] += q * x[t, v, j]
-            M[k, t, 7] += square
+            if label[v] >= 0:
+                added(M[label[v], t], V, x, t, v, weight[t, v])
     return M
+
+
+@compiled
+def added(m: Floats, V: Floats, x: Floats, t: int, v: int, w: float) -> None:
+    """Adds vertex v in frame t to the sums m (17,) with weight w."""
+    m[0] += w
+    for i in range(3):
+        q, y = w * V[v, i], w * x[t, v, i]
+        m[7] += q * V[v, i] + y * x[t, v, i]
+        m[1 + i] += q
+        m[4 + i] += y
+        for j in range(3):
+            m[8 + 3 * i + j] += q * x[t, v, j]
 
 
 @compiled
@@ -70,10 +70,10 @@ def motion(m: Floats, R: Floats, t: Floats) -> None:
 
     m : (17,) of one set in one frame; R : (3, 3) and t : (xyz), written
     """
-    R[:] = 0.0
-    t[:] = 0.0
     for i in range(3):
-        R[i, i] = 1.0
+        t[i] = 0.0
+        for j in range(3):
+            R[i, j] = 1.0 if i == j else 0.0
     if m[0] <= 0.0:
         return
     C = np.empty(9)
@@ -84,21 +84,6 @@ def motion(m: Floats, R: Floats, t: Floats) -> None:
         t[i] = m[4 + i] / m[0]
         for j in range(3):
             t[i] -= R[i, j] * m[1 + j] / m[0]
-
-
-@compiled
-def motions(M: Floats) -> tuple[Floats, Floats]:
-    """Rigid motions of every set in every frame.
-
-    M       : (set, frame, 17)
-    returns : (frame, set, 3, 3) · (frame, set, xyz)
-    """
-    sets, frames = M.shape[0], M.shape[1]
-    R, t = np.empty((frames, sets, 3, 3)), np.empty((frames, sets, 3))
-    for f in range(frames):
-        for k in range(sets):
-            motion(M[k, f], R[f, k], t[f, k])
-    return R, t
 
 
 @compiled
@@ -173,8 +158,8 @@ def _annihilate(N: Floats, Q: Floats, i: int, j: int) -> None:
     for k in range(4):
         Q[k, i], Q[k, j] = c * Q[k, i] - s * Q[k, j], s * Q[k, i] + c * Q[k, j]
         if k != i and k != j:
-            p, q = (k, i) if k < i else (i, k), (k, j) if k < j else (j, k)
-            N[p], N[q] = c * N[p] - s * N[q], s * N[p] + c * N[q]
+            p, q, m, n = min(k, i), max(k, i), min(k, j), max(k, j)
+            N[p, q], N[m, n] = c * N[p, q] - s * N[m, n], s * N[p, q] + c * N[m, n]
     N[i, i] -= t * N[i, j]
     N[j, j] += t * N[i, j]
     N[i, j] = 0.0

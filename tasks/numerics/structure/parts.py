@@ -1,6 +1,6 @@
 """Rigid parts of a body from the ways of its vertices (2014, Sec. 6.1 and 6.2; by elimination, not by growth)."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,9 +10,10 @@ from kinetree.tasks.numerics.components import largest_component
 from kinetree.tasks.numerics.leaves import leaves as tips
 from kinetree.tasks.numerics.mu import farthest_bases, mu
 from kinetree.tasks.numerics.rings import rings
-from kinetree.tasks.numerics.structure.beginning import cone_runs, patch_groups
-from kinetree.tasks.numerics.structure.elimination import eliminated
-from kinetree.tasks.numerics.structure.labelling import connected, fitted, misfit, relabelled, residuals
+from kinetree.tasks.numerics.structure.beginning import cone_runs, grouped, patches
+from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated
+from kinetree.tasks.numerics.structure.fitting import fit, misfit, residuals
+from kinetree.tasks.numerics.structure.labelling import connected, relabelled
 from kinetree.tasks.numerics.surface import Surface
 
 Floats = npt.NDArray[np.float64]
@@ -36,33 +37,29 @@ class PartsFound(NamedTuple):
 
 
 class PartsSettings(NamedTuple):
-    """Lengths are shares of the root of the reference's area.
+    """Lengths are shares of the root of the reference's area, areas shares of it.
 
     rings   : in the longest distance from each leaf
     cut     : root mean square residual that makes a tenth of a cone's rings worth a run of their own
     patches : the whole surface is cut into
-    trunk   : parts to begin with outside the cones
-    missed  : by how much a part must be missed to stay
-    slip    : what a displacement along the surface counts against one across it, 0 to 1
+    trunk   : groups of patches to begin with outside the cones
+    split   : growth of the mean squared residual, times area, from which on patches of one run or group stay apart
     smooth  : radius of the surroundings that decide with a vertex
+    bar     : what a part must pass to stay
     """
 
     rings: int = 50
     cut: float = 0.002
-    patches: int = 400
+    patches: int = 1000
     trunk: int = 16
-    missed: float = 0.007
-    slip: float = 1.0
+    split: float = 1e-7
     smooth: float = 0.015
-
-
-FLOOR = 1e-10
-"""Least mean squared residual that tells clearly rigid vertices from others, share of the reference's area."""
+    bar: Bar = Bar()
 
 
 def parts(
     V: Floats,
-    F: npt.NDArray[np.integer],
+    F: npt.NDArray[np.integer[Any]],
     x: Floats,
     trust: Floats | None = None,
     leaves: Ints | None = None,
@@ -99,33 +96,38 @@ def _tips(surface: Surface, F: Ints) -> Ints:
 def _found(surface: Surface, F: Ints, V: Floats, x: Floats, weight: Floats, leaves: Ints, chosen: PartsSettings) -> PartsFound:
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
-    area = surface.area / unit**2
-    start, ring = rings(F.astype(np.int64), len(V))
+    body = Body(V, _normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
+    label = _many(surface, body, leaves, chosen)
     steps = max(round((chosen.smooth * unit / surface.edge) ** 2), 1)
-    label = cone_runs(surface, V, x, weight * area, leaves, start, ring, chosen.rings, chosen.cut)
-    trunk = patch_groups(surface, V, x, weight * area, label < 0, start, ring, chosen.patches, chosen.trunk)
-    label = np.where(label < 0, label.max() + 1 + trunk, label)
-    label = connected(label, int(label.max()) + 1, start, ring)
-    N = _normals(surface.position, F)
-    for _ in range(2):
-        label, R, t = _refitted(V, x, weight, area, label)
-        label = relabelled(V, x, weight, R, t, label, start, ring, steps)
-    for _ in range(2):
-        label, R, t = _refitted(V, x, weight, area, label)
-        label, R, t = eliminated(V, N, x, weight, area, label, R, t, start, ring, chosen.missed, chosen.slip, FLOOR)
-        label = relabelled(V, x, weight, R, t, label, start, ring, steps)
-    label, R, t = _refitted(V, x, weight, area, label)
+    label, R, t = _refitted(body, label, chosen.bar.floor)
+    for turn in range(4):
+        if turn > 1:
+            label, R, t = eliminated(body, chosen.bar, label, R, t)
+        label = relabelled(V, x, weight, R, t, label, body.start, body.ring, steps)
+        label, R, t = _refitted(body, label, chosen.bar.floor)
     e = misfit(V, x, weight, R, t, label)
-    rigid = 1 / (1 + e / 1e-5)
-    return PartsFound(label, rigid, R, t, residuals(V, x, weight * area * rigid, R, t, label))
+    rigid = chosen.bar.missed**2 / (chosen.bar.missed**2 + 4 * e)
+    return PartsFound(label, rigid, R, t, residuals(V, x, weight * body.area * rigid, R, t, label))
 
 
-def _refitted(V: Floats, x: Floats, weight: Floats, area: Floats, label: Ints) -> tuple[Ints, Floats, Floats]:
+def _many(surface: Surface, body: Body, leaves: Ints, chosen: PartsSettings) -> Ints:
+    """(vertex,) deliberately too many parts."""
+    V, x, start, ring = body.V, body.x, body.start, body.ring
+    mass = body.weight * body.area
+    patch = patches(surface, V, start, ring, chosen.patches)
+    run = cone_runs(surface, V, x, mass, leaves, start, ring, chosen.rings, chosen.cut)
+    trunk = grouped(V, x, mass, patch, np.where(run < 0, 0, -1), start, ring, chosen.trunk, np.inf)
+    label = np.where(run < 0, run.max() + 1 + trunk, run)
+    label = grouped(V, x, mass, patch, label, start, ring, 1, chosen.split * len(x))
+    return connected(label, int(label.max()) + 1, start, ring)
+
+
+def _refitted(body: Body, label: Ints, floor: float) -> tuple[Ints, Floats, Floats]:
     """Parts that have vertices, numbered by their first one, and their motions."""
     _, first, label = np.unique(label, return_index=True, return_inverse=True)
     label = np.argsort(np.argsort(first))[label.reshape(-1)]
-    R, t = np.empty((len(x), len(first), 3, 3)), np.empty((len(x), len(first), 3))
-    fitted(V, x, weight, area, label, np.ones(len(first), np.bool_), R, t, FLOOR)
+    R, t = np.empty((len(body.x), len(first), 3, 3)), np.empty((len(body.x), len(first), 3))
+    fit(body.V, body.x, body.weight, body.area, label, np.ones(len(first), np.bool_), False, floor, R, t)
     return label, R, t
 
 

@@ -6,18 +6,19 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.moments import residual
+from kinetree.tasks.numerics.structure.moments import MOMENTS, residual
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
-def merged(M: Floats, pairs: Ints, count: int) -> Ints:
+def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:
     """Neighbouring patches joined, the pair whose residual grows least first.
 
     M       : (patch, frame, 17) sums of every patch; see `moments.MOMENTS`
     pairs   : (pair, 2) patches that touch
     count   : groups to leave; patches that do not touch stay apart, however many there are
+    limit   : growth of the residual beyond which nothing is joined, mesh unit² times weight, summed over frames
     returns : (patch,) group of each, numbered from 0 by the smallest patch
     """
     sums = M.copy()
@@ -33,7 +34,9 @@ def merged(M: Floats, pairs: Ints, count: int) -> Ints:
     group = np.arange(len(sums))
     left = len(sums)
     while queue and left > count:
-        _, a, b, va, vb = heapq.heappop(queue)
+        growth, a, b, va, vb = heapq.heappop(queue)
+        if growth > limit:
+            break
         if version[a] != va or version[b] != vb:
             continue
         sums[a] += sums[b]
@@ -72,8 +75,11 @@ def costs(M: Floats) -> Floats:
 @compiled
 def _union_costs(M: Floats, pairs: Ints) -> Floats:
     out = np.zeros(len(pairs))
+    m = np.empty(MOMENTS)
     for p in range(len(pairs)):
-        a, b = pairs[p]
+        a, b = pairs[p, 0], pairs[p, 1]
         for t in range(M.shape[1]):
-            out[p] += residual(M[a, t] + M[b, t])
+            for k in range(MOMENTS):
+                m[k] = M[a, t, k] + M[b, t, k]
+            out[p] += residual(m)
     return out

@@ -30,7 +30,9 @@ def runs(M: Floats, penalty: float, least: int) -> Ints:
     for i in range(count - least + 1):
         if not np.isfinite(best[i]):
             continue
-        total[:] = 0.0
+        for t in range(frames):
+            for k in range(MOMENTS):
+                total[t, k] = 0.0
         for j in range(i, count):
             for t in range(frames):
                 for k in range(MOMENTS):
