@@ -25,7 +25,7 @@ from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
 from kinetree.pipeline.layout import Given
 from kinetree.pipeline.node import Node, label, parse
-from kinetree.pipeline.output import write_config, write_results, write_run_json
+from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
@@ -110,7 +110,7 @@ class Pipeline:
         status, left = "interrupted", list[str]()
         try:
             self._go(schedule, watch, client)
-            left += write_results(self.config.output, schedule)
+            left += write_results(self.config.output, schedule) + pages(schedule)
             status = "failed" if account.failures else "done"
         except Exception:
             status = "stopped"
@@ -120,7 +120,13 @@ class Pipeline:
             watch.end(status, seconds)
             told = {**summary(account, status, seconds), "files": left}
             self._close(opened, schedule, account, told)
+        write_pages(self.config.output, schedule, {"run": opened["name"], **told, **self._told()})
         return RunTold({"run": opened["name"], **told})
+
+    def _told(self) -> dict[str, Any]:
+        """The graph and the configuration, for a page that tells of a run."""
+        graph = {t.name: {"over": "/".join(t.over), "reads": [r.name for r in self.tasks.reads(t)]} for t in self.tasks.tasks}
+        return {"graph": graph, "config": as_yaml(self.config.saved())}
 
     def computed(self, name: str) -> Schedule:
         """Computes one task from what is there and nothing else; returns the schedule that has its artifacts.

@@ -45,6 +45,20 @@ def write_results(folder: Path, schedule: Schedule) -> list[str]:
     return [name for entry in done for name in write_result(folder, schedule, entry)]
 
 
+def write_pages(folder: Path, schedule: Schedule, run: Mapping[str, Any]) -> None:
+    """Leaves the files that also tell of the run itself; raises as `write_results`."""
+    for entry in schedule.entries.values():
+        if entry.state in DONE and entry.task.returns.page_as:
+            with _damage_discarded(schedule, entry):
+                data = schedule.value(entry.node).page(run)
+            Folder(folder, "output folder", beside="").put(entry.task.returns.page_as, data)
+
+
+def pages(schedule: Schedule) -> list[str]:
+    """The names of the files that `write_pages` leaves."""
+    return [e.task.returns.page_as for e in schedule.entries.values() if e.state in DONE and e.task.returns.page_as]
+
+
 def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
     """Leaves the files and the group of one node that is done; see `write_results`."""
     place, name = Folder(folder, "output folder", beside=""), entry.task.returns.left_as

@@ -2,8 +2,21 @@
 
 from typing import Annotated
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from pydantic import Field
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
 from kinetree.schemas.dims import FRAME, PART, ROW, VERTEX, XYZ
+
+
+class PartsParams(Params):
+    """How finely parts are sought, and what one must explain to stay."""
+
+    rings: int = Field(default=50, ge=4, le=1000)
+    """Rings in the longest distance from each leaf."""
+    patches: int = Field(default=1000, ge=16, le=10_000)
+    """Patches that the surface is cut into to begin with."""
+    missed: float = Field(default=0.004, gt=0)
+    """By how much the motion would be missed without a part, share of the root of the area; more for fewer parts."""
 
 
 class Parts(Artifact):

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,10 +35,11 @@ class ReportParams(Params):
 class Report(Artifact):
     """A page of HTML, but for what is known only when the run is over."""
 
-    page: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
+    page_as: ClassVar[str] = "report.html"
+    text: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
     """The page in UTF-8."""
 
-    def told_of(self, run: Mapping[str, Any]) -> bytes:
-        """The page with what ran, as JSON that cannot end the element it lies in."""
+    def page(self, run: Mapping[str, Any]) -> bytes:
+        """The page with what ran laid into it, as JSON that cannot end the element it lies in."""
         text = json.dumps(run, ensure_ascii=True).replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-        return self.page.tobytes().replace(RUN.encode(), text.encode(), 1)
+        return self.text.tobytes().replace(RUN.encode(), text.encode(), 1)

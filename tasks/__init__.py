@@ -8,25 +8,38 @@ if __name__ != "kinetree.tasks":
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.alignment import alignment
+from kinetree.tasks.bvh import bvh
 from kinetree.tasks.connectivity import connectivity
 from kinetree.tasks.correlation import correlation
 from kinetree.tasks.distribution import distribution
+from kinetree.tasks.evaluation import evaluation
 from kinetree.tasks.geodesics import geodesics
+from kinetree.tasks.glb import glb
 from kinetree.tasks.intervals import intervals
 from kinetree.tasks.leaves import leaves
 from kinetree.tasks.mesh import mesh
+from kinetree.tasks.parts import parts
+from kinetree.tasks.ply import ply
 from kinetree.tasks.projection import projection
 from kinetree.tasks.reference import reference
 from kinetree.tasks.refit import first_refit, second_refit, third_refit
 from kinetree.tasks.repair import repair
+from kinetree.tasks.report import report
+from kinetree.tasks.rignet import rignet
+from kinetree.tasks.segmentation import segmentation
 from kinetree.tasks.sequence import sequence
+from kinetree.tasks.skeleton import skeleton
+from kinetree.tasks.skeleton_json import skeleton_json
 from kinetree.tasks.source import source
 from kinetree.tasks.stiffness import first_stiffness, second_stiffness, third_stiffness
 from kinetree.tasks.suspects import suspects
+from kinetree.tasks.tables import tables
 from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
 from kinetree.tasks.tracking import tracking
 from kinetree.tasks.trust import trust
+from kinetree.tasks.truth import truth
+from kinetree.tasks.usd import usd
 
 MESOSCOPIC = (
     source,  # Sec. 3
@@ -53,6 +66,19 @@ MESOSCOPIC = (
     alignment,  # Sec. 5.3
     projection,
     trust,
+    parts,  # Sec. 6.1 and 6.2
+    skeleton,  # Sec. 6.3
+    truth,
+    evaluation,  # Sec. 7
+    glb,
+    bvh,
+    skeleton_json,
+    segmentation,
+    tables,
+    ply,
+    rignet,
+    usd,
+    report,
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}

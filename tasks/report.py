@@ -65,7 +65,7 @@ def report(
             Section("alignment", "Alignment", _aligned(fetch, frames, up)),
         ],
     )
-    return Report(page=np.frombuffer(document(page).encode(), dtype=np.uint8))
+    return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
 def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton) -> str:

@@ -39,7 +39,7 @@ def skeleton(
         parts.translation,
         parts.residual,
         tips_of(leaves, reference),
-        _trust(aligned),
+        trust_of(aligned),
         degrees=params.degrees,
         ratio=params.ratio,
     )
@@ -60,7 +60,7 @@ def tips_of(leaves: Leaves, reference: Reference) -> NDArray[np.int64]:
     return nearest_vertices(reference.vertices, leaves.positions[seen, at])
 
 
-def _trust(aligned: list[Alignment]) -> NDArray[np.float64] | None:
+def trust_of(aligned: list[Alignment]) -> NDArray[np.float64] | None:
     """(frame, vertex) trust; None where everything is believed."""
     trust = np.stack([a.trust for a in aligned])
     return None if (trust == 1.0).all() else trust

@@ -41,8 +41,8 @@ def test_page_asks_nothing_of_the_network():
 def test_what_ran_is_laid_into_the_page_harmlessly():
     text = page()
     assert text.count(RUN) == 1
-    report = Report(page=np.frombuffer(text.encode(), np.uint8))
-    told = report.told_of({"run": EVIL}).decode()
+    report = Report(text=np.frombuffer(text.encode(), np.uint8))
+    told = report.page({"run": EVIL}).decode()
     assert RUN not in told
     found = re.search(r'<script type="application/json" id="told">(.*?)</script>', told)
     assert found is not None

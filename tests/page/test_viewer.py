@@ -33,9 +33,9 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    report = Report(page=np.frombuffer(page("a <script>alert(1)</script> walk", warnings=["leaf 2"]).encode(), np.uint8))
+    report = Report(text=np.frombuffer(page("a <script>alert(1)</script> walk", warnings=["leaf 2"]).encode(), np.uint8))
     out = tmp_path_factory.mktemp("page") / "report.html"
-    out.write_bytes(report.told_of(RAN))
+    out.write_bytes(report.page(RAN))
     return out
 
 
