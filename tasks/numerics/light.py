@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.surface import BLIND, NONE
-from kinetree.tasks.numerics.windows import Indices, Lengths, Links, Plane, after, before, reach, shine, third
+from kinetree.tasks.numerics.sight import BLIND, NONE, after, before
+from kinetree.tasks.numerics.windows import Indices, Lengths, Links, Plane, reach, shine, third
 
 TURNS = 64  # faces between the two sides of a path that bends; what lies behind more of them stays dark
 _0, _1 = np.uint64(0), np.uint64(1)

@@ -7,15 +7,13 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.links import Links, linked
+from kinetree.tasks.numerics.sight import BLIND, NONE
 
 Floats = npt.NDArray[np.float64]
 Lengths = npt.NDArray[np.float32]
 Ints = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.uint32]
-
-NONE = 0xFFFFFFFF  # no half-edge: a border
-BLIND = 0xFFFFFFFE  # no half-edge either, though the surface goes on
-BLUNT = np.deg2rad(135)  # 115° is exact on milder grids too, but left more outliers on bodies
 
 
 @dataclass(frozen=True)
@@ -27,18 +25,15 @@ class Surface:
 
     order       : (vertex,) input number of each renumbered vertex
     ring_start  : (vertex + 1,) where each vertex's ring begins; a closed ring repeats its first neighbour
-    ring        : (entry,) 8 × neighbour + 1 if a face lies between it and the entry before + 2 if that face's angle at
-                  the entry before is blunt + 4 if it is blunt at this one
+    ring        : (entry,) 2 × neighbour + 1 if a face lies between it and the entry before
     ring_length : (entry,) distance to that neighbour, mesh unit
-    ring_rim    : (entry,) length of that face's edge opposite the ring's vertex, mesh unit
     ring_edge   : (entry,) that face's half-edge that leaves the ring's vertex
     apex        : (half-edge,) vertex opposite
     twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
-                  between faces of opposite orientation
-    opening     : (half-edge,) its twin if the angle opposite the twin exceeds a sixth of a turn, else NONE: a vertex
-                  at a smaller angle is reached in time through its triangle's other edges
+                  where a one-sided surface closes: faces are turned to agree wherever they can
     length      : (half-edge,) mesh unit
     bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or no closed ring of faces
+    links       : the straight lines from vertex to vertex along which distance spreads
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
     centre      : (xyz,) the surface's centre of area, mesh unit
     position    : (vertex, xyz) the input's vertices
@@ -49,13 +44,12 @@ class Surface:
     ring_start: Indices
     ring: Indices
     ring_length: Lengths
-    ring_rim: Lengths
     ring_edge: Indices
     apex: Indices
     twin: Indices
-    opening: Indices
     length: Lengths
     bends: npt.NDArray[np.uint8]
+    links: Links
     area: Floats
     centre: Floats
     position: Floats
@@ -74,33 +68,40 @@ class Surface:
         corners: Ints = rank[F].reshape(-1, 3)
         corners = corners[np.argsort(corners.min(axis=1, initial=len(V)), kind="stable")]
         P = np.ascontiguousarray(V[order], dtype=np.float64)
+        corners, twin, edges = _agreeing(corners, len(P))
         tail, head, apex = corners.ravel(), corners[:, [1, 2, 0]].ravel(), corners[:, [2, 0, 1]].ravel()
         length = np.linalg.norm(P[head] - P[tail], axis=1)
-        twin = _twins(tail, head, len(P))
         angle = _angles(length)
-        wide = np.append(angle[_before(np.arange(len(length)))] > np.pi / 3, False)
         corner = np.argsort(tail, kind="stable")
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
         inside = kind > 0
-        before, after, blunt = _before(edge), _after(edge), angle > BLUNT
         doubled_area = np.linalg.norm(np.cross(P[head[::3]] - P[tail[::3]], P[apex[::3]] - P[tail[::3]]), axis=1)
         area = np.zeros(len(P))
         area[order] = np.bincount(tail, np.repeat(doubled_area / 6, 3), len(P))
+        free = np.zeros(len(P), np.uint8)
+        free[tail[twin >= BLIND]] = free[head[twin >= BLIND]] = 1
+        rings = (
+            ring_start.astype(np.uint32),
+            (2 * np.where(inside, apex[edge], head[edge]) + inside).astype(np.uint32),
+            edge.astype(np.uint32),
+            apex.astype(np.uint32),
+            twin.astype(np.uint32),
+            length.astype(np.float32),
+            np.where(inside, length[_before(edge)], length[edge]).astype(np.float32),
+        )
+        along = length[edges].astype(np.float32)
         return cls(
             order=order,
-            ring_start=ring_start.astype(np.uint32),
-            ring=(8 * np.where(inside, apex[edge], head[edge]) + inside * (1 + 2 * blunt[after] + 4 * blunt[before])).astype(
-                np.uint32
-            ),
-            ring_length=np.where(inside, length[before], length[edge]).astype(np.float32),
-            ring_rim=length[after].astype(np.float32),
-            ring_edge=edge.astype(np.uint32),
-            apex=apex.astype(np.uint32),
-            twin=twin.astype(np.uint32),
-            opening=np.where(wide[np.minimum(twin, len(length))], twin, NONE).astype(np.uint32),
-            length=length.astype(np.float32),
-            bends=_bends(angle, tail, head, twin, len(P)),
+            ring_start=rings[0],
+            ring=rings[1],
+            ring_length=rings[6],
+            ring_edge=rings[2],
+            apex=rings[3],
+            twin=rings[4],
+            length=rings[5],
+            bends=free | (np.bincount(tail, angle, len(P)) > 2 * np.pi),
+            links=Links(*linked(rings, angle, free), np.stack([tail[edges], head[edges]], axis=1).astype(np.uint32), along),
             area=area,
             centre=(area[:, None] * V).sum(axis=0) / max(area.sum(), np.finfo(float).tiny),
             position=np.ascontiguousarray(V, dtype=np.float64),
@@ -110,10 +111,6 @@ class Surface:
 
 def _before(edge: Ints) -> Ints:
     return np.where(edge % 3 == 0, edge + 2, edge - 1)
-
-
-def _after(edge: Ints) -> Ints:
-    return np.where(edge % 3 == 2, edge - 2, edge + 1)
 
 
 def _along_a_curve(V: Floats) -> Ints:
@@ -126,37 +123,56 @@ def _along_a_curve(V: Floats) -> Ints:
     return np.argsort(cell @ np.array([1, 2, 4]), kind="stable")
 
 
-def _twins(tail: Ints, head: Ints, vertices: int) -> Ints:
-    """(half-edge,) partner across each edge that two faces share in opposite directions; NONE at one face, else BLIND."""
+def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
+    """Faces turned until neighbours agree, (half-edge,) its partner or NONE or BLIND, and (edge,) a half-edge of each."""
+    tail, head = corners.ravel(), corners[:, [1, 2, 0]].ravel()
     key = np.minimum(tail, head) * vertices + np.maximum(tail, head)
     by_edge = np.argsort(key, kind="stable")
-    sorted_key = key[by_edge]
-    first = np.flatnonzero(np.diff(sorted_key, prepend=-1) != 0)
+    first = np.flatnonzero(np.diff(key[by_edge], prepend=-1) != 0)
     faces = np.diff(first, append=len(key))
     pair = first[faces == 2]
     a, b = by_edge[pair], by_edge[pair + 1]
     opposed = tail[a] == head[b]
+    if not opposed.all():
+        partner = np.full(len(tail), NONE)
+        partner[a], partner[b] = b, a
+        turned = _turned(partner, tail)
+        if turned.any():
+            return _agreeing(np.where(turned[:, None], corners[:, [0, 2, 1]], corners), vertices)
     twin = np.full(len(tail), BLIND)
     twin[by_edge[first[faces == 1]]] = NONE
     twin[a[opposed]], twin[b[opposed]] = b[opposed], a[opposed]
-    return twin
+    return corners, twin, by_edge[first]
+
+
+@compiled
+def _turned(partner: Ints, tail: Ints) -> npt.NDArray[np.bool_]:
+    """(face,) which to turn, so that faces agree with the first of their component, at most one of each two neighbours."""
+    turned = np.zeros(len(tail) // 3, np.bool_)
+    known, waiting = np.zeros(len(turned), np.bool_), np.empty(len(turned), np.int64)
+    for seed in range(len(turned)):
+        count = 0
+        if not known[seed]:
+            known[seed], waiting[0], count = True, seed, 1
+        while count > 0:
+            count -= 1
+            f = waiting[count]
+            for h in range(3 * f, 3 * f + 3):
+                t = partner[h]
+                if t < BLIND and not known[t // 3]:
+                    g = t // 3
+                    known[g], turned[g], waiting[count] = True, turned[f] != (tail[h] == tail[t]), g
+                    count += 1
+    return turned
 
 
 def _angles(length: Floats) -> Floats:
     """(half-edge,) the angle at its tail; 0 in a triangle without area or with impossible sides."""
     edge = np.arange(len(length))
-    a, b, c = length, length[_before(edge)], length[_after(edge)]
+    a, b, c = length, length[_before(edge)], length[_before(_before(edge))]
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = (a * a + b * b - c * c) / (2 * a * b)
     return np.arccos(np.clip(np.nan_to_num(cosine, nan=1.0), -1.0, 1.0))
-
-
-def _bends(angle: Floats, tail: Ints, head: Ints, twin: Ints, vertices: int) -> npt.NDArray[np.uint8]:
-    """A shortest path passes through a vertex only if the angle on both sides is at least π."""
-    bends = np.bincount(tail, angle, vertices) > 2 * np.pi
-    alone = twin >= BLIND
-    bends[tail[alone]] = bends[head[alone]] = True
-    return bends.astype(np.uint8)
 
 
 @compiled

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.surface import BLIND
+from kinetree.tasks.numerics.sight import BLIND, after, before
 
 Floats = npt.NDArray[np.float64]
 Lengths = npt.NDArray[np.float32]
@@ -19,7 +19,7 @@ Plane = tuple[Floats, Floats, Indices, Floats, Floats, Floats, Indices, Indices]
 
 DEPTH = 1024  # windows that wait while one is followed: no more than vertices on its way
 GRAZING = 1e-6  # of the length: what the float32 lengths leave undecided counts as lit and as worth following
-_0, _1, _2, _3 = np.uint64(0), np.uint64(1), np.uint64(2), np.uint64(3)
+_0, _1 = np.uint64(0), np.uint64(1)
 _BLIND, _DEPTH = np.uint64(BLIND), np.uint64(DEPTH)
 
 
@@ -45,18 +45,6 @@ def plane(vertices: int) -> Plane:
         np.empty(DEPTH, np.uint32),
         np.zeros(vertices + 2, np.uint32),
     )
-
-
-@compiled
-def after(h: np.uint64) -> np.uint64:
-    """The next half-edge of the same face."""
-    return h - _2 if h % _3 == _2 else h + _1
-
-
-@compiled
-def before(h: np.uint64) -> np.uint64:
-    """The half-edge before it in the same face."""
-    return h + _2 if h % _3 == _0 else h - _1
 
 
 @compiled

@@ -4,14 +4,8 @@ import numpy as np
 import shapes
 
 from kinetree.tasks.numerics import windows
+from kinetree.tasks.numerics.sight import before
 from kinetree.tasks.numerics.surface import Surface
-
-
-def test_the_three_half_edges_of_a_face_follow_each_other() -> None:
-    for h in map(np.uint64, range(12)):
-        assert windows.after(h) // 3 == h // 3 == windows.before(h) // 3
-        assert windows.before(windows.after(h)) == h
-        assert windows.after(windows.after(h)) == windows.before(h) != h
 
 
 def test_the_third_vertex_is_where_the_sides_put_it() -> None:
@@ -44,4 +38,4 @@ def test_light_between_two_rays_meets_what_lies_between_them_and_nothing_else() 
 
 def head(surface: Surface, h: int) -> int:
     """The vertex at which a half-edge ends: the apex of the one before it."""
-    return int(surface.apex[int(windows.before(np.uint64(h)))])
+    return int(surface.apex[int(before(np.uint64(h)))])
