@@ -19,7 +19,8 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
     frames = tuple(range(FIRST, FIRST + len(body.x)))
     count = len(frames)
     reference = Reference(
-        frames=frames, frame=FIRST + 2, vertices=body.V, faces=body.F, size=float(np.sqrt(body.area.sum())),
+        frames=frames, frame=FIRST + 2, vertices=body.V, faces=body.F,
+        size=float(np.sqrt(body.area.sum())), fixed=True, leaves=len(tips), free=True,
         score=np.zeros(count), before=np.array([1, 2, -1, *range(2, count - 1)]),
     )  # fmt: skip
     parts = Parts(
@@ -86,7 +87,16 @@ def test_leaf_not_seen_in_the_reference_frame_is_no_end() -> None:
     frames = (3, 4)
     V = np.eye(3)
     reference = Reference(
-        frames=frames, frame=4, vertices=V, faces=np.array([[0, 1, 2]]), size=1.0, score=np.zeros(2), before=np.array([1, -1])
+        frames=frames,
+        frame=4,
+        vertices=V,
+        faces=np.array([[0, 1, 2]]),
+        size=1.0,
+        fixed=True,
+        leaves=1,
+        free=True,
+        score=np.zeros(2),
+        before=np.array([1, -1]),
     )
     positions = np.full((3, 2, 3), np.nan)
     positions[0], positions[2] = V[1], V[2]
