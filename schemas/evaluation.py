@@ -120,7 +120,9 @@ class Summary(Params):
     overlap_moving: Overlap = Overlap()
     """Against root, tips and the joints that are scored."""
     tree_edit: int = 0
-    """Joints to insert or delete until the tree is the true one; tips left out."""
+    """Joints to remove and to put in until the tree is the true one, a joint being the one it was matched with."""
+    tree_shape: int = 0
+    """The same by the shape of both trees alone, wherever their joints are (after Zhang 1996)."""
     parts: PartScore | None = None
     """Agreement of the parts; None where the true parts are not known."""
     length_variation: float = 0.0

@@ -1,6 +1,7 @@
 """How good the skeleton is against the truth, where somebody knows it."""
 
 from collections.abc import Mapping
+from collections.abc import Sequence as Ordered
 from typing import NamedTuple
 
 import numpy as np
@@ -19,9 +20,10 @@ from kinetree.tasks.numerics.evaluation.jitter import jitter
 from kinetree.tasks.numerics.evaluation.lengths import length_variation
 from kinetree.tasks.numerics.evaluation.matching import Matching, errors, matching
 from kinetree.tasks.numerics.evaluation.meeting import Divided, divided
-from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, mean_iou, rand_index
+from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, leading_parts, mean_iou, rand_index
 from kinetree.tasks.numerics.evaluation.rates import detection_rate, nearest_distance
-from kinetree.tasks.numerics.evaluation.tree_edit import contracted, tree_edit_distance
+from kinetree.tasks.numerics.evaluation.tree_edit import contracted, kept_ancestors, tree_edit_distance
+from kinetree.tasks.numerics.evaluation.tree_match import tree_match_distance
 from kinetree.tasks.numerics.evaluation.truth import factor
 from kinetree.tasks.truth import synthetic, true_carriers
 
@@ -159,9 +161,10 @@ def _summary(sides: Sides, params: EvaluationParams) -> Summary:
     claims = np.array([kind == "joint" for kind in sides.skeleton.kinds])
     excused = np.flatnonzero(~scored & ~tip & (found.partner >= 0))
     moving = _moving(truth)
-    tree = contracted(sides.skeleton.parents, [kind != "leaf" for kind in sides.skeleton.kinds])
+    edit, shape = _trees(sides)
     tolerance, side = _surface(sides)
-    Y, above = sides.Y[:, moving], contracted(truth.parents, list(moving))
+    everything = _rigging(sides, sides.Y, truth.parents, side, tolerance)
+    what_moves = _rigging(sides, sides.Y[:, moving], contracted(truth.parents, list(moving)), side, tolerance[moving])
     return Summary(
         scored=int(scored.sum()),
         found=int(hit.sum()),
@@ -174,16 +177,27 @@ def _summary(sides: Sides, params: EvaluationParams) -> Summary:
         error=float(mean.mean()) if hit.any() else None,
         percent=float(mean.mean() / height * 100.0) if hit.any() else None,
         deviation=float(sides.error[:, hit].std(axis=0).mean()) if hit.any() else None,
-        chamfer=_chamfer(sides, sides.Y, truth.parents, side),
-        chamfer_moving=_chamfer(sides, Y, above, side),
-        overlap=_overlap(sides, sides.Y, tolerance),
-        overlap_moving=_overlap(sides, Y, tolerance[moving]),
-        tree_edit=tree_edit_distance(tree, contracted(sides.tree.parents, list(_seen(sides)))),
+        chamfer=everything[0],
+        chamfer_moving=what_moves[0],
+        overlap=everything[1],
+        overlap_moving=what_moves[1],
+        tree_edit=edit,
+        tree_shape=shape,
         length_variation=float(length_variation(sides.X, sides.skeleton.parents).max(initial=0.0) * 100.0),
         true_length_variation=float(length_variation(sides.Y, truth.parents).max(initial=0.0) * 100.0),
         jitter=rough / smooth if smooth > 0.0 else None,
         jitter_percent=rough / height * 100.0,
     )
+
+
+def _trees(sides: Sides) -> tuple[int, int]:
+    """Edits between the trees of joints, those that are the same known, and without looking where they are."""
+    turning, seen = np.array([kind != "leaf" for kind in sides.skeleton.kinds]), _seen(sides)
+    one, two = contracted(sides.skeleton.parents, list(turning)), contracted(sides.tree.parents, list(seen))
+    i, j = np.cumsum(turning) - 1, np.cumsum(seen) - 1
+    matched = [(int(i[sides.found.partner[k]]), int(j[k])) for k in np.flatnonzero(seen & (sides.found.partner >= 0))]
+    pairs = [(a, b) for a, b in matched if one[a] >= 0 and two[b] >= 0]
+    return tree_match_distance(one, two, pairs, sides.tree.origin[seen].tolist()), tree_edit_distance(one, two)
 
 
 def _surface(sides: Sides) -> tuple[Floats, float]:
@@ -207,13 +221,11 @@ def _surface(sides: Sides) -> tuple[Floats, float]:
     return np.median(radius, axis=0), body.side(s.vertices)
 
 
-def _chamfer(sides: Sides, Y: Floats, above: "tuple[int, ...] | list[int]", side: float) -> Chamfer:
-    return Chamfer(**rignet.chamfer(sides.X, sides.skeleton.parents, Y, above, side)._asdict())
-
-
-def _overlap(sides: Sides, Y: Floats, tolerance: Floats) -> Overlap:
-    told = rignet.overlap(sides.X, Y, tolerance)._asdict()
-    return Overlap(**{name: 100.0 * value for name, value in told.items()})
+def _rigging(sides: Sides, Y: Floats, above: Ordered[int], side: float, tolerance: Floats) -> tuple[Chamfer, Overlap]:
+    """RigNet's measures against the true joints Y with their parents."""
+    apart = rignet.chamfer(sides.X, sides.skeleton.parents, Y, above, side)
+    shares = rignet.overlap(sides.X, Y, tolerance)._asdict()
+    return Chamfer(**apart._asdict()), Overlap(**{name: 100.0 * value for name, value in shares.items()})
 
 
 def _parts(
@@ -221,12 +233,9 @@ def _parts(
 ) -> PartScore | None:
     """Labels of the user's own vertices in all frames, found and true; None where the true ones are not known."""
     s = sides.skeleton
-    part = np.where(s.label >= 0, s.label, s.influence[np.arange(len(s.label)), s.weight.argmax(axis=1)])
-    part = np.where([kind == "leaf" for kind in s.kinds], s.parents, np.arange(len(s.names)))[part]
-    seen = _seen(sides)
-    above = np.arange(len(seen))
-    while not seen[above].all():
-        above = np.where(seen[above], above, np.array(sides.tree.parents)[above])
+    carries = np.array(kept_ancestors(s.parents, [kind != "leaf" for kind in s.kinds]))
+    part = carries[leading_parts(s.label, s.influence, s.weight)]
+    above = np.array(kept_ancestors(sides.tree.parents, list(_seen(sides))))
     labels, others = [], []
     for frame in s.frames:
         carrier = None
@@ -241,9 +250,6 @@ def _parts(
         others.append(above[np.where(end >= 0, np.array(sides.tree.parents)[end], joint)])
     table = contingency(np.concatenate(labels), np.concatenate(others))
     return PartScore(
-        rand=rand_index(table),
-        adjusted_rand=adjusted_rand_index(table),
-        mean_iou=mean_iou(table),
-        parts=table.shape[0],
-        true_parts=table.shape[1],
-    )
+        rand=rand_index(table), adjusted_rand=adjusted_rand_index(table), mean_iou=mean_iou(table),
+        parts=table.shape[0], true_parts=table.shape[1],
+    )  # fmt: skip

@@ -9,8 +9,7 @@ from kinetree.schemas.projection import Projection
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.schemas.source import Source
 from kinetree.schemas.synth import SynthParams
-from kinetree.schemas.truth import Truth
-from kinetree.tasks.numerics.evaluation.tree_edit import contracted
+from kinetree.tasks.numerics.evaluation.tree_edit import contracted, kept_ancestors
 from kinetree.tasks.synth import body, recipe
 from kinetree.tasks.truth import synthetic
 
@@ -27,7 +26,7 @@ def perfect(written: str) -> Skeleton:
     kept = np.array(truth.scored) | tip | (np.array(truth.parents) < 0)
     above = contracted(truth.parents, list(kept))
     stay = np.flatnonzero(kept)
-    carried = stays(truth, kept)
+    carried = np.array(kept_ancestors(truth.parents, list(kept)))
     W = np.zeros((len(made.skin.V), len(stay)))
     np.add.at(W.T, np.searchsorted(stay, carried), made.weights().T)
     influence = np.argsort(-W, axis=1, kind="stable")[:, :4]
@@ -56,14 +55,6 @@ def perfect(written: str) -> Skeleton:
         influence=influence.astype(np.int32),
         weight=weight,
     )
-
-
-def stays(truth: Truth, kept: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
-    """(joint,) the nearest kept joint at or above each."""
-    above = np.arange(len(kept))
-    while not kept[above].all():
-        above = np.where(kept[above], above, np.array(truth.parents)[above])
-    return above
 
 
 def observed(written: str) -> tuple[dict[int, Source], dict[int, Mesh], dict[int, Projection]]:

@@ -32,7 +32,7 @@ def evaluate(
     truth: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[TRUTH]",
+            metavar="TRUTH",
             help="A truth.json, a skeleton.json or a BVH; left out: the run's own.",
             show_default=False,
         ),
@@ -111,7 +111,7 @@ def _lines(s: Summary) -> list[str]:
     lines = [
         f"found closely: {s.close} of {s.scored}; found though not asked for: {s.excused}; tips: {s.tips_found} of {s.tips}",
         f"R_detection {s.detection:.2f}, E_dist {s.distance:.4f} of the height (2009, Eqs. 7–9)",
-        f"tree edit distance {s.tree_edit}",
+        f"tree edit distance {s.tree_edit}, by shape alone {s.tree_shape}",
     ]
     sides = (("all true joints", s.chamfer, s.overlap), ("those that move", s.chamfer_moving, s.overlap_moving))
     for name, c, o in sides:

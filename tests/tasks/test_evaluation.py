@@ -61,7 +61,7 @@ def test_perfect_skeleton_is_found_whole():
     told = evaluated()
     s = told.summary
     assert s.scored == s.found == s.close == sum(TRUTH.scored) > 8
-    assert (s.missing, s.spurious, s.excused, s.tree_edit) == (0, 0, 0, 0)
+    assert (s.missing, s.spurious, s.excused, s.tree_edit, s.tree_shape) == (0, 0, 0, 0, 0)
     assert s.tips == s.tips_found > 3
     assert (s.percent, s.jitter, s.deviation) == (0.0, 0.0, 0.0)
     assert s.detection == 1.0
@@ -119,10 +119,18 @@ def test_joint_too_many_is_spurious_and_one_edit_of_the_tree():
     told = evaluated(skeleton=more("extra", "joint", FIRST, FIRST, [0, 0, 0.3 * HEIGHT]))
     s = told.summary
     assert told.spurious == ("extra",)
-    assert (s.found, s.missing, s.tree_edit) == (s.scored, 0, 1)
+    assert (s.found, s.missing, s.tree_edit, s.tree_shape) == (s.scored, 0, 1, 1)
     assert s.percent == 0.0
     assert s.overlap_moving.recall == pytest.approx(100.0)
     assert s.overlap_moving.precision < 100.0
+
+
+def test_joint_that_hangs_on_the_wrong_part_is_two_edits():
+    elsewhere = PERFECT.names.index("knee_l"), PERFECT.names.index("elbow_r")
+    parents = list(PERFECT.parents)
+    parents[elsewhere[0]] = elsewhere[1]
+    s = evaluated(skeleton=changed(parents=tuple(parents))).summary
+    assert (s.found, s.spurious, s.tree_edit) == (s.scored, 0, 2)
 
 
 def test_end_of_a_bone_too_many_is_no_joint_too_many():

@@ -4,7 +4,19 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Indices = npt.NDArray[np.integer]
+
+
+def leading_parts(label: Indices, influence: Indices, weight: Floats) -> Ints:
+    """(vertex,) the part that a vertex is labelled with, or where it has no label the one that it follows most.
+
+    label             : (vertex,) −1 where there is none
+    influence, weight : (vertex, k) parts that a vertex follows, and how much
+    """
+    most = influence[np.arange(len(label)), weight.argmax(axis=1)]
+    return np.where(label >= 0, label, most).astype(np.int64)
 
 
 def contingency(label: Ints, other: Ints) -> Ints:

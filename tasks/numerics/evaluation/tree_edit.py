@@ -21,12 +21,17 @@ def contracted(parents: Sequence[int], kept: Sequence[bool]) -> list[int]:
     kept    : (joint,) which joints stay; one of them must be above all others
     """
     place = {j: k for k, j in enumerate(j for j, keep in enumerate(kept) if keep)}
+    ancestors = kept_ancestors(parents, kept)
+    return [place[ancestors[parents[j]]] if parents[j] >= 0 and ancestors[parents[j]] >= 0 else -1 for j in place]
+
+
+def kept_ancestors(parents: Sequence[int], kept: Sequence[bool]) -> list[int]:
+    """(joint,) the nearest kept joint at or above each; −1 where there is none."""
     out = []
-    for j in place:
-        above = parents[j]
-        while above >= 0 and above not in place:
-            above = parents[above]
-        out.append(place[above] if above >= 0 else -1)
+    for j in range(len(parents)):
+        while j >= 0 and not kept[j]:
+            j = parents[j]
+        out.append(j)
     return out
 
 

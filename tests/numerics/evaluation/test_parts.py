@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, mean_iou, rand_index
+from kinetree.tasks.numerics.evaluation.parts import adjusted_rand_index, contingency, leading_parts, mean_iou, rand_index
 
 RNG = np.random.default_rng(2)
 LABEL = RNG.integers(0, 5, 300)
@@ -49,3 +49,9 @@ def test_extra_part_does_not_help():
     halves = np.array([0] * 5 + [1] * 5)
     thirds = np.array([0] * 5 + [1] * 3 + [2] * 2)
     assert mean_iou(contingency(thirds, halves)) == pytest.approx((1.0 + 0.6) / 2)
+
+
+def test_vertex_without_a_label_goes_with_what_it_follows_most():
+    influence = np.array([[4, 5], [4, 5], [6, 4]])
+    weight = np.array([[0.4, 0.6], [0.4, 0.6], [1.0, 0.0]])
+    assert leading_parts(np.array([4, -1, -1]), influence, weight).tolist() == [4, 5, 6]

@@ -3,7 +3,7 @@
 import networkx as nx
 import pytest
 
-from kinetree.tasks.numerics.evaluation.tree_edit import contracted, tree_edit_distance
+from kinetree.tasks.numerics.evaluation.tree_edit import contracted, kept_ancestors, tree_edit_distance
 
 PATH = (-1, 0, 1, 2, 3)
 STAR = (-1, 0, 0, 0, 0)
@@ -64,3 +64,8 @@ def test_long_chain_is_no_trouble():
 def test_contraction_hangs_joints_on_their_nearest_kept_ancestor():
     assert contracted(PATH, [True, False, True, False, True]) == [-1, 0, 1]
     assert contracted((1, -1, 0), [True, True, False]) == [1, -1]
+
+
+def test_kept_ancestor_of_a_kept_joint_is_itself():
+    assert kept_ancestors(PATH, [True, False, True, False, True]) == [0, 0, 2, 2, 4]
+    assert kept_ancestors(PATH, [False, True, False, False, False]) == [-1, 1, 1, 1, 1]
