@@ -17,6 +17,8 @@ class Crossing(Artifact):
 
     first: Annotated[Ints, Array("int32", INTERVAL)]
     """Where each interval's vertices begin."""
+    leaves: Annotated[Ints, Array("int32", INTERVAL)]
+    """How many leaves each interval has."""
     onward: Annotated[Ints, Array("int32", VERTEX)]
     """The nearest vertex of the next interval's reference, counted in that; −1 if its normal disagrees, and in the last."""
     onward_distance: Annotated[Floats, Array("float64", VERTEX, unit="length", finite=False)]
@@ -39,7 +41,16 @@ class Crossing(Artifact):
         last = interval + 1 == len(self.first)
         return slice(int(self.first[interval]), len(self.onward) if last else int(self.first[interval + 1]))
 
-    def surplus(self, interval: int, leaves: int, *, ahead: bool) -> list[int]:
-        """Leaves of an interval, of how many there are, that have no partner across the cut ahead or behind it."""
+    def surplus(self, interval: int, *, ahead: bool) -> list[int]:
+        """Leaves of an interval, rows of its `Middle.leaf`, without a partner across the cut ahead of it or behind it."""
         mine = self.before[self.cut == interval] if ahead else self.behind[self.cut == interval - 1]
-        return sorted(set(range(leaves)) - set(mine.tolist()))
+        return sorted(set(range(int(self.leaves[interval]))) - set(mine.tolist()))
+
+    def remarks(self) -> tuple[str, ...]:
+        """Said where there are too few leaves to tell places apart."""
+        few = ("no leaf", "one leaf", "two leaves")
+        return tuple(
+            f"interval {i} has {few[n]}: the geodesic mapping cannot tell places apart there"
+            for i, n in enumerate(self.leaves.tolist())
+            if n < len(few)
+        )

@@ -34,10 +34,3 @@ class Middle(Artifact):
         """The frame from which this one is reached, its neighbour towards the middle; None for the reference."""
         at, start = self.frames.index(member), self.frames.index(self.frame)
         return None if at == start else self.frames[at - 1 if at > start else at + 1]
-
-    def remarks(self) -> tuple[str, ...]:
-        """Said where there are too few leaves to tell places apart."""
-        if len(self.leaf) >= 3:
-            return ()
-        count = ("no leaf", "one leaf", "two leaves")[len(self.leaf)]
-        return (f"{count} in frames {self.frames[0]} to {self.frames[-1]}: the geodesic mapping cannot tell places apart",)

@@ -39,8 +39,8 @@ def crossing(
     found = np.array(pairs).reshape(-1, 4)
     cut, before, behind = found[:, :3].astype(np.int64).T
     return Crossing(
-        first=first[:-1], onward=onto["onward"], onward_distance=away["onward"], backward=onto["backward"],
-        backward_distance=away["backward"], cut=cut, before=before, behind=behind, moved=found[:, 3],
+        first=first[:-1], leaves=np.array([len(m.leaf) for m in middle]), onward=onto["onward"], onward_distance=away["onward"],
+        backward=onto["backward"], backward_distance=away["backward"], cut=cut, before=before, behind=behind, moved=found[:, 3],
     )  # fmt: skip
 
 

@@ -52,8 +52,9 @@ def test_leaves_find_each_other_and_the_one_that_went_is_surplus() -> None:
     assert list(zip(told.cut, told.before, told.behind, strict=True)) == [(0, 0, 0), (0, 2, 1)]
     ends = [f.mesh.vertices[f.place[CORNERS]] for f in (frames[3], frames[4])]
     np.testing.assert_allclose(told.moved, np.linalg.norm(ends[0] - ends[1], axis=1)[[0, 2]])
-    assert told.surplus(0, 3, ahead=True) == [1]
-    assert told.surplus(1, 2, ahead=False) == []
+    assert told.surplus(0, ahead=True) == [1]
+    assert told.surplus(1, ahead=False) == []
+    assert told.remarks() == ("interval 1 has two leaves: the geodesic mapping cannot tell places apart there",)
 
 
 def test_one_interval_has_no_cut() -> None:
@@ -61,3 +62,4 @@ def test_one_interval_has_no_cut() -> None:
     assert (told.onward == -1).all()
     assert (told.backward == -1).all()
     assert len(told.cut) == 0
+    assert told.remarks() == ()
