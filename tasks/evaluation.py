@@ -30,10 +30,6 @@ from kinetree.tasks.truth import synthetic, true_carriers
 SAME_RATE = 0.01
 """Frame rates that differ by less than this share are the same, rounded."""
 
-LEAST_INSIDE = 0.5
-"""Share of the true joints that must lie in the body's bounding box, or it is another body."""
-LEAST_SPAN = 0.2
-"""Share of the body's size that the true joints must span."""
 
 
 class Sides(NamedTuple):
@@ -206,13 +202,12 @@ def _surface(sides: Sides) -> tuple[Floats, float]:
     raises : InputError where the true joints are not in the body
     """
     s = sides.skeleton
-    within, radius, share = [], [], []
+    fit, radius = [], []
     for R, x, y in zip(s.rotation, sides.X, sides.Y, strict=True):
         V = body.skinned(s.vertices, s.influence, s.weight, s.rest, R, x)
-        within.append(body.inside(V, y))
-        share.append(body.side(y) / body.side(V))
+        fit.append(body.fits(V, y))
         radius.append(body.radii(V, y))
-    if np.median(within) < LEAST_INSIDE or np.median(share) < LEAST_SPAN:
+    if np.mean(fit) < 0.5:
         spans = f"true joints span {body.side(sides.Y[0]):.4g} and the body {body.side(s.vertices):.4g}"
         raise InputError(
             f"{sides.truth.source}: the true joints do not lie in the body as joints do: it is the truth of another sequence,"

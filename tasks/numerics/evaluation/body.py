@@ -7,6 +7,8 @@ from scipy.spatial import KDTree
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.integer]
+LEAST_INSIDE = 0.5
+LEAST_SPAN = 0.2
 
 
 def skinned(V: Floats, influence: Indices, weight: Floats, rest: Floats, R: Floats, X: Floats) -> Floats:
@@ -35,6 +37,14 @@ def inside(V: Floats, points: Floats, margin: float = 0.1) -> float:
     low, high = V.min(axis=0), V.max(axis=0)
     reach = margin * np.linalg.norm(high - low)
     return float(((points >= low - reach) & (points <= high + reach)).all(axis=1).mean())
+
+
+def fits(V: Floats, points: Floats) -> bool:
+    """Whether points can be the joints of a body: half of them in its box at least, and spanning a fifth of its size.
+
+    V, points : (vertex, xyz), (point, xyz) mesh unit
+    """
+    return inside(V, points) >= LEAST_INSIDE and side(points) >= LEAST_SPAN * side(V)
 
 
 def radii(V: Floats, points: Floats) -> Floats:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapes
 
-from kinetree.tasks.numerics.evaluation.body import inside, nearest, radii, side, skinned
+from kinetree.tasks.numerics.evaluation.body import fits, inside, nearest, radii, side, skinned
 
 V, _ = shapes.open_cylinder(32, 41, radius=0.5, height=4.0)
 TURN = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -37,3 +37,12 @@ def test_box_of_the_cylinder():
 
 def test_every_vertex_is_nearest_to_itself():
     assert np.array_equal(nearest(V, V[::7]), np.arange(len(V))[::7])
+
+
+def test_joints_fit_a_body_in_its_own_unit_and_place_alone():
+    axis = np.array([[0.0, 0, 0.5], [0, 0, 2], [0, 0, 3.5], [0, 0, 9]])
+    assert fits(V, axis[:3])
+    assert fits(V, axis)
+    assert not fits(V, axis[:3] / 1000)
+    assert not fits(V, axis[:3] * 1000)
+    assert not fits(V, axis[:3] + [8, 0, 0])
