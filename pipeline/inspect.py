@@ -135,10 +135,13 @@ class Pipeline:
         """
         schedule = self.schedule(until=[name])
         reads = {task.name for task in self.tasks.reads(self.tasks.task(name))}
-        lacking = [node for node in Plan.of(schedule).nodes if node.task in reads and node.state != "fresh"]
+        todo = [node for node in Plan.of(schedule).nodes if node.task != name and node.state != "fresh"]
+        lacking = [node.node for node in todo if node.task in reads]
         if lacking:
-            more = f" and {len(lacking) - 1} more like it" if len(lacking) > 1 else ""
-            raise UnknownNodeError(f"{name} is made from {lacking[0]}{more}; kinetree run computes what is missing")
+            more = f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""
+            first = next((node for node in todo if node.state == "stale"), todo[0])
+            told = f"{name} is made from {lacking[0]}{more}, not there for this configuration: {first}"
+            raise UnknownNodeError(f"{told}; kinetree run computes what is missing")
         account = Account()
         self._go(schedule, Watch((account,)), None)
         if account.failures:

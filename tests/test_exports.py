@@ -213,7 +213,7 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
     pipeline = Pipeline.of({**configured, "skeleton": {"fails": True}})
     pipeline.run()
     for form in ("glb", "csv", "ply", "rignet"):
-        with pytest.raises(UnknownNodeError, match=r"is made from skeleton.*kinetree run computes what is missing"):
+        with pytest.raises(UnknownNodeError, match=r"from skeleton, not there.*: skeleton: stale.*; kinetree run computes what is missing"):
             export(str(tmp_path / "out"), form, tmp_path / "x")
     assert not (tmp_path / "x").exists()
 
@@ -221,7 +221,7 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
 def test_export_of_what_was_never_run_says_so(configured, tmp_path):
     shutil.rmtree(tmp_path / "out")
     (tmp_path / "walk.yaml").write_text(json.dumps(configured))
-    with pytest.raises(UnknownNodeError, match="skeleton: stale"):
+    with pytest.raises(UnknownNodeError, match=r"from skeleton, not there.*: skeleton: stale"):
         export(str(tmp_path / "walk.yaml"), "glb")
     assert not (tmp_path / "out").exists()
 
@@ -230,7 +230,7 @@ def test_frames_without_alignment_are_named(out, scans, tmp_path, configured):
     pipeline = Pipeline.of(configured)
     for frame in (3, 4):
         pipeline.store.discard(pipeline.why(f"projection[frame={frame}]").artifact)
-    with pytest.raises(UnknownNodeError, match=r"projection\[frame=3\].* and 1 more like it"):
+    with pytest.raises(UnknownNodeError, match=r"ply is made from projection\[frame=3\] and 1 more, not there"):
         export(str(out), "ply", tmp_path / "x")
     assert not (tmp_path / "x").exists()
 
@@ -280,12 +280,10 @@ def test_missing_extra_says_what_to_install(out, monkeypatch, tmp_path):
 
 
 def test_failed_export_names_node_and_cause(out, monkeypatch, tmp_path):
-    from kinetree.tasks import rignet
-
     def broken(skeleton):
         raise ValueError("no ink")
 
-    monkeypatch.setattr(rignet, "written", broken)
+    monkeypatch.setattr("kinetree.tasks.exports.rignet._mesh", broken)
     with pytest.raises(NodesFailedError, match="rignet: ValueError: no ink"):
         export(str(out), "rignet", tmp_path / "x")
 

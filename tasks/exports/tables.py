@@ -19,7 +19,7 @@ def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
     positions.csv   frame, seconds, then x, y, z of every joint in the sequence's unit
     confidence.csv  frame, seconds, then every joint's confidence, 0 to 1
     angles.csv      frame, seconds, then per pair of bones that meet in a joint the angle between them in degrees, 180 where
-                    they are in line; a column is named parent–joint–child
+                    they are in line; a column is named parent/joint/child
     bones.csv       parent, child, length, unit
     Seconds are empty where nobody knows how fast the sequence is.
     """
@@ -32,7 +32,7 @@ def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
     return {
         "positions.csv": _series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
         "confidence.csv": _series(skeleton, names, skeleton.confidence),
-        "angles.csv": _series(skeleton, ["–".join(names[j] for j in pair) for pair in pairs], angles),
+        "angles.csv": _series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
         "bones.csv": _text([("parent", "child", "length", "unit"), *bones]),
     }
 

@@ -58,7 +58,7 @@ def test_angle_is_180_in_line_90_at_a_right_angle_and_0_folded(body):
 
 
 def test_angles_are_named_by_their_three_joints(body):
-    assert rows(body, "angles")[0][2:] == ["trunk–arm–hand", "trunk–knee–foot", "trunk–knee–spur"]
+    assert rows(body, "angles")[0][2:] == ["trunk/arm/hand", "trunk/knee/foot", "trunk/knee/spur"]
 
 
 def test_names_with_commas_quotes_and_line_ends_stay_one_cell():
