@@ -72,9 +72,11 @@ def _doubtful(body: Surfaces, parts: Carried, found: Hung, leaves: Ints, degrees
         part, above = int(tree.order[k]), int(tree.order[tree.parents[k]])
         smaller = min((part, above), key=lambda p: (mass[p], p))
         last = not (tree.parents == k).any()
-        least = ratio if not last else LEAF_RATIO / LEAST_RATIO * ratio if has_leaf[part] else FLAP_RATIO / LEAST_RATIO * ratio
         doubts.append((found.degrees[k] / max(degrees, 1e-9), smaller))
-        if not _bears(found, smaller, k):
+        if last and not has_leaf[part]:
+            doubts.append((found.ratio[k] / max(FLAP_RATIO / LEAST_RATIO * ratio, 1e-9), part))
+        elif not _bears(found, smaller, k):
+            least = LEAF_RATIO / LEAST_RATIO * ratio if last else ratio
             doubts.append((found.ratio[k] / max(least, 1e-9), smaller))
     return list(dict.fromkeys(part for doubt, part in sorted(doubts) if doubt < 1.0))
 
