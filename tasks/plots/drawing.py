@@ -30,15 +30,15 @@ def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tupl
 def view(bodies: list[Floats], up: int | None) -> Floats:
     """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
 
-    The eye looks along the shortest extent. Where nobody says what is up, it is the one of the other two axes along which
-    the body's lowest point moves least: feet stand on the ground.
+    Where nobody says what is up, it is y or z, as all conventions have it: the one along which the body's lowest point
+    moves less, because feet stand on the ground. The eye looks along the shorter of the other two extents.
     """
-    lowest = np.array([V.min(axis=0) for V in bodies])
     extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
-    eye = min((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
     if up is None:
+        lowest = np.array([V.min(axis=0) for V in bodies])
         sways = np.ptp(lowest, axis=0) - 1e-6 * extent  # of two that do not move, the longer
-        up = min((axis for axis in range(3) if axis != eye), key=lambda axis: float(sways[axis]))
+        up = 1 if sways[1] <= sways[2] else 2
+    eye = min((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
     across = 3 - eye - up
     view = np.eye(3)[:, [across, up, eye]]
     view[:, 2] *= np.linalg.det(view)
