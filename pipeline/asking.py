@@ -82,7 +82,7 @@ def show(node: Annotated[str, typer.Argument(help=escape("A node, e.g. mesh[fram
         print_json(told)
         return
     out.print(printable(told["why"]), markup=False)
-    for line in told.get("told", ()):
+    for line in (*told["told"], "") if told.get("told") else ():
         out.print(printable(line), markup=False)
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("field", "type", "value", "what"):
