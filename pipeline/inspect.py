@@ -140,8 +140,8 @@ class Pipeline:
         if lacking:
             more = f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""
             first = next((node for node in todo if node.state == "stale"), todo[0])
-            told = f"{name} is made from {lacking[0]}{more}, not there for this configuration: {first}"
-            raise UnknownNodeError(f"{told}; kinetree run computes what is missing")
+            where = f"{name} is made from {lacking[0]}{more}, not there for this configuration"
+            raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
         account = Account()
         self._go(schedule, Watch((account,)), None)
         if account.failures:
