@@ -14,7 +14,7 @@ Ints = npt.NDArray[np.int64]
 
 RETURN = 0.04  # a way there and back that ends this far from where it began halves belief, share of the body's size
 STRETCH = float(np.log(2.0))  # edges twice or half as long as at rest halve it
-LEFT = 0.02  # this share of a frame uncovered, beyond what is usual, halves it everywhere
+LEFT = 0.04  # this share of a frame uncovered, beyond what is usual, halves it everywhere
 
 
 class Belief(NamedTuple):
