@@ -2,10 +2,10 @@
 
 import typer
 
-from kinetree.tasks.commands import evaluate, export, plot, synth
+from kinetree.tasks.commands import evaluate, export, plot, synth, view
 
 
 def register(app: typer.Typer) -> None:
     """Adds the commands to the command line."""
-    for module in (synth, evaluate, export, plot):
+    for module in (synth, evaluate, export, plot, view):
         module.register(app)

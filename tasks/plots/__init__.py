@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.plots.alignment import alignment
 from kinetree.tasks.plots.drawing import Fetch
+from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
 
@@ -22,6 +23,7 @@ WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
     "skeleton": skeleton,
     "tree": tree,
     "confidence": confidence,
+    "errors": evaluation,
 }
 """What can be drawn, by the word of the command line."""
 
