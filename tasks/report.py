@@ -1,6 +1,7 @@
 """One page that shows what a run found: the body playing, the curves and the tables a person needs to trust it."""
 
 from collections.abc import Iterator, Mapping
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from kinetree.pipeline.task import task
 from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.correlation import Correlation
+from kinetree.schemas.evaluation import Evaluation
 from kinetree.schemas.geodesics import Geodesics
 from kinetree.schemas.intervals import Intervals
 from kinetree.schemas.leaves import Leaves
@@ -21,6 +23,7 @@ from kinetree.tasks.numerics.scene import spread
 from kinetree.tasks.page.document import Page, Section, document, picture, table
 from kinetree.tasks.page.scene import Limits, scene
 from kinetree.tasks.plots.alignment import alignment as alignment_figure
+from kinetree.tasks.plots.evaluation import drawn as errors_figure
 from kinetree.tasks.plots.macroscopic import correlation as correlation_figure
 from kinetree.tasks.plots.macroscopic import mu as mu_figure
 from kinetree.tasks.plots.structure import confidence, tree
@@ -38,6 +41,7 @@ def report(
     correlation: Correlation,
     intervals: Intervals,
     leaves: Leaves,
+    evaluation: Evaluation,
     alignment: Mapping[int, Alignment],
     projection: Mapping[int, Projection],
     mesh: Mapping[int, Mesh],
@@ -60,7 +64,8 @@ def report(
         warnings=list(_warnings(skeleton, intervals, leaves, alignment, mesh)),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton)),
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals)),
+            *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
             Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
             Section("alignment", "Alignment", _aligned(fetch, frames, up)),
         ],
@@ -68,7 +73,7 @@ def report(
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
-def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton) -> str:
+def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton, intervals: Intervals) -> str:
     unit = skeleton.unit or "unit of the input"
     rows = [
         (
@@ -79,17 +84,45 @@ def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton
             float(skeleton.degrees[j]),
             float(skeleton.drift[j]),
             int(skeleton.support[j]),
+            _supporting(skeleton, intervals, j),
             float(skeleton.confidence[:, j].mean()),
         )
         for j, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True))
     ]
-    head = ("joint", "kind", "parent", f"bone, {unit}", "turns, °", f"parts disagree by, {unit}", "frames", "confidence")
+    head = ("joint", "kind", "parent", "bone", "turns, °", "parts disagree by", "frames", "intervals", "confidence")
     return (
         picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
         + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
         + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
+        + f"<p>Lengths in {escape(unit)}; intervals are those in which a joint's confidence is at least a half.</p>"
         + table(head, rows)
     )
+
+
+def _supporting(skeleton: Skeleton, intervals: Intervals, j: int) -> str:
+    """The intervals in which a joint is rather to be believed than not."""
+    spans = zip(intervals.begin, intervals.end, strict=True)
+    means = [float(skeleton.confidence[int(a) : int(b) + 1, j].mean()) for a, b in spans]
+    held = [str(number) for number, mean in enumerate(means) if mean >= 0.5]
+    return "all" if len(held) == len(means) else ", ".join(held) or "none"
+
+
+def _judged(evaluation: Evaluation) -> str:
+    rows = [
+        (
+            joint.name,
+            "–" if joint.turns is None else f"{joint.turns:.0f}",
+            joint.found or "missing",
+            "–" if joint.mean is None else f"{joint.mean:.4g} ± {joint.deviation:.2g}",
+            "–" if joint.percent is None else f"{joint.percent:.2f}",
+        )
+        for joint in evaluation.joints
+        if joint.scored
+    ]
+    told = "".join(f"<p>{escape(text)}</p>" for text in evaluation.remarks())
+    head = ("true joint", "turns, °", "found as", evaluation.unit or "length", "% of the height")
+    caption = "Error of every joint over time, mean and deviation beside it (2014, Fig. 16); below, the measures of 2009."
+    return told + picture(errors_figure(evaluation), caption) + table(head, rows)
 
 
 def _macroscopic(fetch: Any, frames: list[int], up: int | None) -> str:
