@@ -17,7 +17,7 @@ BANDS = 64  # a power of two; vertices further ahead wait in the last one
 MENDED = 0.99  # a path along an edge counts if it makes this much of a distance of it or less
 _0, _1, _8, _LOW = np.uint64(0), np.uint64(1), np.uint64(8), np.uint64(0xFF)
 _BITS, _SECTOR, _ANYWHERE = np.uint64(BITS), np.uint64((1 << BITS) - 1), np.uint64(ANYWHERE)
-_LAST = np.uint64(BANDS - 1)
+_LAST, _LINE = np.uint64(BANDS - 1), np.uint64(7)
 IDLE, LATE = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFE)
 
 
@@ -94,11 +94,14 @@ def advance(now: np.uint64, mesh: Topology, per_band: float, radius: float, room
 @compiled
 def _work_off(now: np.uint64, mesh: Topology, per_band: float, room: Room) -> None:
     """Follow the links straight on from every vertex due in one band, those included that it makes due in it."""
-    first, target, length, onward, _, _ = mesh
+    first, link, onward, _, _ = mesh
     distance, due, waiting, filled = room
-    row, i = now & _LAST, _0
+    row, i, ready = now & _LAST, _0, _0
     most = np.uint64(waiting.shape[1] - 1)
     while i < np.uint64(filled[row]):
+        if i == ready:
+            ready = np.uint64(filled[row])
+            waiting[row, most] = _fetch(i, ready, waiting[row], mesh, due)
         v = np.uint64(waiting[row, i])
         i += _1
         mark, own = np.uint64(due[v]), distance[v]
@@ -120,7 +123,7 @@ def _work_off(now: np.uint64, mesh: Topology, per_band: float, room: Room) -> No
         if ahead == _0:
             k, left = begin, end - begin
         for _ in range(left):
-            code, far = np.uint64(target[k]), own + length[k]
+            code, far = np.uint64(link[k].target), own + link[k].length
             w = code >> _BITS
             if far < distance[w]:
                 distance[w] = far
@@ -138,9 +141,24 @@ def _work_off(now: np.uint64, mesh: Topology, per_band: float, room: Room) -> No
 
 
 @compiled
+def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Topology, due: Indices) -> np.uint32:
+    """Read what these vertices will need: all at once, memory serves several of them in the time that it takes for one.
+
+    Returns a number of no meaning, which must be kept lest the compiler leave out what nobody asks for.
+    """
+    first, link, onward, _, _ = mesh
+    total, last = _0, np.uint64(len(link) - 1)
+    for i in range(begin, end):
+        v = np.uint64(waiting[i])
+        k = np.uint64(first[v]) + (np.uint64(onward[v, np.uint64(due[v]) & _SECTOR]) >> _8)
+        total += np.uint64(link[min(k, last)].target) + np.uint64(link[min(k + _LINE, last)].target)
+    return np.uint32(total)
+
+
+@compiled
 def _mend(mesh: Topology, per_band: float, radius: float, room: Room) -> np.uint64:
     """Queue every vertex that an edge brings nearer by much, to look around from there; the first band with one."""
-    edge, along = mesh[4], mesh[5]
+    edge, along = mesh[3], mesh[4]
     distance, due, _, _ = room
     least = np.inf
     for e in range(len(along)):

@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 Lengths = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.uint32]
 Codes = npt.NDArray[np.uint16]
-Told = tuple[Indices, Indices, Lengths, Codes]
+Records = npt.NDArray[np.void]
 
 NARROW = np.deg2rad(16.0)  # light is split down to this angle: 20° costs a third less and errs twice as much
 STRAIGHT = np.deg2rad(30.0)  # a path may turn by this much and half a sector; by 20°, and it misses vertices on rough bodies
@@ -27,6 +27,7 @@ NEIGHBOURS = 5  # in direction, on either side, that may serve a link
 FAR = 8.0  # mean edges around a vertex in which it looks
 SECTORS = 31  # directions of arrival that are told apart; one more stands for "from anywhere"
 BITS = 5
+LINK = np.dtype([("target", np.uint32), ("length", np.float32)])
 ANYWHERE = SECTORS
 _0, _1, _32, _LOW = np.uint64(0), np.uint64(1), np.uint64(32), np.uint64(0xFFFFFFFF)
 
@@ -35,8 +36,8 @@ class Links(NamedTuple):
     """The graph of one surface, in its own numbering.
 
     first  : (vertex + 1,) where each vertex's links begin; they are sorted by direction
-    target : (link,) 32 × vertex at the other end + sector of its directions in which the link arrives there
-    length : (link,) mesh unit
+    link   : (link,) `target`, 32 × vertex at the other end + sector of its directions in which the link arrives there, and
+             `length`, mesh unit: side by side in memory, where most of the time goes
     onward : (vertex, sector) 256 × first link to follow, counted from the vertex's own first, + how many; after the
              last comes the first again. 0 is all of them, as in the last column, for paths from anywhere
     edge   : (edge, 2) vertices at its ends
@@ -44,15 +45,14 @@ class Links(NamedTuple):
     """
 
     first: Indices
-    target: Indices
-    length: Lengths
+    link: Records
     onward: Codes
     edge: Indices
     along: Lengths
 
 
-def linked(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> Told:
-    """First four of `Links`, of a surface whose start, ring, ring_edge, apex, twin, length and ring_length are `rings`.
+def linked(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> tuple[Indices, Records, Codes]:
+    """First three of `Links`, of a surface whose start, ring, ring_edge, apex, twin, length and ring_length are `rings`.
 
     angle : (half-edge,) at its tail
     free  : (vertex,) 1 where no ring of faces closes, so that "straight on" has no meaning
@@ -63,7 +63,9 @@ def linked(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> Told:
     first, found = _both_ways(first, found, total, free)
     most = np.uint64(np.diff(first).max(initial=0))
     first, (target, length, out, back) = _ordered(first, found, total, free, most)
-    return first, _with_sectors(target, back, total), length, _onward(first, out, total, free)
+    link = np.empty(len(target), LINK)
+    link["target"], link["length"] = _with_sectors(target, back, total), length
+    return first, link, _onward(first, out, total, free)
 
 
 @compiled
@@ -187,7 +189,7 @@ def _served(i: np.uint64, size: np.uint64, total: float, closed: bool, length: L
 
 @compiled
 def _with_sectors(target: Indices, back: Lengths, total: Floats) -> Indices:
-    """What `Links` calls target."""
+    """The targets of `Links`."""
     code = np.empty_like(target)
     for k in range(len(target)):
         share = back[k] / total[target[k]] if total[target[k]] > 0.0 else 0.0

@@ -16,7 +16,7 @@ def ends(surface: Surface) -> tuple[Ints, Ints]:
     """(link,) vertices at both ends in the input's numbering."""
     links = surface.links
     here = np.repeat(np.arange(len(surface.order)), np.diff(links.first.astype(np.int64)))
-    return surface.order[here], surface.order[(links.target >> BITS).astype(np.int64)]
+    return surface.order[here], surface.order[(links.link["target"] >> BITS).astype(np.int64)]
 
 
 def rough() -> tuple[npt.NDArray[np.float64], Ints]:
@@ -32,14 +32,14 @@ def test_on_a_rough_body_no_link_is_shorter_than_the_exact_distance() -> None:
     for row, source in zip(exact, range(0, len(V), 50), strict=True):
         own = here == source
         assert own.sum() > 15
-        assert np.all(surface.links.length[own] >= row[there[own]] * (1 - 1e-5))
+        assert np.all(surface.links.link["length"][own] >= row[there[own]] * (1 - 1e-5))
 
 
 def test_in_the_plane_links_are_as_long_as_straight_lines() -> None:
     V, F = shapes.flat_grid(20, 20, 0.7)
     surface = Surface.of(V, F)
     here, there = ends(surface)
-    assert np.allclose(surface.links.length, np.linalg.norm(V[here] - V[there], axis=1), rtol=1e-5)
+    assert np.allclose(surface.links.link["length"], np.linalg.norm(V[here] - V[there], axis=1), rtol=1e-5)
 
 
 def test_no_link_passes_over_a_vertex() -> None:
@@ -72,7 +72,7 @@ def test_what_is_followed_after_a_link_in_the_plane_goes_straight_on() -> None:
     rank = int(np.flatnonzero(surface.order == middle)[0])
     own = np.arange(links.first[rank], links.first[rank + 1])
     for k in np.flatnonzero(inner):
-        onward = int(links.onward[rank, links.target[k] & SECTORS])
+        onward = int(links.onward[rank, links.link["target"][k] & SECTORS])
         begin, count = onward >> 8, onward & 255
         followed = own[(begin + np.arange(count)) % len(own)]
         along, to = V[middle] - V[here[k]], V[there[followed]] - V[middle]
