@@ -91,11 +91,11 @@ class Factorised:
         steps     : global steps at most
         tolerance : steps end when the vertices move by less than this share of the size, root mean square
         """
-        q, R = np.ascontiguousarray(target, np.float64), np.tile(np.eye(3), (len(self.rest), 1, 1))
+        q, R = np.array(target, np.float64), np.tile(np.eye(3), (len(self.rest), 1, 1))
         if start is None:
             self._turn_as_targets(q, R)
-            start = self._settled(q, R, self.rest)
-        x, anchored, energy = start, start, []
+        x = self._settled(q, R, self.rest) if start is None else np.array(start, np.float64)
+        anchored, energy = x, []
         for _ in range(steps):
             energy.append(_local(self.rest, *self.links, self.soft, q, x, R))
             before, x = x, self._settled(q, R, anchored)
@@ -106,7 +106,8 @@ class Factorised:
 
     def _settled(self, q: Floats, R: Floats, anchored: Floats) -> Floats:
         """The global step: the x of least energy for rotations R."""
-        return self.solver.solve(_pulls(self.rest, *self.links, self.soft, q, R) + self.anchor[:, None] * anchored)
+        wanted = _pulls(self.rest, *self.links, self.soft, q, R) + self.anchor[:, None] * anchored
+        return np.ascontiguousarray(self.solver.solve(wanted))
 
     def _turn_as_targets(self, q: Floats, R: Floats) -> None:
         """R of every vertex from the mean of q pᵀ around it: (L + C)⁻¹ C averages and has rows that sum to 1."""
