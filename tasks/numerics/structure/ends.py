@@ -6,6 +6,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.rings import rings
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -20,11 +22,13 @@ def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> I
     label   : (vertex,) part, parents : (part,) −1 for the root
     leaves  : (leaf,) vertices
     """
+    start, ring = rings(F, len(V))
+    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
     ends: list[tuple[int, int]] = []
     for part in range(len(parents)):
         mine = [int(v) for v in leaves if label[v] == part]
         bare = part > 0 and not (parents == part).any()
-        far = _from_border(V, F, label, part) if bare or len(mine) > 1 else np.zeros(len(V))
+        far = _from_border(V, edge, label, part) if bare or len(mine) > 1 else np.zeros(len(V))
         if bare and not mine:
             mine = [int(np.argmax(far))]
         ends += [(part, v) for v in sorted(mine, key=lambda v: (-far[v], *V[v]))]
@@ -36,14 +40,12 @@ def nearest_vertices(V: Floats, points: Floats) -> Ints:
     return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
 
 
-def _from_border(V: Floats, F: Ints, label: Ints, part: int) -> Floats:
+def _from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
     """(vertex,) way along the part's own edges from its border, mesh unit; 0 elsewhere, and where no border can be reached."""
-    edge = np.unique(np.sort(F[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
-    touching = (label[edge] == part).any(axis=1)
-    edge = edge[touching]
-    border = np.unique(edge[(label[edge] != part).any(axis=1)])
-    border = border[label[border] == part]
-    edge = edge[(label[edge] == part).all(axis=1)]
+    edge = edge[label[edge[:, 0]] == part]
+    inside = label[edge[:, 1]] == part
+    border = np.unique(edge[~inside, 0])
+    edge = edge[inside]
     if not len(border):
         return np.where(label == part, np.linalg.norm(V - V[label == part].mean(axis=0), axis=1), 0.0)
     length = np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1)

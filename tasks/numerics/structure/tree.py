@@ -42,8 +42,15 @@ def rooted(pair: Ints, kept: Ints, area: Floats) -> Tree:
 
     pair : (border, 2) parts that meet, kept : borders of the tree, area : (part,) mesh unit²
     """
-    hung = [_hung(pair, kept, root, len(area)) for root in range(len(area))]
-    return hung[int(np.argmin([_heaviest(tree, area) for tree in hung]))]
+    root = 0
+    while True:
+        tree = _hung(pair, kept, root, len(area))
+        branch = branch_area(tree, area)
+        below = np.flatnonzero(tree.parents == 0)
+        heavy = below[branch[below] > 0.5 * branch[0]]
+        if not len(heavy):
+            return tree
+        root = int(tree.order[heavy[0]])
 
 
 def branch_area(tree: Tree, area: Floats) -> Floats:
@@ -54,19 +61,19 @@ def branch_area(tree: Tree, area: Floats) -> Floats:
     return below
 
 
-def _heaviest(tree: Tree, area: Floats) -> float:
-    return float(branch_area(tree, area)[tree.parents == 0].max(initial=0.0))
-
-
 def _hung(pair: Ints, kept: Ints, root: int, parts: int) -> Tree:
-    order, parents, border, used = [root], [-1], [-1], set[int]()
+    beside: list[list[tuple[int, int]]] = [[] for _ in range(parts)]
+    for row in kept:
+        a, b = int(pair[row, 0]), int(pair[row, 1])
+        beside[a].append((b, int(row)))
+        beside[b].append((a, int(row)))
+    order, parents, border = [root], [-1], [-1]
     for place, part in enumerate(order):
-        for row in kept:
-            if part in pair[row] and int(row) not in used:
-                used.add(int(row))
-                order.append(int(pair[row].sum()) - part)
+        for other, row in beside[part]:
+            if row != border[place]:
+                order.append(other)
                 parents.append(place)
-                border.append(int(row))
+                border.append(row)
     if len(order) < parts:
         raise ValueError(f"{parts - len(order)} parts meet no other part of the tree")
     return Tree(np.array(order), np.array(parents), np.array(border))
