@@ -4,7 +4,9 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
-.PHONY: demo test lint types tests benchmarks clean
+DATA   ?=
+
+.PHONY: demo test lint types tests benchmarks accuracy clean
 
 demo: $(READY)
 	$(BIN)/kinetree run demo --output demo-output
@@ -21,13 +23,18 @@ tests: $(READY)
 	$(BIN)/pytest --cov --cov-report=term
 
 benchmarks: $(READY)
-	for file in benchmarks/*.py; do $(BIN)/python $$file || exit 1; done
+	for file in $(filter-out benchmarks/accuracy.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
+
+# every sequence with a known skeleton in the folder DATA, generated ones too, in one table
+accuracy: $(READY)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/accuracy.py $(if $(DATA),--data $(DATA)) --markdown
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "kinetree needs Python 3.11 or newer; name it with make PYTHON=…"; exit 2; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable '.[test]'
+	-PATH="$(CURDIR)/$(BIN):$$PATH" npm install --silent --no-save --no-audit --no-fund --prefix $(VENV) gltf-validator@2.0.0-dev.3.10
 	touch $@
 
 clean:

@@ -12,12 +12,12 @@ ASSUMED_FPS = 30.0
 
 
 class GlbParams(Params):
-    """How the body stands in the file; as long as nothing is said, exactly as in the input."""
+    """How the body stands in the file."""
 
     up: Literal["x", "y", "z", "-x", "-y", "-z"] = "y"
     """Axis of the input that points up; glTF's own is y, anything else turns the whole body."""
-    scale: float = Field(default=1.0, gt=0)
-    """Metres that one unit of the input is, 0.001 for mm: glTF measures in metres."""
+    scale: float | None = Field(default=None, gt=0)
+    """Metres that one unit of the input is: glTF measures in metres; None takes it from the unit, or 1 where nobody knows."""
 
 
 class Glb(Exported):
@@ -25,11 +25,13 @@ class Glb(Exported):
 
     assumed_fps: float | None
     """Frames a second that were assumed since nobody knows; None where the sequence tells."""
-    life_size: float | None
-    """The `scale` that would make the body as large as it is; None where it is, and where the unit is not known."""
+    scale: float
+    """Metres that one unit of the input was taken for."""
+    unit: str | None
+    """The input's own unit; None where nobody knows."""
 
     def remarks(self) -> tuple[str, ...]:
-        """That the pace is a guess and the size not that of life, where it is so."""
+        """That the pace or the size is a guess, where it is."""
         pace = f"nobody says how fast the sequence is: played at {self.assumed_fps} frames a second; set sequence.fps"
-        size = f"in the input's own unit, which other programs take for metres; life-size with glb.scale={self.life_size}"
-        return (*([] if self.assumed_fps is None else [pace]), *([] if self.life_size is None else [size]))
+        size = f"nobody says what the unit is: one was taken for {self.scale:g} m; set sequence.unit or glb.scale"
+        return (*([] if self.assumed_fps is None else [pace]), *([] if self.unit is not None else [size]))

@@ -11,6 +11,6 @@ from kinetree.tasks.exports.units import METRES
 def glb(skeleton: Skeleton, params: GlbParams) -> Glb:
     """Writes skeleton.glb, the reference mesh skinned to the animated skeleton."""
     assumed = ASSUMED_FPS if skeleton.fps is None else None
-    metres = METRES.get(skeleton.unit or "")
-    life_size = metres if metres is not None and params.scale == 1.0 != metres else None
-    return Glb.of({"skeleton.glb": gltf(skeleton, params)}, assumed_fps=assumed, life_size=life_size)
+    scale = params.scale or METRES.get(skeleton.unit or "", 1.0)
+    known = "as said" if params.scale else skeleton.unit if skeleton.unit in METRES else None
+    return Glb.of({"skeleton.glb": gltf(skeleton, params.up, scale)}, assumed_fps=assumed, scale=scale, unit=known)

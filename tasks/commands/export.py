@@ -30,7 +30,7 @@ EXTRAS = {"usd": "pxr"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
 EXAMPLES = (
-    "Examples: kinetree export walk/ --to csv · kinetree export walk/ --to glb -o walk.glb --set glb.up=z --set glb.scale=0.001"
+    "Examples: kinetree export walk/ --to csv · kinetree export walk/ --to glb -o walk.glb --set glb.up=z"
     " · kinetree export walk/ --to ply -o coloured/"
 )
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.schemas.array import Floats
-from kinetree.schemas.glb import ASSUMED_FPS, GlbParams
+from kinetree.schemas.glb import ASSUMED_FPS
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.exports.colours import linear, part_colours
 from kinetree.tasks.exports.rig import children, local_offsets, local_rotations, quaternions, rest_frames, seconds
@@ -30,11 +30,11 @@ UP = {
 """Rows of the turn that takes each axis to glTF's up, +y."""
 
 
-def gltf(skeleton: Skeleton, params: GlbParams) -> bytes:
+def gltf(skeleton: Skeleton, up: str = "y", scale: float = 1.0) -> bytes:
     """The reference mesh skinned to the moving joints, as the bytes of a GLB file.
 
-    Node 0 carries `params.up` and `params.scale`; below it lie the joints in the skeleton's order, so that everything under
-    it is in the input's own frame and unit. Every joint's y axis points along its bone in the reference pose.
+    Node 0 carries what turns `up` to glTF's y and one unit to `scale` metres; below it lie the joints in the skeleton's
+    order, so that everything under it is in the input's own frame and unit. Every joint's y axis points along its bone in the reference pose.
     """
     block = _Block()
     joints = len(skeleton.names)
@@ -46,7 +46,7 @@ def gltf(skeleton: Skeleton, params: GlbParams) -> bytes:
         "scene": 0,
         "scenes": [{"nodes": [0, joints + 1]}],
         "nodes": [
-            _stand(params),
+            _stand(up, scale),
             *_joints(skeleton, B),
             {"name": "body", "mesh": 0, "skin": 0},
         ],
@@ -91,13 +91,13 @@ class _Block:
         return {"accessors": self._accessors, "bufferViews": self._views, "buffers": [{"byteLength": len(self.bytes)}]}
 
 
-def _stand(params: GlbParams) -> dict[str, Any]:
-    turn = quaternions(np.array([UP[params.up]], np.float64))[0]
+def _stand(up: str, scale: float) -> dict[str, Any]:
+    turn = quaternions(np.array([UP[up]], np.float64))[0]
     node: dict[str, Any] = {"name": "skeleton", "children": [1]}
-    if params.up != "y":
+    if up != "y":
         node["rotation"] = turn.tolist()
-    if params.scale != 1.0:
-        node["scale"] = [params.scale] * 3
+    if scale != 1.0:
+        node["scale"] = [scale] * 3
     return node
 
 

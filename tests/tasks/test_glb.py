@@ -39,7 +39,7 @@ print("HEADS" + json.dumps(found))
 
 
 def written(skeleton, **params):
-    return glb(skeleton, GlbParams(**params)).files(())["skeleton.glb"]
+    return glb(skeleton, GlbParams(**{"scale": 1.0, **params})).files(())["skeleton.glb"]
 
 
 def read(skeleton, **params):
@@ -98,14 +98,18 @@ def test_unknown_pace_is_thirty_frames_a_second_and_said_to_be_a_guess():
     unknown = spider(fps=None, unit=None)
     assert read(unknown).times[-1] == pytest.approx(11 / 30)
     assert read(unknown).json["asset"]["extras"]["fps_is_assumed"] is True
-    (told,) = glb(unknown, GlbParams()).remarks()
-    assert "played at 30.0 frames a second" in told
+    pace, size = glb(unknown, GlbParams()).remarks()
+    assert "played at 30.0 frames a second" in pace
+    assert "one was taken for 1 m" in size
 
 
-def test_body_in_mm_is_said_to_be_no_life_size_until_it_is(body):
-    (told,) = glb(body, GlbParams()).remarks()
-    assert "glb.scale=0.001" in told
-    assert glb(body, GlbParams(scale=0.001)).remarks() == ()
+def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
+    assert glb(body, GlbParams()).scale == 0.001
+    assert glb(body, GlbParams()).remarks() == ()
+    assert glb(body, GlbParams(scale=2.0)).scale == 2.0
+    assert glb(spider(unit="ell"), GlbParams()).remarks() == (
+        "nobody says what the unit is: one was taken for 1 m; set sequence.unit or glb.scale",
+    )
 
 
 def test_turns_of_a_joint_take_the_short_way_from_key_to_key(body):
