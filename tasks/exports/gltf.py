@@ -34,7 +34,8 @@ def gltf(skeleton: Skeleton, up: str = "y", scale: float = 1.0) -> bytes:
     """The reference mesh skinned to the moving joints, as the bytes of a GLB file.
 
     Node 0 carries what turns `up` to glTF's y and one unit to `scale` metres; below it lie the joints in the skeleton's
-    order, so that everything under it is in the input's own frame and unit. Every joint's y axis points along its bone in the reference pose.
+    order, so that everything under it is in the input's own frame and unit. Every joint's
+    y axis points along its bone in the reference pose.
     """
     block = _Block()
     joints = len(skeleton.names)
