@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.fitting import fit, squared
+from kinetree.tasks.numerics.structure.fitting import fit, members, squared
 from kinetree.tasks.numerics.structure.labelling import connected, neighbouring
 from kinetree.tasks.numerics.structure.missing import candidates, missed
 
@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
-ENOUGH = 120  # vertices of a part that are asked
+ENOUGH, MOST = 120, 400  # vertices of a part that are asked, and that it is fitted to
 
 
 class Body(NamedTuple):
@@ -42,6 +42,7 @@ class Bar(NamedTuple):
     """What a part must pass to stay; lengths in the root of the body's area, areas as shares of it.
 
     missed : by how much it must be missed
+    noise  : how many times as much as the body is uneven it must be missed at least
     slip   : what a displacement along the surface counts against one across it, 0 to 1
     short  : length by girth of a part from which on blends explain it less, and at twice which not at all
     small  : area of a part below which its shape is that of its few triangles
@@ -51,8 +52,9 @@ class Bar(NamedTuple):
     floor  : least mean squared residual that tells clearly rigid vertices from others
     """
 
-    missed: float = 0.004
-    slip: float = 1.0
+    missed: float = 0.0025
+    noise: float = 2.5
+    slip: float = 0.3
     short: float = 0.2
     small: float = 0.005
     large: float = 0.04
@@ -88,7 +90,7 @@ def eliminated(body: Body, bar: Bar, label: Ints, R: Floats, t: Floats) -> tuple
         alive[worst] = False
         _inherit(body, label, worst, near, R, t, refit)
         label = connected(label, parts, body.start, body.ring)
-        fit(body.V, body.x, body.weight, body.area, label, refit, True, bar.floor, R, t)
+        fit(body.V, body.x, body.weight, body.area, label, refit, True, MOST, bar.floor, R, t)
         for p in range(parts):
             for q in range(parts):
                 if near[worst, p] > 0 and (q == p or near[p, q] > 0):
@@ -102,10 +104,9 @@ def _score(
     """Writes by how much every stale part would be missed: infinite without a neighbour."""
     parts = len(near)
     size, rim = np.zeros(parts), rims(body.V, body.F, label, parts)
-    total = np.zeros(parts, np.int64)
+    member = np.empty(len(label), np.int64)
     for v in range(len(label)):
         size[label[v]] += body.area[v]
-        total[label[v]] += 1
     for p in range(parts):
         if not alive[p] or not stale[p]:
             continue
@@ -113,15 +114,7 @@ def _score(
         if touches == 0:
             score[p] = np.inf
             continue
-        member = np.empty(ENOUGH, np.int64)
-        count = passed = 0
-        for v in range(len(label)):
-            if label[v] == p:
-                # of more than enough, evenly many
-                if passed * min(ENOUGH, total[p]) // total[p] == count:
-                    member[count] = v
-                    count += 1
-                passed += 1
+        count = members(label, p, ENOUGH, member)
         # of a tube, area / girth² is length / girth, and its two ends are the rim
         long = _ramp(4.0 * size[p] / max(rim[p], 1e-12) ** 2, bar.short) * _ramp(size[p], bar.small)
         bone = max(long, _ramp(size[p], bar.large))

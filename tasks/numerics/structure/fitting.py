@@ -70,6 +70,7 @@ def fit(
     label: Ints,
     asked: Flags,
     warm: bool,
+    most: int,
     floor: float,
     R: Floats,
     t: Floats,
@@ -80,6 +81,7 @@ def fit(
     label   : (vertex,) part
     asked   : (part,) which to fit
     warm    : whether R and t hold motions to begin from: a part then stays with what it explained before
+    most    : vertices that a part is fitted to; of more, evenly many
     floor   : least s², mesh unit²
     R, t    : (frame, part, 3, 3) · (frame, part, xyz), written
     """
@@ -87,11 +89,7 @@ def fit(
     for p in range(len(asked)):
         if not asked[p]:
             continue
-        count = 0
-        for v in range(len(label)):
-            if label[v] == p:
-                member[count] = v
-                count += 1
+        count = members(label, p, most, member)
         if count == 0:
             continue
         sure = np.ones(count)
@@ -105,6 +103,52 @@ def fit(
                     # a frame in which nothing is believed still needs a motion
                     added(m, V, x, f, v, sure[k] * area[v] * (weight[f, v] + 1e-6))
                 motion(m, R[f, p], t[f, p])
+
+
+@compiled
+def members(label: Ints, part: int, most: int, member: Ints) -> int:
+    """Writes vertices of a part, of more than `most` evenly many; returns how many."""
+    total = 0
+    for v in range(len(label)):
+        total += label[v] == part
+    count = passed = 0
+    for v in range(len(label)):
+        if label[v] == part:
+            if passed * min(most, total) // total == count:
+                member[count] = v
+                count += 1
+            passed += 1
+    return count
+
+
+@compiled
+def unevenness(V: Floats, x: Floats, area: Floats, patch: Ints, label: Ints, R: Floats, t: Floats) -> Floats:
+    """How far patches of the surface, each as a whole, stray from the motion of their part; noise of vertices cancels.
+
+    patch   : (vertex,) each within one part
+    returns : (patch,) root mean square over frames of a patch's mean residual, mesh unit
+    """
+    count = 0
+    for v in range(len(patch)):
+        count = max(count, patch[v] + 1)
+    out, mass, total = np.zeros(count), np.zeros(count), np.zeros((count, 3))
+    for v in range(len(patch)):
+        mass[patch[v]] += area[v]
+    for f in range(x.shape[0]):
+        for k in range(count):
+            for i in range(3):
+                out[k] += (total[k, i] / mass[k]) ** 2 / x.shape[0]
+                total[k, i] = 0.0
+        for v in range(len(patch)):
+            p = label[v]
+            for i in range(3):
+                r = t[f, p, i] - x[f, v, i] + R[f, p, i, 0] * V[v, 0] + R[f, p, i, 1] * V[v, 1] + R[f, p, i, 2] * V[v, 2]
+                total[patch[v], i] += area[v] * r
+    for k in range(count):
+        for i in range(3):
+            out[k] += (total[k, i] / mass[k]) ** 2 / x.shape[0]
+        out[k] = np.sqrt(out[k])
+    return out
 
 
 @compiled

@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.mu import farthest_bases, mu
 from kinetree.tasks.numerics.rings import rings
 from kinetree.tasks.numerics.structure.beginning import cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated
-from kinetree.tasks.numerics.structure.fitting import fit, misfit, residuals
+from kinetree.tasks.numerics.structure.fitting import fit, misfit, residuals, unevenness
 from kinetree.tasks.numerics.structure.labelling import connected, relabelled
 from kinetree.tasks.numerics.surface import Surface
 
@@ -97,24 +97,36 @@ def _found(surface: Surface, F: Ints, V: Floats, x: Floats, weight: Floats, leav
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
     body = Body(V, _normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
-    label = _many(surface, body, leaves, chosen)
+    patch = patches(surface, V, body.start, body.ring, chosen.patches)
+    label = _many(surface, body, patch, leaves, chosen)
     steps = max(round((chosen.smooth * unit / surface.edge) ** 2), 1)
     label, R, t = _refitted(body, label, chosen.bar.floor)
+    bar = chosen.bar
     for turn in range(4):
+        if turn == 2:
+            bar = _raised(chosen.bar, body, patch, label, R, t)
         if turn > 1:
-            label, R, t = eliminated(body, chosen.bar, label, R, t)
+            label, R, t = eliminated(body, bar, label, R, t)
         label = relabelled(V, x, weight, R, t, label, body.start, body.ring, steps)
         label, R, t = _refitted(body, label, chosen.bar.floor)
     e = misfit(V, x, weight, R, t, label)
-    rigid = chosen.bar.missed**2 / (chosen.bar.missed**2 + 4 * e)
+    rigid = bar.missed**2 / (bar.missed**2 + 4 * e)
     return PartsFound(label, rigid, R, t, residuals(V, x, weight * body.area * rigid, R, t, label))
 
 
-def _many(surface: Surface, body: Body, leaves: Ints, chosen: PartsSettings) -> Ints:
+def _raised(bar: Bar, body: Body, patch: Ints, label: Ints, R: Floats, t: Floats) -> Bar:
+    """The bar, raised where the body is soft, as in cloth, or badly aligned: by the median unevenness of its patches."""
+    piece = np.unique(patch * (label.max() + 1) + label, return_inverse=True)[1].reshape(-1)
+    stray = unevenness(body.V, body.x, body.area, piece, label, R, t)
+    order = np.argsort(stray, kind="stable")
+    share = np.cumsum(np.bincount(piece, body.area)[order])
+    return bar._replace(missed=max(bar.missed, bar.noise * float(stray[order[np.searchsorted(share, 0.5 * share[-1])]])))
+
+
+def _many(surface: Surface, body: Body, patch: Ints, leaves: Ints, chosen: PartsSettings) -> Ints:
     """(vertex,) deliberately too many parts."""
     V, x, start, ring = body.V, body.x, body.start, body.ring
     mass = body.weight * body.area
-    patch = patches(surface, V, start, ring, chosen.patches)
     run = cone_runs(surface, V, x, mass, leaves, start, ring, chosen.rings, chosen.cut)
     trunk = grouped(V, x, mass, patch, np.where(run < 0, 0, -1), start, ring, chosen.trunk, np.inf)
     label = np.where(run < 0, run.max() + 1 + trunk, run)
@@ -127,7 +139,7 @@ def _refitted(body: Body, label: Ints, floor: float) -> tuple[Ints, Floats, Floa
     _, first, label = np.unique(label, return_index=True, return_inverse=True)
     label = np.argsort(np.argsort(first))[label.reshape(-1)]
     R, t = np.empty((len(body.x), len(first), 3, 3)), np.empty((len(body.x), len(first), 3))
-    fit(body.V, body.x, body.weight, body.area, label, np.ones(len(first), np.bool_), False, floor, R, t)
+    fit(body.V, body.x, body.weight, body.area, label, np.ones(len(first), np.bool_), False, len(label), floor, R, t)
     return label, R, t
 
 
