@@ -123,3 +123,15 @@ def blend_error(V: Floats, F: Ints, x: Floats, label: Ints, pair: Ints, R: Float
             share = np.clip((apart * rest).sum(axis=(0, 2)) / square, 0.0, 1.0)
             left[row] = np.sqrt(((rest - share[:, None] * apart) ** 2).sum(axis=2).mean())
     return left
+
+
+def blend_centres(V: Floats, area: Floats, share: Floats) -> Floats:
+    """(joint, xyz) the middle of where the surface goes over from one side of each joint to the other, Σ (s (1 − s))² v.
+
+    V, area : (vertex, xyz), (vertex,) mesh unit
+    share   : (vertex, joint) s, how much of each vertex follows what lies beyond the joint
+    returns : NaN where it goes over nowhere
+    """
+    blend = area[:, None] * (share * (1.0 - share)) ** 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray((blend.T @ V) / blend.sum(axis=0)[:, None])

@@ -27,7 +27,7 @@ FLAP_RATIO = 3.0
 """The same for a last part without a leaf: few bodies have a limb there."""
 CLEAR_RATIO = 3.0
 """A part between a poor joint and one as good as this stays."""
-FLESH = 0.86
+FLESH = 0.92
 """Share of a part's turning that follows from that of the part beyond it, above which it is flesh around a joint."""
 THIN = 1.25
 """Length of such a part at most, from joint to joint in radii of its borders."""

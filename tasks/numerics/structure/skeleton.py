@@ -6,9 +6,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-from kinetree.tasks.numerics.structure.articulation import Motion, placed
+from kinetree.tasks.numerics.structure.articulation import Motion, beyond, placed
 from kinetree.tasks.numerics.structure.ends import bone_ends
 from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
+from kinetree.tasks.numerics.structure.joints import blend_centres, rotation_centres
 from kinetree.tasks.numerics.structure.naming import named
 from kinetree.tasks.numerics.structure.pose import SEEN, posed, seen_share
 from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
@@ -88,14 +89,12 @@ def skeleton(
     seen = None if trust is None else seen_share(label, area, trust, len(x), R.shape[1])
     found = pruned(Surfaces(V, F, x, area), Carried(label, R, t, residual, seen), leaves, degrees=degrees, ratio=ratio)
     tree = found.hung.tree
-    place = np.argsort(tree.order)
-    label = place[found.parts.label]
-    motion, drift = _start(V, area, label, found)
-    size = float(np.sqrt(area.sum()))
+    label = np.argsort(tree.order)[found.parts.label]
     tau = np.ones(x.shape[:2]) if trust is None else np.array(trust, dtype=np.float64)
-    t = np.ascontiguousarray(found.parts.t[:, tree.order])
-    W = skinning(V, F, x, label, motion.R, t, tree.parents, tau, NOISE * size)
-    body = posed(V, x, area, label, W, motion, tree.parents, trust)
+    R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (found.parts.R, found.parts.t))
+    W = skinning(V, F, x, label, R, t, tree.parents, tau, NOISE * float(np.sqrt(area.sum())))
+    rest, drift = _settled(V, area, label, W, found)
+    body = posed(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, trust)
     shown = seen_share(label, area, trust, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
     support = (np.minimum(shown, shown[:, above]) >= SEEN).sum(axis=0)
@@ -145,15 +144,19 @@ def _assembled(
     )
 
 
-def _start(V: Floats, area: Floats, label: Ints, found: Pruned) -> tuple[Motion, Floats]:
-    """Joints and motion in the tree's order, and each joint's drift; the root turns about the middle of its surface."""
-    tree, joints = found.hung.tree, found.hung.joints
+def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> tuple[Floats, Floats]:
+    """Joints in the tree's order, expected half-way between border and blend, and their drift; the root's is its middle."""
+    parts, tree, met = found.parts, found.hung.tree, found.hung.borders
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
     rest[0] = area[root] @ V[root] / area[root].sum()
-    rest[1:] = joints.rest[tree.border[1:]]
-    drift[1:] = joints.drift[tree.border[1:]]
-    return Motion(rest, np.ascontiguousarray(found.parts.R[:, tree.order]), found.parts.t[:, tree.order[0]].copy()), drift
+    rows = tree.border[1:]
+    blend = blend_centres(V, area, W @ beyond(tree.parents).T)[1:]
+    expected = met.centre[rows] + 0.5 * np.where(np.isfinite(blend), blend - met.centre[rows], 0.0)
+    pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
+    joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], parts.residual, parts.trust)
+    rest[1:], drift[1:] = joints.rest, joints.drift
+    return rest, drift
 
 
 def _filled(V: Floats, label: Ints) -> Ints:

@@ -5,7 +5,7 @@ import pytest
 from articulated import chain, swings
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.joints import blend_error, borders, rotation_centres
+from kinetree.tasks.numerics.structure.joints import blend_centres, blend_error, borders, rotation_centres
 
 
 def test_border_of_a_bent_tube_is_a_ring_around_its_joint() -> None:
@@ -64,3 +64,11 @@ def test_skin_between_parts_that_it_follows_is_explained_by_them() -> None:
     assert blend_error(body.V, body.F, body.x, body.label, met.pair, body.R, body.t) == pytest.approx([0, 0], abs=1e-9)
     wrong = blend_error(body.V, body.F, body.x, body.label, met.pair, body.R[:, [2, 0, 1]], body.t[:, [2, 0, 1]])
     assert wrong.min() > 0.05
+
+
+def test_blend_is_where_the_surface_goes_over() -> None:
+    body = chain((-1.5, 1.5), blend=1.0)
+    share = np.stack([body.W[:, 1] + body.W[:, 2], body.W[:, 2], np.ones(len(body.V))], axis=1)
+    middle = blend_centres(body.V, body.area, share)
+    assert middle[:2] == pytest.approx(body.joints[1:], abs=0.1)
+    assert np.isnan(middle[2]).all()
