@@ -3,7 +3,7 @@
 After the saddle vertex graph (Ying, Wang, He 2013) and the discrete geodesic graph (Wang et al. 2017): every vertex is
 linked to what it sees and to what sees it, by straight lines of exact length. A shortest path hardly turns; so at a vertex
 only the links straight on from where the path came need be followed, fewer than a vertex has edges and a few per cent of
-what there is. All this is prepared once per surface, at the price of about fifty sources.
+what there is. All this is prepared once per surface, at the price of about a hundred sources.
 """
 
 from typing import NamedTuple
@@ -55,7 +55,7 @@ def linked(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> tuple[In
     """First three of `Links`, of a surface whose start, ring, ring_edge, apex, twin, length and ring_length are `rings`.
 
     angle : (half-edge,) at its tail
-    free  : (vertex,) 1 where no ring of faces closes, so that "straight on" has no meaning
+    free  : (vertex,) 1 where faces are not one closed ring, so that "straight on" has no meaning
     """
     # step by step: called from one compiled function, all of this would be compiled once more into that
     shape, total = corners(rings[0], rings[1], rings[2], angle, rings[5])

@@ -32,7 +32,7 @@ class Surface:
     twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
                   where a one-sided surface closes: faces are turned to agree wherever they can
     length      : (half-edge,) mesh unit
-    bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or no closed ring of faces
+    bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or not one closed ring of faces
     links       : the straight lines from vertex to vertex along which distance spreads
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
     centre      : (xyz,) the surface's centre of area, mesh unit
@@ -81,6 +81,7 @@ class Surface:
         area[order] = np.bincount(tail, np.repeat(doubled_area / 6, 3), len(P))
         free = np.zeros(len(P), np.uint8)
         free[tail[twin >= BLIND]] = free[head[twin >= BLIND]] = 1
+        free[np.bincount(np.repeat(np.arange(len(P)), np.diff(ring_start)), ~inside, len(P)) > 1] = 1
         rings = (
             ring_start.astype(np.uint32),
             (2 * np.where(inside, apex[edge], head[edge]) + inside).astype(np.uint32),

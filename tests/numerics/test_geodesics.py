@@ -108,6 +108,15 @@ def test_faces_of_mixed_orientation_keep_their_distances() -> None:
     assert error.max() < 0.05
 
 
+def test_where_two_balls_touch_every_path_from_one_to_the_other_passes() -> None:
+    V, F = shapes.sphere(3)
+    both = np.concatenate([F, np.where(F == 0, 0, F + len(V))])
+    g = geodesic_distance(Surface.of(np.concatenate([V, 2 * V[0] - V]), both), [0, 100])
+    used = np.delete(np.arange(2 * len(V)), len(V))
+    other = used[used > len(V)]
+    assert np.allclose(g[1, other], g[1, 0] + g[0, other], rtol=1e-6)
+
+
 def test_distance_is_symmetric() -> None:
     V, F, _ = shapes.y_pipe()
     surface = Surface.of(V, F)
