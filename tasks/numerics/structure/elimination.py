@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
-ENOUGH, MOST = 120, 400  # vertices of a part that are asked, and that it is fitted to
+ENOUGH, MOST = 120, 250  # vertices of a part that are asked, and that it is fitted to
 
 
 class Body(NamedTuple):

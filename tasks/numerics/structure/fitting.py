@@ -93,7 +93,7 @@ def fit(
         if count == 0:
             continue
         sure = np.ones(count)
-        for turn in range(ROUNDS):
+        for turn in range(1 if warm else ROUNDS):
             if turn > 0 or warm:
                 _weigh(V, x, weight, member, count, p, R, t, floor, sure)
             for f in range(x.shape[0]):
