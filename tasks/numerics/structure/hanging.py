@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.articulation import beyond
 from kinetree.tasks.numerics.structure.joints import SPREAD, Borders, Joints, blend_error, borders, rotation_centres
 from kinetree.tasks.numerics.structure.tree import Tree, rooted, spanning
@@ -40,7 +41,7 @@ class Carried(NamedTuple):
     label    : (vertex,) part
     R, t     : (frame, part, 3, 3), (frame, part, xyz) from the reference
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit
-    trust    : (frame, part) how much each part is to be believed in each frame; None believes all
+    trust    : (frame, part) how much each part is to be believed in each frame; None where every vertex was followed
     """
 
     label: Ints
@@ -84,11 +85,15 @@ def hung(body: Surfaces, parts: Carried) -> Hung:
     met = branch_borders(met, tree)
     centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.trust)
     degrees, ratio = np.zeros(len(mass)), np.full(len(mass), np.inf)
+    N = None if parts.trust is None else smoothed_normals(V, body.F)
     for k in range(1, len(mass)):
         part, above, row = tree.order[k], tree.order[tree.parents[k]], tree.border[k]
         turns = against(R, above, part)
         degrees[k] = turning_range(turns)
-        ways = [swing(V[label == p], body.area[label == p], centres.rest[row], turns, p == above) for p in (part, above)]
+        ways = []
+        for p in (part, above):
+            mine = label == p
+            ways.append(swing(V[mine], body.area[mine], centres.rest[row], turns, p == above, None if N is None else N[mine]))
         ratio[k] = min(ways) / (centres.drift[row] + NOISE * body.size)
     return Hung(met, centres, tree, degrees, ratio)
 

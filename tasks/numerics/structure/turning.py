@@ -8,6 +8,8 @@ Floats = npt.NDArray[np.float64]
 
 POSES = 96
 """Frames whose rotations are compared each with each."""
+OUT_OF_ROUND = 0.1
+"""Share of the way of a twist that leads along the normals, from which on a twist is seen in full."""
 
 
 def turning_range(turns: Floats) -> float:
@@ -27,17 +29,29 @@ def mean_rotation(turns: Floats) -> Floats:
     return U @ Vt
 
 
-def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool) -> float:
+def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool, N: Floats | None = None) -> float:
     """Root mean square way, over frames and a part's surface, of turning about the joint against the mean pose, mesh unit.
 
     V, area : (vertex, xyz), (vertex,) of the part; centre : (xyz)
     turns   : (frame, 3, 3) R_pᵀ R_a of a part a against the part p above it; above : whether V is of p
+    N       : (vertex, xyz) normals, where only the surface was seen to move: then the twist of a round limb about its own
+              axis, which leaves the surface where it is, is no way; None where every vertex was followed
     """
     mean = mean_rotation(turns)
-    arm = V - centre if above else (V - centre) @ mean.T
-    spread = (area[:, None] * arm).T @ arm / max(float(area.sum()), np.finfo(float).tiny)
+    base = np.eye(3) if above else mean.T
+    arm = (V - centre) @ base
+    share = area / max(float(area.sum()), np.finfo(float).tiny)
     away = turns @ mean.T - np.eye(3)
-    return float(np.sqrt(np.einsum("txy,yz,txz->t", away, spread, away).mean()))
+    way = float(np.einsum("txy,yz,txz->t", away, (share[:, None] * arm).T @ arm, away).mean())
+    if N is not None:
+        axis = share @ arm
+        axis /= max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
+        around = np.cross(axis, arm)
+        whole = float(share @ (around**2).sum(axis=1))
+        seen = float(share @ ((around * (N @ base)).sum(axis=1)) ** 2)
+        twist = Rotation.from_matrix(turns @ mean.T).as_rotvec() @ axis
+        way -= float((twist**2).mean()) * (whole - min(whole, seen / OUT_OF_ROUND))
+    return float(np.sqrt(max(way, 0.0)))
 
 
 def in_between(turns: Floats, beyond: Floats) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from limbs import rotation, tube
 
+from kinetree.tasks.numerics.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.turning import in_between, mean_rotation, swing, turning_range
 
 WAVE = np.sin(2 * np.pi * np.arange(40) / 40)
@@ -40,3 +41,14 @@ def test_turning_half_the_way_is_in_between_and_turning_by_itself_is_not() -> No
     assert in_between(about((0.0, 1.0, 0.0), 0.3 * WAVE), whole) < 0.1
     assert in_between(about((1.0, 0.0, 0.0), 0.3 * np.roll(WAVE, 10)), whole) < 0.5
     assert in_between(about((1.0, 0.0, 0.0), -0.3 * WAVE), whole) == 0
+
+
+def test_twist_of_a_round_limb_is_no_way_where_only_its_surface_was_seen() -> None:
+    centre, turns = np.array([0.0, 0.0, -5.0]), about((0.0, 0.0, 1.0), 0.3 * WAVE)
+    for flat, least, most in ((1.0, 0.0, 0.02), (0.4, 0.15, 1.0)):
+        V, F = tube(flat=flat)
+        N = smoothed_normals(V, F)
+        assert least <= swing(V, np.ones(len(V)), centre, turns, False, N) <= most
+        bend = about((1.0, 0.0, 0.0), 0.3 * WAVE)
+        followed = swing(V, np.ones(len(V)), centre, bend, False)
+        assert swing(V, np.ones(len(V)), centre, bend, False, N) == pytest.approx(followed, rel=0.02)
