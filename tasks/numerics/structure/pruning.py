@@ -75,9 +75,10 @@ def _doubtful(body: Surfaces, parts: Carried, found: Hung, leaves: Ints, degrees
         doubts.append((found.degrees[k] / max(degrees, 1e-9), smaller))
         if last and not has_leaf[part]:
             doubts.append((found.ratio[k] / max(FLAP_RATIO / LEAST_RATIO * ratio, 1e-9), part))
-        elif not _bears(found, smaller, k):
-            least = LEAF_RATIO / LEAST_RATIO * ratio if last else ratio
-            doubts.append((found.ratio[k] / max(least, 1e-9), smaller))
+            continue
+        least = LEAF_RATIO / LEAST_RATIO * ratio if last else ratio
+        spare = [p for p in (smaller, part + above - smaller) if not _bears(found, p, k)]
+        doubts += [(found.ratio[k] / max(least, 1e-9), p) for p in spare[:1]]
     return list(dict.fromkeys(part for doubt, part in sorted(doubts) if doubt < 1.0))
 
 
