@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.blocks import add_data, conjugate_gradients
-from kinetree.tasks.numerics.correspondence import Target, walked
+from kinetree.tasks.numerics.correspondence import BETA, Target, walked
 from kinetree.tasks.numerics.kinematics import deformed, stepped, turned
 from kinetree.tasks.numerics.template import Template
 from kinetree.tasks.numerics.ties import add_ties, tie_energy
@@ -40,6 +40,7 @@ class FitSettings:
     searches  : so many steps search for matches among all samples, later ones walk
     solves    : conjugate-gradient steps at most
     thin      : of the samples of both surfaces every so many are used
+    beta      : what a turn of the normal counts against distance while matches walk, share of the body's size
     """
 
     steps: int = 10
@@ -50,6 +51,7 @@ class FitSettings:
     searches: int = 3
     solves: int = 30
     thin: int = 2
+    beta: float = BETA
 
 
 class Pose(NamedTuple):
@@ -115,26 +117,26 @@ def fit(
             for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point)
         )
         x, n = shape(template, pose)
-        match = _matches(template, target, samples, x, n, None if i < settings.searches else match)
+        match = _matches(template, target, samples, x, n, None if i < settings.searches else match, settings.beta * target.size)
         rows = _rows(template, target, samples, x, n, match, (reach * template.size, scale * template.size, b))
         pose, energy[i] = _step(template, pose, rows, lam * s, settings.solves)
     return Fitted(pose, energy / template.size**2)
 
 
 def _matches(
-    template: Template, target: Target, samples: _Pair, x: Floats, n: Floats, last: _Pair | None
+    template: Template, target: Target, samples: _Pair, x: Floats, n: Floats, last: _Pair | None, beta: float
 ) -> _Pair:
     """(sample,) the frame's vertex for each of the body's samples · (sample,) the body's vertex for each of the frame's.
 
-    x, n : the body now · last : matches to walk from, or None to search
+    x, n : the body now · last : matches to walk from, or None to search · beta : β of the walk, mesh unit
     """
     mine, theirs = samples
     y, m = target.V[theirs], target.N[theirs]
     if last is None:
         tree = cKDTree(np.hstack([x[mine], target.beta * n[mine]]), balanced_tree=False)
         last = target.found(x[mine], n[mine]), mine[tree.query(np.hstack([y, target.beta * m]))[1]]
-    there = walked(x[mine], n[mine], last[0], target.V, target.N, target.start, target.ring, target.beta)
-    return there, walked(y, m, last[1], x, n, template.start, template.ring, target.beta)
+    there = walked(x[mine], n[mine], last[0], target.V, target.N, target.start, target.ring, beta)
+    return there, walked(y, m, last[1], x, n, template.start, template.ring, beta)
 
 
 def _rows(
@@ -166,9 +168,7 @@ def _energy(template: Template, pose: Pose, rows: _Rows, stiffness: Floats) -> t
     return float(data) + tie_energy(template.edge, stiffness, *pose, template.g), r
 
 
-def _step(
-    template: Template, pose: Pose, rows: _Rows, stiffness: Floats, solves: int
-) -> tuple[Pose, tuple[float, float]]:
+def _step(template: Template, pose: Pose, rows: _Rows, stiffness: Floats, solves: int) -> tuple[Pose, tuple[float, float]]:
     """One Gauss–Newton step with fixed matches, and the energy before and after."""
     before, r = _energy(template, pose, rows, stiffness)
     nodes, g = len(template.node), template.g

@@ -10,28 +10,38 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.deformation import FitSettings, Pose
+from kinetree.tasks.numerics.pieces import pieces
 from kinetree.tasks.numerics.template import Template
 from kinetree.tasks.numerics.ties import strains
 
 Floats = npt.NDArray[np.float64]
 
-YIELD = 0.03  # relative bending at which a tie counts half
+YIELD = 0.02  # relative bending at which a tie counts half
+BETWEEN = 0.25  # what a tie between two pieces counts against one within a piece
+_ONE = 0.3  # cost up to which nodes are one piece: bones rather in two than two bones in one
 
-# the passes after the first start from the pose they had, so they search near and once
-PASSES = tuple(
-    FitSettings(4, (2.0 * last, last), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1)
-    for last in (0.06, 0.03, 0.02)
+# the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
+# the second so finely that a section which is not quite round holds its turn
+PASSES = (
+    FitSettings(4, (0.48, 0.24), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1),
+    FitSettings(4, (0.32, 0.16), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+    FitSettings(4, (0.12, 0.06), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
 )
 
 
 def learned(template: Template, poses: Sequence[Pose], yields: float = YIELD) -> Floats:
-    """S = s₀² / (s₀² + q²), q the rms over frames of a tie's relative residual.
+    """S = s₀² / (s₀² + q²), q⁴ the mean over frames of the fourth power of a tie's relative residual.
+
+    The fourth power lets go a joint that acts in few frames. Ties between pieces count a quarter of that.
 
     poses   : one a frame, in any order; at least one
     yields  : s₀
     returns : (edge,) above 0, at most 1
     """
-    g = template.g
+    g, edge = template.g, template.edge
     # sorted, so that the sum does not depend on the order in which frames arrive
-    strain = np.sort(np.stack([strains(template.edge, *pose, g) for pose in poses]), axis=0).mean(axis=0)
-    return yields**2 / (yields**2 + strain)
+    strain = np.sort(np.stack([strains(edge, *pose, g) for pose in poses]), axis=0)
+    bending = np.sqrt((strain**2).mean(axis=0))
+    piece = pieces(template, poses, _ONE)
+    across = piece[edge[:, 0]] != piece[edge[:, 1]]
+    return np.where(across, BETWEEN, 1.0) * yields**2 / (yields**2 + bending)
