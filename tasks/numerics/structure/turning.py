@@ -13,10 +13,13 @@ OUT_OF_ROUND = 0.1
 
 
 def turning_range(turns: Floats) -> float:
-    """The third largest, for two frames that may err, angle in degrees between any two of the rotations (frame, 3, 3)."""
+    """The widest angle in degrees between any two rotations (frame, 3, 3) but those of two frames, which may err.
+
+    Of fewer than 16 frames one may err, of fewer than 8 none.
+    """
     every = turns[:: max(1, len(turns) // POSES)].reshape(-1, 9)
     cosine = (every @ every.T - 1.0) / 2.0
-    rank = min(3, len(every))
+    rank = min(3, 1 + len(every) // 8)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     third = np.sort(angle, axis=1)[:, -rank]
     return float(np.degrees(np.sort(third)[-rank]))

@@ -52,3 +52,8 @@ def test_twist_of_a_round_limb_is_no_way_where_only_its_surface_was_seen() -> No
         bend = about((1.0, 0.0, 0.0), 0.3 * WAVE)
         followed = swing(V, np.ones(len(V)), centre, bend, False)
         assert swing(V, np.ones(len(V)), centre, bend, False, N) == pytest.approx(followed, rel=0.02)
+
+
+def test_two_frames_are_enough_to_have_turned() -> None:
+    assert turning_range(about((0.0, 0.0, 1.0), np.array([0.0, 0.5]))) == pytest.approx(np.rad2deg(0.5))
+    assert turning_range(np.eye(3)[None]) == pytest.approx(0)
