@@ -49,6 +49,7 @@ class Bar(NamedTuple):
     large  : area of a part from which on blends explain it less, and at twice which not at all
     least  : area of a part that must be missed √2 times as much
     loose  : how much its median vertex's own residual counts against it
+    quiet  : mean squared residual that vertices have everywhere, of noise
     floor  : least mean squared residual that tells clearly rigid vertices from others
     """
 
@@ -60,6 +61,7 @@ class Bar(NamedTuple):
     large: float = 0.04
     least: float = 0.004
     loose: float = 1.0
+    quiet: float = 0.0
     floor: float = 1e-10
 
 
@@ -120,7 +122,21 @@ def _score(
         bone = max(long, _ramp(size[p], bar.large))
         fine = np.sqrt(size[p] / (size[p] + bar.least))
         score[p] = fine * missed(
-            body.V, body.N, body.x, body.weight, body.area, member[:count], p, other, touches, R, t, bone, bar.slip, bar.loose
+            body.V,
+            body.N,
+            body.x,
+            body.weight,
+            body.area,
+            member[:count],
+            p,
+            other,
+            touches,
+            R,
+            t,
+            bone,
+            bar.slip,
+            bar.loose,
+            bar.quiet * (1.0 + 2.0 * bar.slip**2) / 3.0,
         )
 
 

@@ -29,6 +29,7 @@ def missed(
     bone: float,
     slip: float,
     loose: float,
+    quiet: float,
 ) -> float:
     """L4 norm over frames of the root mean square of what the part explains and others do not.
 
@@ -45,6 +46,7 @@ def missed(
     bone    : 0 for a part that blends may explain, 1 for one that only single parts may, or between
     slip    : what a displacement along the surface counts against one across it, 0 to 1
     loose   : how much is taken off
+    quiet   : mean squared residual that all vertices have, of noise, and that is not taken off, mesh unit²
     returns : mesh unit
     """
     frames, count = x.shape[0], len(other)
@@ -82,7 +84,7 @@ def missed(
         if mass[f] > 0.0:
             total += mass[f] / full * max(loss[f] / mass[f], 0.0) ** 2
             frames_seen += mass[f] / full
-    return np.sqrt(max(np.sqrt(total / frames_seen) - loose * middle(itself, len(member)), 0.0))
+    return np.sqrt(max(np.sqrt(total / frames_seen) - loose * max(middle(itself, len(member)) - quiet, 0.0), 0.0))
 
 
 @compiled

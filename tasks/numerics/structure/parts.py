@@ -118,9 +118,15 @@ def _raised(bar: Bar, body: Body, patch: Ints, label: Ints, R: Floats, t: Floats
     """The bar, raised where the body is soft, as in cloth, or badly aligned: by the median unevenness of its patches."""
     piece = np.unique(patch * (label.max() + 1) + label, return_inverse=True)[1].reshape(-1)
     stray = unevenness(body.V, body.x, body.area, piece, label, R, t)
-    order = np.argsort(stray, kind="stable")
-    share = np.cumsum(np.bincount(piece, body.area)[order])
-    return bar._replace(missed=max(bar.missed, bar.noise * float(stray[order[np.searchsorted(share, 0.5 * share[-1])]])))
+    uneven = _median(stray, np.bincount(piece, body.area))
+    quiet = _median(misfit(body.V, body.x, body.weight, R, t, label), body.area)
+    return bar._replace(missed=max(bar.missed, bar.noise * uneven), quiet=quiet)
+
+
+def _median(values: Floats, weight: Floats) -> float:
+    order = np.argsort(values, kind="stable")
+    share = np.cumsum(weight[order])
+    return float(values[order[np.searchsorted(share, 0.5 * share[-1])]])
 
 
 def _many(surface: Surface, body: Body, patch: Ints, leaves: Ints, chosen: PartsSettings) -> Ints:

@@ -13,7 +13,7 @@ def asked(x, V, member, R, bone=0.0, slip=1.0):
     t, other = np.zeros((len(x), R.shape[1], 3)), np.array([0, 1])
     N = V * [1, 1, 0] / np.linalg.norm(V[:, :2] + 1e-9, axis=1)[:, None]
     ones = np.ones(x.shape[:2])
-    return missed(V, N, x, ones, np.ones(len(V)), member, 2, other, 2, R, t, bone, slip, 0.0)
+    return missed(V, N, x, ones, np.ones(len(V)), member, 2, other, 2, R, t, bone, slip, 0.0, 0.0)
 
 
 def test_a_slice_that_two_parts_blend_to_is_not_missed_and_a_bone_that_turns_for_itself_is():
