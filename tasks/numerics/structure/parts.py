@@ -118,7 +118,7 @@ def _raised(bar: Bar, body: Body, patch: Ints, label: Ints, R: Floats, t: Floats
     """The bar, raised where the body is soft, as in cloth, or badly aligned: by the median unevenness of its patches."""
     piece = np.unique(patch * (label.max() + 1) + label, return_inverse=True)[1].reshape(-1)
     stray = unevenness(body.V, body.x, body.area, piece, label, R, t)
-    uneven = _median(stray, np.bincount(piece, body.area))
+    uneven = _median(stray, np.bincount(piece, body.area).astype(np.float64))
     quiet = _median(misfit(body.V, body.x, body.weight, R, t, label), body.area)
     return bar._replace(missed=max(bar.missed, bar.noise * uneven), quiet=quiet)
 
