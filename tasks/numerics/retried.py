@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 TURNS = (-120.0, -80.0, -40.0, 40.0, 80.0, 120.0)  # degrees about a piece's longest axis
-BETTER = 0.05  # another turn is taken if it lowers the misfit by this share
+BETTER = 0.2  # another turn is taken if it lowers the misfit by this share
 _LEAST = 0.1  # and differs by more than this, radians
 _NODES, _SAMPLES, _MOST = 6, 20, 150  # a piece needs so many nodes and samples; so many samples are enough
 _COARSE = (3, 0.004)  # steps, and scale as a share of the body's size
