@@ -192,7 +192,18 @@ def _artifact(bench: _Bench, cls: type[Artifact], ref: Ref) -> Artifact:
         return ref.given
     if ref.step is not None and ref.step in bench.made:
         return bench.made[ref.step]
-    return bench.store.read(cls, _digest(bench, ref))
+    return _read(bench.store.url, cls, _digest(bench, ref))
+
+
+def forget_reads() -> None:
+    """Lets go of what was read: a run that begins must see what lies in the store now."""
+    _read.cache_clear()
+
+
+@lru_cache(maxsize=16)
+def _read(url: str, cls: type[Artifact], digest: str) -> Artifact:
+    """What many nodes read in turn, such as the one template of all frames, is read and checked once."""
+    return _store(url).read(cls, digest)
 
 
 @lru_cache(maxsize=8)

@@ -21,7 +21,7 @@ from dask.local import SynchronousExecutor
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.errors import ClusterError, DamagedArtifactError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.events import Watch
-from kinetree.pipeline.execute import Input, Ref, Result, Step, execute
+from kinetree.pipeline.execute import Input, Ref, Result, Step, execute, forget_reads
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.pipeline.store import Store
@@ -83,6 +83,7 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
 
     raises : StoreError, ClusterError where going on makes no sense; KeyboardInterrupt; either way the store is whole
     """
+    forget_reads()
     loop = _Loop(schedule, launch, watch)
     try:
         with _interruptible(loop):

@@ -15,7 +15,7 @@ class PartsParams(Params):
     """Rings in the longest distance from each leaf."""
     patches: int = Field(default=1000, ge=16, le=10_000)
     """Patches that the surface is cut into to begin with."""
-    missed: float = Field(default=0.004, gt=0)
+    missed: float = Field(default=0.0025, gt=0)
     """By how much the motion would be missed without a part, share of the root of the area; more for fewer parts."""
 
 

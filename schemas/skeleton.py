@@ -14,7 +14,7 @@ class SkeletonParams(Params):
 
     degrees: float = Field(default=8.0, ge=0, le=180)
     """A joint turns by at least this many degrees between some two frames, or its parts are one."""
-    ratio: float = Field(default=0.6, ge=0)
+    ratio: float = Field(default=0.8, ge=0)
     """How far turning moves a joint's smaller part, against how far the joint drifts; below it the part slides, like cloth."""
 
 

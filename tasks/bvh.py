@@ -8,6 +8,6 @@ from kinetree.tasks.exports.bvh import bvh as written
 
 @task()
 def bvh(skeleton: Skeleton) -> Bvh:
-    """Writes skeleton.bvh, the motion with constant bone lengths."""
+    """Writes skeleton.bvh, the motion with constant bone lengths (ours)."""
     text, between = written(skeleton)
     return Bvh.of({"skeleton.bvh": text.encode()}, between=between)

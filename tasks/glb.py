@@ -9,7 +9,7 @@ from kinetree.tasks.exports.units import METRES
 
 @task()
 def glb(skeleton: Skeleton, params: GlbParams) -> Glb:
-    """Writes skeleton.glb, the reference mesh skinned to the animated skeleton."""
+    """Writes skeleton.glb, the reference mesh skinned to the animated skeleton (ours)."""
     assumed = ASSUMED_FPS if skeleton.fps is None else None
     scale = params.scale or METRES.get(skeleton.unit or "", 1.0)
     known = "as said" if params.scale else skeleton.unit if skeleton.unit in METRES else None

@@ -13,7 +13,7 @@ from kinetree.tasks.source import name, surface
 
 @task(over="frame", on_request=True)
 def ply(source: Source, projection: Projection, skeleton: Skeleton) -> Ply:
-    """Writes one frame's own mesh with its vertices coloured and numbered by part."""
+    """Writes one frame's own mesh with its vertices coloured and numbered by part (ours)."""
     V, F = surface(source)
     if len(V) != len(projection.face):
         raise MeshError(f"{name(source)}: it has {len(V)} vertices, but {len(projection.face)} were aligned; run again")

@@ -8,5 +8,5 @@ from kinetree.tasks.exports.rignet import rignet as written
 
 @task(on_request=True)
 def rignet(skeleton: Skeleton) -> Rignet:
-    """Writes the rig as RigNet's text, with the mesh it belongs to."""
+    """Writes the rig as RigNet's text, with the mesh it belongs to (ours)."""
     return Rignet.of({f"rignet/{name}": data for name, data in written(skeleton).items()})

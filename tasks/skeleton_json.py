@@ -8,5 +8,5 @@ from kinetree.tasks.exports.document import written
 
 @task()
 def skeleton_json(skeleton: Skeleton) -> SkeletonJson:
-    """Writes skeleton.json, the joint tree and every joint's position in every frame."""
+    """Writes skeleton.json, the joint tree and every joint's position in every frame (ours)."""
     return SkeletonJson.of({"skeleton.json": written(skeleton)})

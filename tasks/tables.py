@@ -8,5 +8,5 @@ from kinetree.tasks.exports.tables import tables as written
 
 @task(on_request=True)
 def tables(skeleton: Skeleton) -> Tables:
-    """Writes CSV tables of trajectories, of angles between bones and of bone lengths."""
+    """Writes CSV tables of trajectories, of angles between bones and of bone lengths (ours)."""
     return Tables.of({f"tables/{name}": data for name, data in written(skeleton).items()})

@@ -8,5 +8,5 @@ from kinetree.tasks.exports.usd import usd as written
 
 @task(on_request=True)
 def usd(skeleton: Skeleton, params: UsdParams) -> Usd:
-    """Writes skeleton.usda, the reference mesh skinned to the animated skeleton."""
+    """Writes skeleton.usda, the reference mesh skinned to the animated skeleton (ours)."""
     return Usd.of({"skeleton.usda": written(skeleton, params)})
