@@ -1,38 +1,100 @@
 """A page of a small body, from artifacts that are known to fit together."""
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 from rigs import skinned, spider
 
 from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.correlation import Correlation
+from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
+from kinetree.schemas.geodesics import Geodesics
 from kinetree.schemas.intervals import Intervals
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.mesh import Cleaning, Mesh
 from kinetree.schemas.projection import Projection
+from kinetree.schemas.reference import Reference
+from kinetree.schemas.sequence import Sequence
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.page.document import Page, Section, document, table
 from kinetree.tasks.page.scene import Limits, Scene, scene
 
 
-def playing(skeleton: Skeleton | None = None, limits: Limits | None = None) -> Scene:
-    """The spider playing: every frame's own mesh is the aligned mesh in another order of vertices."""
+def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
+    """The spider playing."""
+    told = artifacts(skeleton, anew=anew)
+    names = ("skeleton", "alignment", "projection", "mesh", "leaves", "intervals")
+    return scene(*(told[name] for name in names), limits or Limits())
+
+
+def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
+    """All that a report tells of: every frame's own mesh is the aligned mesh in another order of vertices.
+
+    anew : another order in every frame, not one for all
+    """
     skeleton = skeleton or spider()
     frames, x = skeleton.frames, skinned(skeleton)
-    order = np.random.default_rng(0).permutation(len(skeleton.vertices))
-    back = np.argsort(order).astype(np.int32)
+    count, steps = len(skeleton.vertices), len(skeleton.frames) - 1
+    orders = [np.random.default_rng(t if anew else 0).permutation(count) for t in range(len(frames))]
+    zero, one = np.zeros(count), np.ones(count)
+    return {
+        "skeleton": skeleton,
+        "reference": Reference(
+            frames=frames, frame=frames[0], fixed=not anew, leaves=5, free=True, vertices=skeleton.vertices,
+            faces=skeleton.faces, size=float(np.ptp(skeleton.vertices)), score=np.ones(len(frames)),
+            before=np.arange(-1, steps, dtype=np.int32),
+        ),
+        "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
+        "correlation": Correlation(histograms=np.full((len(frames), 4), 0.25), correlation=np.linspace(0.9, 1.0, steps)),
+        "intervals": halves(frames),
+        "leaves": followed(skeleton),
+        "evaluation": unjudged(skeleton),
+        "alignment": {
+            f: Alignment(vertices=x[t], residual=zero, stretch=one, trust=one, uncovered=0.0) for t, f in enumerate(frames)
+        },
+        "projection": {f: _projected(skeleton, order) for f, order in zip(frames, orders, strict=True)},
+        "mesh": {
+            f: Mesh(vertices=x[t][order], faces=np.argsort(order).astype(np.int32)[skeleton.faces],
+                    vertex_of_input=np.arange(count, dtype=np.int32), cleaning=Cleaning())
+            for t, (f, order) in enumerate(zip(frames, orders, strict=True))
+        },
+        "geodesics": {
+            f: Geodesics(mu=np.linalg.norm(x[t][order], axis=1), area=one, bases=np.zeros(1, np.int32), share=1.0)
+            for t, (f, order) in enumerate(zip(frames, orders, strict=True))
+        },
+    }  # fmt: skip
+
+
+def _projected(skeleton: Skeleton, order: npt.NDArray[np.int64]) -> Projection:
+    """Every vertex as the corner of a face that it is."""
     face = np.array([np.flatnonzero((skeleton.faces == v).any(axis=1))[0] for v in order], np.int32)
     share = (skeleton.faces[face] == order[:, None]).astype(np.float64)
-    count = len(order)
-    return scene(
-        skeleton,
-        {f: Alignment(vertices=x[t], residual=np.zeros(count), stretch=np.ones(count), trust=np.ones(count), uncovered=0.0)
-         for t, f in enumerate(frames)},
-        {f: Projection(face=face, share=share, distance=np.zeros(count)) for f in frames},
-        {f: Mesh(vertices=x[t][order], faces=back[skeleton.faces], vertex_of_input=np.arange(count, dtype=np.int32),
-                 cleaning=Cleaning()) for t, f in enumerate(frames)},
-        followed(skeleton),
-        halves(frames),
-        limits or Limits(),
+    return Projection(face=face, share=share, distance=np.zeros(len(order)))
+
+
+def unjudged(skeleton: Skeleton) -> Evaluation:
+    """No truth."""
+    none = np.zeros(len(skeleton.frames))
+    return Evaluation(
+        truth="", frames=skeleton.frames, unit=skeleton.unit, height=0.0, joints=(), spurious=(), true_frames=0,
+        summary=None, error=np.zeros((len(none), 0)), detection=none, distance=none,
+    )  # fmt: skip
+
+
+def judged(skeleton: Skeleton) -> Evaluation:
+    """One joint found, one not."""
+    steps = len(skeleton.frames)
+    off = np.stack([np.linspace(0.1, 0.3, steps), np.full(steps, np.nan)], axis=1)
+    rows = (
+        JointScore(name="shoulder", scored=True, turns=50.0, found="arm", mean=0.2, deviation=0.06, worst=0.3, percent=1.25),
+        JointScore(name="elbow <i>", scored=True, turns=40.0, nearest=9.0),
     )
+    return Evaluation(
+        truth="truth.json", frames=skeleton.frames, unit=skeleton.unit, height=16.0, joints=rows, spurious=("knee",),
+        true_frames=steps, summary=Summary(scored=2, found=1, missing=1, spurious=1, percent=1.25), error=off,
+        detection=np.full(steps, 0.5), distance=np.full(steps, 0.0125),
+    )  # fmt: skip
 
 
 def followed(skeleton: Skeleton) -> Leaves:
@@ -43,9 +105,7 @@ def followed(skeleton: Skeleton) -> Leaves:
     none = np.zeros(0, np.int32)
     rows = np.zeros(positions.shape[:2], np.int32)
     kept = np.ones((2, len(tips)), np.bool_)
-    return Leaves(
-        frames=skeleton.frames, rows=rows, positions=positions, kept=kept, lost=none, lost_begin=none, lost_end=none
-    )
+    return Leaves(frames=skeleton.frames, rows=rows, positions=positions, kept=kept, lost=none, lost_begin=none, lost_end=none)
 
 
 def halves(frames: tuple[int, ...]) -> Intervals:

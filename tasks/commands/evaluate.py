@@ -13,6 +13,7 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, out, print_json
 from kinetree.pipeline.printable import printable
 from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
+from kinetree.tasks.plots.drawing import verbatim
 from kinetree.tasks.plots.evaluation import drawn
 
 EXAMPLES = (
@@ -133,7 +134,7 @@ def _draw(told: Evaluation, path: Path) -> None:
     """Draws into a file, complete or not at all."""
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
-        drawn(told).savefig(beside, dpi=150, bbox_inches="tight")
+        verbatim(drawn(told)).savefig(beside, dpi=150, bbox_inches="tight")
         beside.replace(path)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error

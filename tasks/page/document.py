@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from kinetree.schemas.report import RUN
 from kinetree.tasks.page.scene import Scene
+from kinetree.tasks.plots.drawing import verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
 
 @dataclass(frozen=True)
 class Section:
@@ -51,9 +53,7 @@ def document(page: Page) -> str:
             for n, i in enumerate(page.scene.told["intervals"])
         ),
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
-        "sections": "".join(
-            f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections
-        ),
+        "sections": "".join(f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections),
         "scene": as_script(page.scene.told),
         "payload": page.scene.block,
         "run": RUN,
@@ -95,9 +95,9 @@ def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
     out = io.BytesIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
         if vector:
-            drawn.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+            verbatim(drawn).savefig(out, format="svg", metadata={"Date": None, "Creator": None})
         else:
-            drawn.savefig(out, format="png", dpi=110, metadata={"Software": None})
+            verbatim(drawn).savefig(out, format="png", dpi=110, metadata={"Software": None})
     kind = "svg+xml" if vector else "png"
     data = base64.b64encode(out.getvalue()).decode()
     return (

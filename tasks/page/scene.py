@@ -69,7 +69,8 @@ def scene(
     axes = view([meshes[frame].vertices for frame in frames], up)
     kept, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([aligned[frame].vertices[kept] @ axes for frame in frames])
-    sights = [_sight(meshes[f], projections[f], skeleton, limits.sighted) for f in frames]
+    sights = _sights([meshes[f] for f in frames], [projections[f] for f in frames], skeleton, limits.sighted)
+    own = [s.faces for s, t in zip(sights, [None, *sights], strict=False) if t is None or s.faces is not t.faces]
     corners = [positions.reshape(-1, 3), *(s.vertices @ axes for s in sights)]
     low, high = np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)
     lattice = Lattice.around(low, high)
@@ -79,10 +80,10 @@ def scene(
         "label": skeleton.label[kept].astype(np.int16),
         "joints": (skeleton.positions[shown] @ axes).astype(np.float32),
         "input_vertices": lattice.levels(np.concatenate([s.vertices for s in sights]) @ axes),
-        "input_faces": np.concatenate([s.faces for s in sights]).astype(np.uint32),
+        "input_faces": np.concatenate(own).astype(np.uint32),
         "input_label": np.concatenate([s.label for s in sights]).astype(np.int16),
         "input_vertex_offsets": _offsets([len(s.vertices) for s in sights]),
-        "input_face_offsets": _offsets([len(s.faces) for s in sights]),
+        "input_face_spans": _spans([s.faces for s in sights]),
     }
     if len(leaves.positions):
         at = [leaves.frames.index(frame) for frame in frames]
@@ -115,14 +116,23 @@ class _Sight(NamedTuple):
     label: Ints
 
 
-def _sight(mesh: Mesh, projection: Projection, skeleton: Skeleton, count: int) -> _Sight:
-    """One frame's own mesh, coarser, with the labels that come back to its vertices."""
-    kept, faces = decimated(np.array(mesh.vertices), mesh.faces, count)
-    label = np.full(len(mesh.vertices), -1, np.int64)
-    seen = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
-    corner = np.argmax(projection.share, axis=1)
-    label[mesh.vertex_of_input[seen]] = skeleton.label[skeleton.faces[projection.face[seen], corner[seen]]]
-    return _Sight(np.asarray(mesh.vertices)[kept], faces, label[kept])
+def _sights(meshes: list[Mesh], projections: list[Projection], skeleton: Skeleton, count: int) -> list[_Sight]:
+    """Every frame's own mesh, coarser, with the labels that come back to its vertices.
+
+    Frames of the same faces are made coarser alike and share them, so that a page holds them once.
+    """
+    sights: list[_Sight] = []
+    last, kept, faces = None, np.zeros(0, np.int64), np.zeros((0, 3), np.int64)
+    for mesh, projection in zip(meshes, projections, strict=True):
+        if last is None or not np.array_equal(mesh.faces, last):
+            last = mesh.faces
+            kept, faces = decimated(np.array(mesh.vertices), mesh.faces, count)
+        label = np.full(len(mesh.vertices), -1, np.int64)
+        seen = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
+        corner = np.argmax(projection.share, axis=1)
+        label[mesh.vertex_of_input[seen]] = skeleton.label[skeleton.faces[projection.face[seen], corner[seen]]]
+        sights.append(_Sight(np.asarray(mesh.vertices)[kept], faces, label[kept]))
+    return sights
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], str]:
@@ -143,6 +153,14 @@ def _offsets(counts: list[int]) -> NDArray[np.uint32]:
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
 
 
+def _spans(faces: list[Ints]) -> NDArray[np.uint32]:
+    """(frame, 2) where each frame's faces begin and end where those that are the very same as the last are held once."""
+    spans = [(0, 0)]
+    for k, F in enumerate(faces):
+        spans.append(spans[-1] if k and F is faces[k - 1] else (spans[-1][1], spans[-1][1] + len(F)))
+    return np.array(spans[1:], np.uint32)
+
+
 def _starts(intervals: Intervals, frames: tuple[int, ...], shown: Ints) -> list[dict[str, int]]:
     """Where each interval begins, as a number of the frame and as its place among those shown."""
     starts = []
@@ -152,9 +170,7 @@ def _starts(intervals: Intervals, frames: tuple[int, ...], shown: Ints) -> list[
     return starts
 
 
-def _omitted(
-    skeleton: Skeleton, meshes: Mapping[int, Mesh], frames: list[int], kept: int, limits: Limits
-) -> tuple[str, ...]:
+def _omitted(skeleton: Skeleton, meshes: Mapping[int, Mesh], frames: list[int], kept: int, limits: Limits) -> tuple[str, ...]:
     told = []
     if len(frames) < len(skeleton.frames):
         told.append(f"{len(frames)} of {len(skeleton.frames)} frames play here")

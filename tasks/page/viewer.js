@@ -176,7 +176,7 @@ class Player {
     const { arrays, scene } = this;
     if (!arrays.input_vertices || !this.input.mesh.visible) return;
     const [v, w] = [arrays.input_vertex_offsets[this.at], arrays.input_vertex_offsets[this.at + 1]];
-    const [f, g] = [arrays.input_face_offsets[this.at], arrays.input_face_offsets[this.at + 1]];
+    const [f, g] = [arrays.input_face_spans[2 * this.at], arrays.input_face_spans[2 * this.at + 1]];
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(dequantised(arrays.input_vertices, v, w - v, scene, new Float32Array(3 * (w - v))), 3));
     geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays.input_label, v, w - v, scene.palette), 3));

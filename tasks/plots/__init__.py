@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.plots.alignment import alignment
-from kinetree.tasks.plots.drawing import Fetch
+from kinetree.tasks.plots.drawing import Fetch, verbatim
 from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
@@ -38,7 +38,7 @@ def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None 
         raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    figure = WHAT[what](fetch, frames, up)
+    figure = verbatim(WHAT[what](fetch, frames, up))
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
         figure.savefig(beside, dpi=150, bbox_inches="tight")

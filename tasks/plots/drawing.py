@@ -27,6 +27,15 @@ def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tupl
     return figure, figure.subplots(rows, columns)
 
 
+def verbatim(figure: "Figure") -> "Figure":
+    """The figure, no name or unit in it read as a formula."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+    return figure
+
+
 def view(bodies: list[Floats], up: int | None) -> Floats:
     """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
 
@@ -60,8 +69,8 @@ def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
     order = order[towards[order] > 0] if (towards > 0).any() else order
     shaded = colour.copy()
     shaded[:, :3] *= (0.45 + 0.55 * np.clip(towards, 0, 1))[:, None]
-    flat = list(corners[order, :, :2])
-    axes.add_collection(PolyCollection(flat, facecolors=shaded[order], edgecolors="face", linewidths=0.1))
+    flat: Any = corners[order, :, :2]
+    axes.add_collection(PolyCollection(flat, facecolors=shaded[order], edgecolors="face", linewidths=0.1), autolim=False)
     axes.set(aspect="equal", xlim=limits(X[:, 0]), ylim=limits(X[:, 1]))
     axes.set_axis_off()
 

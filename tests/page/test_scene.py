@@ -53,9 +53,26 @@ def test_labels_come_back_to_the_users_own_vertices(found):
 
 def test_faces_of_every_input_mesh_stay_among_its_own_vertices(found):
     arrays = unpacked(found)
-    v, f = arrays["input_vertex_offsets"].astype(int), arrays["input_face_offsets"].astype(int)
-    for t in range(len(found.told["frames"])):
-        assert arrays["input_faces"][f[t] : f[t + 1]].max() < v[t + 1] - v[t]
+    v = arrays["input_vertex_offsets"].astype(int)
+    for t, (begin, end) in enumerate(arrays["input_face_spans"].astype(int)):
+        assert 0 <= arrays["input_faces"][begin:end].min() <= arrays["input_faces"][begin:end].max() < v[t + 1] - v[t]
+
+
+@pytest.mark.parametrize("limits", [None, Limits(frames=5, vertices=100, sighted=100)])
+def test_faces_that_stay_the_same_are_held_once(limits):
+    arrays = unpacked(playing(limits=limits))
+    assert len(arrays["input_face_spans"]) > 1
+    assert (arrays["input_face_spans"] == [0, len(arrays["input_faces"])]).all()
+
+
+def test_faces_that_change_are_held_for_every_frame():
+    arrays = unpacked(playing(anew=True))
+    spans = arrays["input_face_spans"].astype(int)
+    assert (spans[1:, 0] == spans[:-1, 1]).all()
+    assert spans[-1, 1] == len(arrays["input_faces"])
+    for t, (begin, end) in enumerate(spans):
+        v = arrays["input_vertex_offsets"].astype(int)[t : t + 2]
+        assert arrays["input_faces"][begin:end].max() == v[1] - v[0] - 1
 
 
 def test_what_is_left_out_is_said():

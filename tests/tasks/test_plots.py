@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pages import artifacts, judged
+from rigs import spider
 
-from kinetree.pipeline import Pipeline
 from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.plots import WHAT, draw
 from kinetree.tasks.plots.drawing import view
@@ -15,15 +16,9 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 
 @pytest.fixture(scope="module")
-def fetch(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    out = tmp_path_factory.mktemp("plots")
-    touch = {"limb": "hand_r", "target": "hip_r", "begin": 4, "end": 8}
-    synth = {"figure": "human", "frames": 12, "vertices": 900, "contacts": [touch]}
-    told = {"output": str(out), "source": {"synth": synth}, "geodesics": {"bases": 30}, "compute": {"executor": "sync"}}
-    pipeline = Pipeline.of(told)
-    assert pipeline.run()["status"] == "done"
-    schedule = pipeline.schedule()
-    return lambda name, **index: pipeline.artifact(name, within=schedule, **index)
+def fetch() -> Any:
+    told = artifacts() | {"evaluation": judged(spider())}
+    return lambda name, frame=None: told[name] if frame is None else told[name][frame]
 
 
 @pytest.mark.parametrize("what", sorted(WHAT))
@@ -35,13 +30,19 @@ def test_every_picture_is_drawn_in_every_format(fetch: Any, tmp_path: Path, what
 
 
 def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(fetch: Any, tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="there are: correlation, mu"):
-        draw("skeleton", fetch, [0], tmp_path / "a.png")
+    with pytest.raises(ConfigError, match="there are: .*correlation, .*mu"):
+        draw("skelton", fetch, [0], tmp_path / "a.png")
     with pytest.raises(ConfigError, match=r"pictures end in \.png"):
         draw("mu", fetch, [0], tmp_path / "a.gif")
     with pytest.raises(ConfigError, match="cannot be written"):
         draw("mu", fetch, [0], tmp_path / "missing" / "a.png")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_words_from_outside_are_no_formulas(fetch: Any, tmp_path: Path) -> None:
+    body = spider(unit=r"$\frac$", names=(r"$\bad{", *spider().names[1:]))
+    draw("tree", lambda name, frame=None: body if name == "skeleton" else fetch(name, frame), [0], tmp_path / "a.svg")
+    assert r"$\bad{" in (tmp_path / "a.svg").read_text()
 
 
 @pytest.mark.parametrize("up", [0, 1, 2])
