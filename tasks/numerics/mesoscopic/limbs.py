@@ -92,7 +92,8 @@ def limbs(seen: list[Seen], cuts: list[Cut], threshold: float) -> Limbs:
         np.array([r[limb] for limb in range(number)], np.int64).reshape(number, len(s.area))
         for r, s in zip(ring, seen, strict=True)
     )
-    return Limbs(rows, np.array([[at.get(limb, -1) for limb in range(number)] for at in leaf]).reshape(len(seen), number))
+    leaves = np.array([[at.get(limb, -1) for limb in range(number)] for at in leaf], np.int64)
+    return Limbs(rows, leaves.reshape(len(seen), number))
 
 
 def carry(ring: Ints, source: Ints) -> Ints:

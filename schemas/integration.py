@@ -1,0 +1,25 @@
+"""Kinematic cones that hold in all intervals (2014, Sec. 6.1.3; Fig. 12)."""
+
+from typing import Annotated
+
+from kinetree.schemas.array import Array, Artifact, Bools, Ints
+from kinetree.schemas.dims import ANNULUS, CONE, RUNG
+
+
+class Integration(Artifact):
+    """The rigid annuli of every cone: those that are rigid in all intervals."""
+
+    floor: float
+    """Below which errors are noise, share of the root of the area."""
+    theta: float
+    """θ_r, the threshold of Eq. 12."""
+    rigid: Annotated[Bools, Array("bool", CONE, ANNULUS)]
+    """Whether annulus k of each cone is rigid; true beyond a cone's last."""
+    clusters: Annotated[Ints, Array("int32", RUNG)]
+    """Rigid areas that each threshold gives, in all cones together (Fig. 11)."""
+
+    def remarks(self) -> tuple[str, ...]:
+        """The threshold, where it was chosen."""
+        if len(self.clusters) < 2:
+            return ()
+        return (f"merge-error threshold {self.theta:g}: it gives the most rigid areas, {self.clusters.max()}",)

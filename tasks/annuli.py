@@ -1,0 +1,29 @@
+"""The annuli of one cone in one interval, clustered."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.annuli import Annuli, AnnuliParams
+from kinetree.schemas.limb import Limb
+from kinetree.schemas.middle import Middle
+from kinetree.tasks.numerics.mesoscopic.clustering import clustered
+
+
+@task(over="interval/cone")
+def annuli(limb: Limb, middle: Middle, alignment: Mapping[int, Alignment], params: AnnuliParams) -> Annuli:
+    """Clusters annuli that move as one, from the leaf on, by the ratio of cast- to self-error (2014, Eqs. 9 to 12)."""
+    used = np.unique(limb.ring[limb.ring >= 0])
+    inside = np.flatnonzero(limb.ring >= 0)
+    x = np.stack([a.vertices[inside] for a in alignment.values()])
+    parts = [np.ascontiguousarray(x[:, limb.ring[inside] == k]) for k in used]
+    found = [clustered(parts, theta, params.floor * middle.size) for theta in params.thresholds]
+    return Annuli(
+        floor=params.floor,
+        theta=np.array(params.thresholds),
+        annulus=used,
+        rigid=np.array([f.rigid for f in found]).reshape(len(found), len(used)),
+        merge=np.array([f.merge for f in found]).reshape(len(found), len(used)),
+    )

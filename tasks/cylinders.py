@@ -1,0 +1,78 @@
+"""The whole surface as areas of kinematic cones and cylinders."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.array import Bools, Floats
+from kinetree.schemas.consistency import Consistency
+from kinetree.schemas.crossing import Crossing
+from kinetree.schemas.cylinders import Cylinders
+from kinetree.schemas.integration import Integration
+from kinetree.schemas.middle import Middle
+from kinetree.tasks.consistency import cuts_of
+from kinetree.tasks.numerics.mesoscopic import cylinders as numerics
+from kinetree.tasks.numerics.mesoscopic.areas import areas
+from kinetree.tasks.numerics.mesoscopic.clustering import clustered
+from kinetree.tasks.numerics.mesoscopic.integration import integrated
+from kinetree.tasks.numerics.mesoscopic.transfer import way
+
+Ints = NDArray[np.int64]
+
+
+@task()
+def cylinders(
+    middle: tuple[Middle, ...],
+    alignment: tuple[Alignment, ...],
+    consistency: Consistency,
+    crossing: Crossing,
+    integration: Integration,
+) -> Cylinders:
+    """Extends cones into what they leave undefined, again and again, until all of the surface is defined (2014, Sec. 6.2)."""
+    home = _fullest(middle, consistency)
+    here = middle[home]
+    count, F = len(here.vertices), here.faces.astype(np.int64)
+    cones = numerics.trimmed(consistency.ring[:, consistency.rows(home)].astype(np.int64), integration.rigid)
+    ways = ways_to(home, middle, crossing)
+    moving = motions(middle, alignment)
+    floors = [integration.floor * m.size for m in middle]
+
+    def cluster(annuli: list[Ints]) -> Bools:
+        label = np.full(count, -1)
+        for k, mine in enumerate(annuli):
+            label[mine] = k
+        seen, rigid = [], []
+        for x, back, floor in zip(moving, ways, floors, strict=True):
+            at = np.where(back >= 0, label[back], -1)
+            seen.append(np.unique(at[at >= 0]))
+            rigid.append(clustered([x[:, at == k] for k in seen[-1]], integration.theta, floor).rigid)
+        return integrated(seen, rigid, len(annuli))
+
+    leaf = consistency.leaf[home]
+    distance = np.where((leaf >= 0)[:, None], here.distance[leaf], np.nan) if len(leaf) else np.zeros((0, count))
+    found = numerics.cylinders(cones, distance, here.area, F, cluster, consistency.annuli)
+    annulus = np.full(count, -1)
+    for piece in (*cones, *found):
+        annulus = np.where(piece.ring >= 0, piece.ring, annulus)
+    whole = areas([*cones, *found], count, F)
+    return Cylinders(interval=home, cones=len(cones), annulus=annulus, **whole._asdict())
+
+
+def ways_to(home: int, middle: tuple[Middle, ...], crossing: Crossing) -> list[Ints]:
+    """Of every interval, the vertex of the home interval's reference at each of its own."""
+    cuts = cuts_of(crossing)
+    onward, backward = [c.onward for c in cuts], [c.backward for c in cuts]
+    return [way(onward, backward, i, home, len(m.vertices)) for i, m in enumerate(middle)]
+
+
+def motions(middle: tuple[Middle, ...], alignment: tuple[Alignment, ...]) -> list[Floats]:
+    """Of every interval, (frame, vertex, xyz) its reference in all of its frames."""
+    end = np.cumsum([len(m.frames) for m in middle])
+    return [np.stack([a.vertices for a in alignment[e - len(m.frames) : e]]) for m, e in zip(middle, end, strict=True)]
+
+
+def _fullest(middle: tuple[Middle, ...], consistency: Consistency) -> int:
+    """The interval in which most cones are seen, of these the longest, of these the first."""
+    seen = (consistency.leaf >= 0).sum(axis=1)
+    return max(range(len(middle)), key=lambda i: (seen[i], len(middle[i].frames), -i))
