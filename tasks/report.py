@@ -1,6 +1,6 @@
 """One page that shows what a run found: the body playing, the curves and the tables a person needs to trust it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from html import escape
 from typing import Any
 
@@ -21,16 +21,15 @@ from kinetree.schemas.sequence import Sequence
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.numerics.scene import spread
 from kinetree.tasks.page.document import Page, Section, document, picture, table
+from kinetree.tasks.page.heed import counted, heeded, off
 from kinetree.tasks.page.scene import Limits, scene
 from kinetree.tasks.plots.alignment import alignment as alignment_figure
 from kinetree.tasks.plots.evaluation import drawn as errors_figure
 from kinetree.tasks.plots.macroscopic import correlation as correlation_figure
 from kinetree.tasks.plots.macroscopic import mu as mu_figure
+from kinetree.tasks.plots.motion import angles, length_variation
 from kinetree.tasks.plots.structure import confidence, tree
 from kinetree.tasks.plots.structure import skeleton as skeleton_figure
-
-SHORT = 5
-"""Frames below which an interval is worth a warning."""
 
 
 @task()
@@ -59,12 +58,12 @@ def report(
     up = None if params.up is None else "xyz".index(params.up)
     frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
     page = Page(
-        title=params.title or f"kinetree: {skeleton.kinds.count('joint')} joints in {len(skeleton.frames)} frames",
-        facts=_facts(skeleton, sequence, reference, intervals),
-        warnings=list(_warnings(skeleton, intervals, leaves, alignment, mesh)),
+        title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
+        facts=_facts(skeleton, sequence, reference, intervals, alignment),
+        warnings=heeded(skeleton, intervals, leaves, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals)),
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, alignment)),
             *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
             Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
             Section("alignment", "Alignment", _aligned(fetch, frames, up)),
@@ -73,7 +72,15 @@ def report(
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
-def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton, intervals: Intervals) -> str:
+def _structure(
+    fetch: Any,
+    frames: list[int],
+    up: int | None,
+    skeleton: Skeleton,
+    intervals: Intervals,
+    aligned: Mapping[int, Alignment],
+) -> str:
+    varies = 100 * length_variation(skeleton, aligned)
     unit = skeleton.unit or "unit of the input"
     rows = [
         (
@@ -81,6 +88,7 @@ def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton
             skeleton.kinds[j],
             skeleton.names[parent] if parent >= 0 else "–",
             float(skeleton.lengths[j]),
+            f"{varies[j]:.2g}" if np.isfinite(varies[j]) else "–",
             float(skeleton.degrees[j]),
             float(skeleton.drift[j]),
             int(skeleton.support[j]),
@@ -89,12 +97,27 @@ def _structure(fetch: Any, frames: list[int], up: int | None, skeleton: Skeleton
         )
         for j, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True))
     ]
-    head = ("joint", "kind", "parent", "bone", "turns, °", "parts disagree by", "frames", "intervals", "confidence")
+    head = (
+        "joint",
+        "kind",
+        "parent",
+        "bone",
+        "varies by, %",
+        "turns, °",
+        "parts disagree by",
+        "frames",
+        "intervals",
+        "confidence",
+    )
     return (
         picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
         + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
         + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
-        + f"<p>Lengths in {escape(unit)}; intervals are those in which a joint's confidence is at least a half.</p>"
+        + picture(
+            angles(fetch, frames, up), "Turning of every joint since the reference pose; bold where confidence is below a half."
+        )
+        + f"<p>Lengths in {escape(unit)}; they vary by so much over the frames where every part is followed by itself, before"
+        + " they are fixed. Intervals are those in which a joint's confidence is at least a half.</p>"
         + table(head, rows)
     )
 
@@ -137,46 +160,20 @@ def _aligned(fetch: Any, frames: list[int], up: int | None) -> str:
     return picture(alignment_figure(fetch, frames, up), caption, vector=False)
 
 
-def _facts(skeleton: Skeleton, sequence: Sequence, reference: Reference, intervals: Intervals) -> list[tuple[str, str]]:
+def _facts(
+    skeleton: Skeleton,
+    sequence: Sequence,
+    reference: Reference,
+    intervals: Intervals,
+    aligned: Mapping[int, Alignment],
+) -> list[tuple[str, str]]:
     return [
         ("frames", str(len(skeleton.frames))),
         ("joints", str(skeleton.kinds.count("joint"))),
         ("ends of bones", str(skeleton.kinds.count("leaf"))),
         ("intervals", str(len(intervals.begin))),
         ("reference frame", str(reference.frame)),
+        ("skin off the aligned meshes by", f"{100 * off(skeleton, aligned):.2g} % of the body's diagonal"),
         ("unit", sequence.unit or "not known"),
         ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),
     ]
-
-
-def _warnings(
-    skeleton: Skeleton, intervals: Intervals, leaves: Leaves, aligned: Mapping[int, Alignment], meshes: Mapping[int, Mesh]
-) -> Iterator[str]:
-    """What a person should know before believing the page, in plain words."""
-    if "joint" not in skeleton.kinds:
-        yield from skeleton.remarks()
-    doubted = [str(frame) for frame, a in aligned.items() if float(np.mean(a.trust)) < 0.5]
-    if doubted:
-        yield f"the alignment is not trusted in {_some(doubted, 'frame')}; poses there come from the whole model"
-    weak = [n for n, k, s in zip(skeleton.names, skeleton.kinds, skeleton.support, strict=True) if k == "joint" and s < SHORT]
-    if weak:
-        yield f"little support, seen in fewer than {SHORT} frames: {_some(weak, 'joint')}"
-    low = [
-        name
-        for j, name in enumerate(skeleton.names)
-        if skeleton.kinds[j] == "joint" and float(skeleton.confidence[:, j].mean()) < 0.5
-    ]
-    if low:
-        yield f"low confidence: {_some(low, 'joint')}"
-    yield from (text for text in leaves.remarks() if "not seen" in text or "no leaves" in text)
-    for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
-        if end - begin + 1 < SHORT < len(intervals.frames):
-            yield f"interval {number} is short: {end - begin + 1} frames from frame {intervals.frames[int(begin)]}"
-    removed = [str(frame) for frame, m in meshes.items() if m.cleaning.components > m.cleaning.components_kept]
-    if removed:
-        yield f"components that are not the body were removed in {_some(removed, 'frame')}"
-
-
-def _some(names: list[str], what: str, most: int = 12) -> str:
-    rest = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{what}{'s' if len(names) > 1 else ''} {', '.join(names[:most])}{rest}"

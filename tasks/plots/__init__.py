@@ -9,6 +9,7 @@ from kinetree.tasks.plots.alignment import alignment
 from kinetree.tasks.plots.drawing import Fetch, verbatim
 from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
+from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
     "skeleton": skeleton,
     "tree": tree,
     "confidence": confidence,
+    "angles": angles,
     "errors": evaluation,
 }
 """What can be drawn, by the word of the command line."""

@@ -7,6 +7,7 @@ from matplotlib.colors import to_rgba
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.exports.rig import skinned
 from kinetree.tasks.numerics.scene import shades
 from kinetree.tasks.plots.drawing import BEHIND, COLOURS, Fetch, blank, surface, view
 
@@ -22,10 +23,10 @@ def skeleton(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure"
     """Parts and skeleton on the aligned mesh, one view a frame; white where the surface is not rigid."""
     found = fetch("skeleton")
     figure, row = blank(3.4 * len(frames), 4.6, len(frames))
-    axis = view([_posed(found, frame) for frame in frames], up)
+    axis = view([skinned(found, found.frames.index(frame)) for frame in frames], up)
     colour = part_colours(found)
     for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
-        surface(axes, _posed(found, frame) @ axis, found.faces, colour)
+        surface(axes, skinned(found, found.frames.index(frame)) @ axis, found.faces, colour)
         bones(axes, found, found.positions[found.frames.index(frame)] @ axis)
         axes.set_title(f"frame {frame}", fontsize=9)
     return figure
@@ -57,9 +58,7 @@ def confidence(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figur
     found = fetch("skeleton")
     inner = [j for j, kind in enumerate(found.kinds) if kind != "leaf"]
     figure, (axes, beside) = blank(10.0, max(2.5, 0.25 * len(inner) + 1.2), columns=2)
-    picture = axes.imshow(
-        found.confidence[:, inner].T, aspect="auto", vmin=0, vmax=1, cmap="cividis", interpolation="nearest"
-    )
+    picture = axes.imshow(found.confidence[:, inner].T, aspect="auto", vmin=0, vmax=1, cmap="cividis", interpolation="nearest")
     figure.colorbar(picture, ax=axes, label="confidence")
     ticks = np.unique(np.linspace(0, len(found.frames) - 1, 8).astype(int))
     axes.set(yticks=range(len(inner)), xlabel="frame", xticks=ticks, xticklabels=[found.frames[t] for t in ticks])
@@ -92,17 +91,6 @@ def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
     for j, kind in enumerate(found.kinds):
         marker, size, colour = shape[kind]
         axes.plot(*X[j, :2], marker, ms=size, color=colour, mec="white", mew=0.4, zorder=4)
-
-
-def _posed(found: Skeleton, frame: int) -> Floats:
-    """(vertex, xyz) the surface as it follows the skeleton."""
-    t = found.frames.index(frame)
-    out = np.zeros_like(found.vertices)
-    for i in range(found.influence.shape[1]):
-        j = found.influence[:, i]
-        turned = np.einsum("vxy,vy->vx", found.rotation[t, j], found.vertices - found.rest[j])
-        out += found.weight[:, i : i + 1] * (turned + found.positions[t, j])
-    return out
 
 
 def _layout(parents: tuple[int, ...]) -> Floats:

@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from pages import artifacts, judged
-from rigs import spider
+from rigs import skinned, spider
 
+from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.mesh import Cleaning
 from kinetree.schemas.report import RUN, ReportParams
 from kinetree.tasks.report import report
@@ -85,6 +87,30 @@ def test_body_without_joints_says_that_it_is_one_rigid_part() -> None:
     told = page(skeleton=spider(kinds=kinds))
     assert any("one rigid part" in text for text in heeded(told))
     assert "0 joints in 12 frames" in told
+
+
+def test_ring_is_said_to_be_no_tree_and_a_skin_that_does_not_follow_to_explain_nothing(plain: str) -> None:
+    assert not any("handle" in text or "explain" in text for text in heeded(plain))
+    ring = trimesh.creation.torus(3.0, 1.0, major_sections=24, minor_sections=12)
+    count = len(ring.vertices)
+    zero = np.zeros((count, 4))
+    body = spider(
+        vertices=np.array(ring.vertices), faces=ring.faces.astype(np.int32), label=np.zeros(count, np.int32),
+        influence=zero.astype(np.int32), weight=zero + [1, 0, 0, 0],
+    )  # fmt: skip
+    one, rest = np.ones(count), skinned(body)
+    grows = {
+        f: Alignment(vertices=rest[t] * (1 + 0.1 * t), residual=0 * one, stretch=one, trust=one, uncovered=0.0)
+        for t, f in enumerate(body.frames)
+    }
+    said = heeded(page(skeleton=body, alignment=grows))
+    assert any("1 handle, as a ring has" in text for text in said)
+    assert any("does not explain the motion" in text for text in said)
+
+
+def test_two_frames_are_said_to_be_few() -> None:
+    two = {name: getattr(spider(), name)[:2] for name in ("frames", "positions", "rotation", "confidence")}
+    assert any(text.startswith("2 frames only") for text in heeded(page(skeleton=spider(**two))))
 
 
 def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
