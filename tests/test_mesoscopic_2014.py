@@ -1,0 +1,155 @@
+"""The 2014 paper from end to end: from meshes to a tree of joints, and what becomes of it."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+from kinetree.pipeline import Pipeline
+from kinetree.pipeline.graph import Graph
+from kinetree.tasks.annuli import annuli
+from kinetree.tasks.arap import arap
+from kinetree.tasks.bones import bones
+from kinetree.tasks.bvh import bvh
+from kinetree.tasks.cones import cones
+from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.consistency import consistency
+from kinetree.tasks.coordinates import coordinates
+from kinetree.tasks.correlation import correlation
+from kinetree.tasks.crossing import crossing
+from kinetree.tasks.cylinders import cylinders
+from kinetree.tasks.distribution import distribution
+from kinetree.tasks.evaluation import evaluation
+from kinetree.tasks.geodesics import geodesics
+from kinetree.tasks.glb import glb
+from kinetree.tasks.integration import integration
+from kinetree.tasks.intervals import intervals
+from kinetree.tasks.kinematic_structure import kinematic_structure
+from kinetree.tasks.landed_projection import landed_projection
+from kinetree.tasks.landing import landing
+from kinetree.tasks.leaves import leaves
+from kinetree.tasks.limb import limb
+from kinetree.tasks.matching import matching
+from kinetree.tasks.mesh import mesh
+from kinetree.tasks.middle import middle
+from kinetree.tasks.plots.mesoscopic import cones as drawn_cones
+from kinetree.tasks.plots.mesoscopic import merging
+from kinetree.tasks.ply import ply
+from kinetree.tasks.rignet import rignet
+from kinetree.tasks.sequence import sequence
+from kinetree.tasks.skeleton_json import skeleton_json
+from kinetree.tasks.source import source
+from kinetree.tasks.tables import tables
+from kinetree.tasks.tips import tips
+from kinetree.tasks.truth import truth
+from kinetree.tasks.usd import usd
+
+MESOSCOPIC_2014 = (
+    source,  # Sec. 3
+    sequence,
+    mesh,
+    connectivity,  # Sec. 7
+    geodesics,  # Sec. 4, Eq. 1
+    distribution,
+    correlation,  # Eq. 2
+    tips,  # Sec. 5.1
+    intervals,  # Sec. 4
+    leaves,  # Sec. 5.1, Eq. 3
+    coordinates,  # Sec. 5.2, Eq. 4
+    middle,  # Sec. 5.3
+    matching,  # Eqs. 5 and 6
+    arap,
+    crossing,  # for Sec. 6.1.1
+    cones,  # Sec. 6.1.1.1
+    consistency,  # Sec. 6.1.1.2 to 6.1.1.4, Eqs. 7 and 8
+    limb,
+    annuli,  # Sec. 6.1.2, Eqs. 9 to 12
+    integration,  # Sec. 6.1.3
+    cylinders,  # Sec. 6.2
+    bones,  # Sec. 6.3
+    kinematic_structure,
+    landing,
+    landed_projection,
+    truth,
+    evaluation,  # Sec. 7
+    glb,
+    bvh,
+    skeleton_json,
+    tables,
+    ply,
+    rignet,
+    usd,
+)
+METHODS = {"mesoscopic-2014": Graph.of(MESOSCOPIC_2014)}
+TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
+HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
+
+
+def ran(output: Path, executor: str = "sync", **blocks: Any) -> Pipeline:
+    given = {"method": "mesoscopic-2014", "output": str(output), "compute": {"executor": executor}, **blocks}
+    pipeline = Pipeline.of(given, methods=METHODS)
+    assert pipeline.run()["status"] == "done"
+    return pipeline
+
+
+@pytest.fixture(scope="module")
+def human(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
+    return ran(tmp_path_factory.mktemp("human"), source={"synth": HUMAN}, geodesics={"bases": 30})
+
+
+def test_human_whose_hand_touches_the_hip_becomes_one_tree_with_a_pose_in_every_frame(human: Pipeline) -> None:
+    found: Any = human.artifact("kinematic_structure")
+    assert found.frames == tuple(range(13))
+    assert found.kinds.count("leaf") == 5
+    assert found.kinds.count("joint") >= 8
+    assert np.isfinite(found.positions).all()
+    whole: Any = human.artifact("consistency")
+    assert (whole.leaf < 0).any(), "the hand on the hip has no leaf"
+    told: Any = human.artifact("evaluation")
+    assert sum(joint.found is not None for joint in told.joints) >= 5
+
+
+def test_second_run_runs_nothing(human: Pipeline) -> None:
+    assert sum(count["ran"] for count in human.run()["tasks"].values()) == 0
+
+
+def test_whoever_computes_it_the_skeleton_is_the_same(human: Pipeline, tmp_path: Path) -> None:
+    other = ran(tmp_path, "threads", source={"synth": HUMAN}, geodesics={"bases": 30})
+    assert other.artifact("kinematic_structure") == human.artifact("kinematic_structure")
+
+
+def test_exports_are_those_of_every_method(human: Pipeline) -> None:
+    out = Path(human.config.output)
+    assert json.loads((out / "skeleton.json").read_text())["format"] == "kinetree.skeleton/1"
+    assert (out / "skeleton.glb").is_file()
+    assert (out / "skeleton.bvh").is_file()
+
+
+def test_pictures_of_cones_and_of_merge_errors_are_drawn(human: Pipeline, tmp_path: Path) -> None:
+    schedule = human.schedule()
+    for name, draw in (("cones", drawn_cones), ("merging", merging)):
+        figure = draw(lambda task, **index: human.artifact(task, within=schedule, **index), [0, 7])
+        figure.savefig(tmp_path / f"{name}.png", dpi=40)
+        assert (tmp_path / f"{name}.png").stat().st_size > 5000
+
+
+def test_preset_of_the_paper_reaches_the_end(tmp_path: Path) -> None:
+    synth = {"figure": "quadruped", "frames": 4, "vertices": 700}
+    pipeline = ran(tmp_path, extends="paper-2014", source={"synth": synth})
+    found: Any = pipeline.artifact("kinematic_structure")
+    assert found.frames == (0, 1, 2, 3)
+
+
+def test_ball_becomes_one_rigid_part_and_the_run_says_so(tmp_path: Path) -> None:
+    (tmp_path / "scans").mkdir()
+    for t in range(2):
+        ball = trimesh.creation.icosphere(subdivisions=2).apply_scale(1 + 0.1 * t)
+        ball.faces = np.roll(ball.faces, 7 * t, axis=0)
+        ball.export(tmp_path / "scans" / f"frame_{t}.ply")
+    pipeline = ran(tmp_path / "out", source={"input": str(tmp_path / "scans")}, geodesics={"bases": 20})
+    assert any("one rigid part" in text for _, text in pipeline.remarks())
+    found: Any = pipeline.artifact("kinematic_structure")
+    assert found.kinds == ("root",)
