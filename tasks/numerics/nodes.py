@@ -10,7 +10,7 @@ from kinetree.tasks.numerics.surface import Surface
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-_REACH = 5.0  # largest gaps between nodes: a vertex's nine nearest nodes lie within
+_REACH = 5.0  # largest gaps between nodes, or edges of the mesh: a vertex's nine nearest nodes lie within
 
 
 def covering(surface: Surface, spacing: Floats, count: int) -> Ints:
@@ -35,7 +35,8 @@ def nearest_nodes(surface: Surface, node: Ints, count: int) -> tuple[Ints, Float
     returns : (vertex, count) nodes, nearest first, −1 where no further one is in reach · (vertex, count) mesh unit
     """
     mesh, rank = topology(surface), np.argsort(surface.order)
-    gap = _largest_gap(mesh, rank, surface.order, surface.edge, node)
+    # where every vertex is a node there is no gap, and across a long edge the next node lies beyond the largest one
+    gap = max(_largest_gap(mesh, rank, surface.order, surface.edge, node), float(surface.length.max(initial=0.0)))
     return _nearest(mesh, rank, surface.order, surface.edge, node, _REACH * gap, count)
 
 

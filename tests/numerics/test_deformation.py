@@ -69,6 +69,14 @@ def test_a_bent_tube_cut_otherwise_is_followed_within_a_hundredth_of_its_length(
     assert np.quantile(error, 0.95) < 0.01 * LENGTH
 
 
+def test_a_body_whose_every_vertex_is_a_node_follows_a_bend():
+    V, F = tube(around=12, along=24)
+    coarse = template(V, F)
+    assert len(coarse.node) == len(V)
+    found = fit(coarse, at_rest(coarse), framed(coarse, bent(V, 0.3), F))
+    assert np.linalg.norm(shape(coarse, found.pose)[0] - bent(V, 0.3), axis=1).mean() < 0.02 * LENGTH
+
+
 def test_energy_never_rises_over_a_step_and_falls_over_the_first(body):
     other, F = tube(around=29, along=57)
     energy = fit(body, at_rest(body), framed(body, bent(other, 0.5), F)).energy

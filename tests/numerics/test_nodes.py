@@ -60,3 +60,10 @@ def test_a_vertex_has_no_more_neighbours_than_its_component_has_nodes():
 def test_more_nodes_than_vertices_are_all_vertices():
     V, F = sphere(1)
     np.testing.assert_array_equal(covering(Surface.of(V, F), np.ones(len(V)), 10**4), np.arange(len(V)))
+
+
+def test_where_every_vertex_is_a_node_each_has_the_neighbours_it_wants():
+    V, F = sphere(1)
+    nearest, distance = nearest_nodes(Surface.of(V, F), np.arange(len(V)), 5)
+    np.testing.assert_array_equal(nearest[:, 0], np.arange(len(V)))
+    assert np.isfinite(distance).all()
