@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.array import Floats, Ints
+from kinetree.schemas.array import Floats
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.plots.drawing import COLOURS, Fetch, blank
 
@@ -81,7 +82,7 @@ def length_variation(found: Skeleton, aligned: Mapping[int, Alignment]) -> Float
     return varies
 
 
-def _laid(V: Floats, X: Floats, held: Ints) -> tuple[Floats, Floats]:
+def _laid(V: Floats, X: Floats, held: NDArray[np.int64]) -> tuple[Floats, Floats]:
     """(frame, row, xyz) and (frame, xyz): the rigid motion that lays some vertices best onto each frame (Kabsch 1976)."""
     if len(held) < FEWEST:
         return np.full((len(X), 3, 3), np.nan), np.full((len(X), 3), np.nan)
