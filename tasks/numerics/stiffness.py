@@ -10,15 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.deformation import FitSettings, Pose
-from kinetree.tasks.numerics.pieces import pieces
 from kinetree.tasks.numerics.template import Template
 from kinetree.tasks.numerics.ties import strains
 
 Floats = npt.NDArray[np.float64]
 
-YIELD = 0.02  # relative bending at which a tie counts half
-BETWEEN = 0.25  # what a tie between two pieces counts against one within a piece
-_ONE = 0.3  # cost up to which nodes are one piece: bones rather in two than two bones in one
+YIELD = 0.03  # relative bending at which a tie counts half
 
 # the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
 # the second so finely that a section which is not quite round holds its turn
@@ -30,18 +27,13 @@ PASSES = (
 
 
 def learned(template: Template, poses: Sequence[Pose], yields: float = YIELD) -> Floats:
-    """S = s₀² / (s₀² + q²), q⁴ the mean over frames of the fourth power of a tie's relative residual.
-
-    The fourth power lets go a joint that acts in few frames. Ties between pieces count a quarter of that.
+    """S = s₀² / (s₀² + q²), q the rms over frames of a tie's relative residual.
 
     poses   : one a frame, in any order; at least one
     yields  : s₀
     returns : (edge,) above 0, at most 1
     """
-    g, edge = template.g, template.edge
+    g = template.g
     # sorted, so that the sum does not depend on the order in which frames arrive
-    strain = np.sort(np.stack([strains(edge, *pose, g) for pose in poses]), axis=0)
-    bending = np.sqrt((strain**2).mean(axis=0))
-    piece = pieces(template, poses, _ONE)
-    across = piece[edge[:, 0]] != piece[edge[:, 1]]
-    return np.where(across, BETWEEN, 1.0) * yields**2 / (yields**2 + bending)
+    strain = np.sort(np.stack([strains(template.edge, *pose, g) for pose in poses]), axis=0).mean(axis=0)
+    return yields**2 / (yields**2 + strain)

@@ -6,7 +6,7 @@ from limbs import bent, rotation, tube
 
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.stiffness import BETWEEN, PASSES, YIELD, learned
+from kinetree.tasks.numerics.stiffness import PASSES, YIELD, learned
 from kinetree.tasks.numerics.template import TemplateSettings, template
 
 ANGLES = (0.2, 0.4, 0.6)
@@ -45,21 +45,10 @@ def test_a_body_that_only_moves_as_a_whole_is_stiff_everywhere(body):
     np.testing.assert_allclose(learned(body, poses), 1.0, atol=1e-12)
 
 
-def test_a_tie_that_bends_as_much_as_the_yield_counts_half_and_between_pieces_a_quarter_of_that(body):
+def test_a_tie_that_bends_as_much_as_the_yield_counts_half(body):
     pose = at_rest(body)
     stretched = Pose(pose.rotation, pose.translation * (1 + YIELD))
-    s = learned(body, [stretched])
-    within = s > 0.3
-    assert within.mean() > 0.5
-    np.testing.assert_allclose(s[within], 0.5, atol=1e-12)
-    np.testing.assert_allclose(s[~within], 0.5 * BETWEEN, atol=1e-12)
-
-
-def test_bending_in_one_frame_of_many_softens_more_than_its_mean_square_would(body, sequence):
-    bent_once = [*[at_rest(body)] * 9, sequence[1][-1]]
-    bend = middle(body) < 0.7
-    alone = learned(body, sequence[1][-1:], YIELD * 10**0.25)[bend]
-    np.testing.assert_allclose(np.median(learned(body, bent_once)[bend] / alone), 1.0, rtol=0.5)
+    np.testing.assert_allclose(learned(body, [stretched]), 0.5, atol=1e-12)
 
 
 def test_the_order_of_frames_does_not_matter_to_the_last_bit(body, sequence):
