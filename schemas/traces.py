@@ -54,8 +54,3 @@ class Traces(Artifact):
         """(joint,) deviation in % of the mean length; 0 for the root and where a bone has no length."""
         out: Floats = 100.0 * self.deviation / (self.length + (self.length == 0.0))
         return out
-
-    def remarks(self) -> tuple[str, ...]:
-        """How many parts were dropped on the way to the tree."""
-        gone = int((self.joint < 0).sum())
-        return (f"{gone} of {len(self.joint)} parts were no parts: they slid more than they turned",) if gone else ()

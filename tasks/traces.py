@@ -50,7 +50,7 @@ def traces(
         threshold=cut,
         tips=tips,
         **cones._asdict(),
-        joint_of_annulus=np.where(cones.run >= 0, found.most(cones.ring, follows, body.area, params.rings), -1),
+        joint_of_annulus=found.most(cones.own, follows, body.area, params.rings),
         **graph._asdict(),
         middle=np.stack([np.bincount(carried.label, body.area * V[:, k], count) / mass for k in range(3)], axis=1),
         joint=joint,

@@ -37,6 +37,11 @@ class ConesTraced(NamedTuple):
     run: Ints
     merge: Floats
 
+    @property
+    def own(self) -> Ints:
+        """(cone, vertex) ring of every vertex that lies in this cone alone, −1 elsewhere."""
+        return np.where((self.ring >= 0).sum(axis=0) == 1, self.ring, -1)
+
 
 class PartsGraph(NamedTuple):
     """Parts that meet, and what speaks for a joint between them.
@@ -74,30 +79,35 @@ def traced_cones(
     kept, body, _ = largest_component(V, np.array(F, np.int32))
     number = np.full(len(V), -1)
     number[kept] = np.arange(len(kept))
-    at = number[tips]
-    ring = np.full((len(tips), len(V)), -1, np.int64)
-    run, merge = np.full((len(tips), count), -1, np.int64), np.full((len(tips), count), np.nan)
-    if not (at >= 0).any():
-        return ConesTraced(ring, run, merge)
-    surface = Surface.of(V[kept], body)
+    rows = np.flatnonzero(number[tips] >= 0)
+    blank = np.full((len(tips), len(V) + count), -1, np.int64)
+    found = ConesTraced(blank[:, : len(V)], blank[:, len(V) :], np.full((len(tips), count), np.nan))
+    if not len(rows):
+        return found
+    surface, at = Surface.of(V[kept], body), number[tips[rows]]
+    distance = geodesic_distance(surface, at, exact=0.0)
+    found.ring[np.ix_(rows, kept)] = cones(distance, surface.area, at, *rings(body, len(kept)), count)
     size = float(np.sqrt(surface.area.sum()))
-    distance = geodesic_distance(surface, at[at >= 0], exact=0.0)
-    C = cones(distance, surface.area, at[at >= 0], *rings(body, len(kept)), count)
-    rows = np.flatnonzero(at >= 0)
-    ring[np.ix_(rows, kept)] = C
     q = (V[kept] - surface.centre) / size
     y = np.ascontiguousarray((x[:, kept] - x[:, kept].mean(axis=1, keepdims=True)) / size, np.float64)
     weight = np.broadcast_to(surface.area, y.shape[:2]) * (1.0 if trust is None else trust[:, kept])
-    alone = (C >= 0).sum(axis=0) == 1
-    for row, cone in zip(rows, C, strict=True):
-        own = np.where(alone, cone, -1)
+    for row, own in zip(rows, found.own[np.ix_(rows, kept)], strict=True):
         if (own >= 0).any():
-            rows_of = moments(q, y, weight, own, int(own.max()) + 1)
-            mass = len(x) * float(np.median(rows_of[:, :, 0].mean(axis=1))) * count / 5
-            run[row, : len(rows_of)] = runs(rows_of, mass * cut**2, LEAST)
-            if len(rows_of) > 1 and mass > 0.0:
-                merge[row, : len(rows_of) - 1] = np.sqrt(growth(rows_of, max(count // 10, LEAST)) / mass)
-    return ConesTraced(ring, run, merge)
+            M = moments(q, y, weight, own, int(own.max()) + 1)
+            run, merge = _cut(M, count, cut)
+            found.run[row, : len(run)] = run
+            found.merge[row, : len(merge)] = merge
+    return found
+
+
+def _cut(M: Floats, count: int, cut: float) -> tuple[Ints, Floats]:
+    """(ring,) the run of every ring of a cone · (ring − 1,) merge errors, NaN beside a ring that has no vertices."""
+    held = M[:, :, 0].mean(axis=1)
+    mass = M.shape[1] * float(np.median(held)) * count / 5
+    run = runs(M, mass * cut**2, LEAST)
+    known = (held[1:] > 0.0) & (held[:-1] > 0.0) & (mass > 0.0)
+    error = np.sqrt(growth(M, max(count // 10, LEAST)) / (mass or 1.0))
+    return run, np.asarray(np.where(known, error, np.nan), np.float64)
 
 
 def vertex_areas(V: Floats, F: npt.NDArray[np.integer[Any]]) -> Floats:
