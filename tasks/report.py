@@ -66,7 +66,7 @@ def report(
             Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, alignment)),
             *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
             Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
-            Section("alignment", "Alignment", _aligned(fetch, frames, up)),
+            Section("alignment", "Alignment", _aligned(fetch, frames, up, reference)),
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
@@ -155,7 +155,9 @@ def _macroscopic(fetch: Any, frames: list[int], up: int | None) -> str:
     ) + picture(mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high, with the leaves.", vector=False)
 
 
-def _aligned(fetch: Any, frames: list[int], up: int | None) -> str:
+def _aligned(fetch: Any, frames: list[int], up: int | None, reference: Reference) -> str:
+    if reference.fixed:
+        return "<p>Every frame has the same faces: a vertex is where it is, and there is nothing to align.</p>"
     caption = "Distance of the aligned mesh to every frame, over time and on the surface."
     return picture(alignment_figure(fetch, frames, up), caption, vector=False)
 

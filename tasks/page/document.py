@@ -101,7 +101,7 @@ def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
     kind = "svg+xml" if vector else "png"
     data = base64.b64encode(out.getvalue()).decode()
     return (
-        f'<figure><img alt="{escape(caption)}" src="data:image/{kind};base64,{data}">'
+        f'<figure><div class="scroll" tabindex="0"><img alt="{escape(caption)}" src="data:image/{kind};base64,{data}"></div>'
         f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
 

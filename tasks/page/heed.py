@@ -80,7 +80,7 @@ def _handles(skeleton: Skeleton) -> int:
 def _of_frames(
     intervals: Intervals, leaves: Leaves, aligned: Mapping[int, Alignment], meshes: Mapping[int, Mesh]
 ) -> Iterator[str]:
-    doubted = [str(frame) for frame, a in aligned.items() if float(np.mean(a.trust)) < 0.5]
+    doubted = [str(frame) for frame, a in aligned.items() if a.doubted > 0.5]
     if doubted:
         yield f"the alignment is not trusted in {_some(doubted, 'frame')}; poses there come from the whole model"
     yield from (text for text in leaves.remarks() if "not seen" in text or "no leaves" in text)

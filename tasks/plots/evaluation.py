@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinetree.pipeline.errors import ConfigError
 from kinetree.schemas.evaluation import Evaluation
 from kinetree.tasks.plots.drawing import COLOURS, Fetch, blank
 
@@ -15,7 +16,12 @@ DASHES = ("-", "--", ":", "-.")
 
 def evaluation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     """Error of every scored joint over time with mean and deviation beside it; below, the two measures of 2009."""
-    return drawn(fetch("evaluation"))
+    told = fetch("evaluation")
+    if told.summary is None:
+        raise ConfigError(
+            "plot 'errors': nobody knows the truth of this run; kinetree evaluate RUN TRUTH --plot FILE names one"
+        )
+    return drawn(told)
 
 
 def drawn(told: Evaluation) -> "Figure":

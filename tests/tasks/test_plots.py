@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pages import artifacts, judged
+from pages import artifacts, judged, unjudged
 from rigs import spider
 
 from kinetree.pipeline.errors import ConfigError
@@ -39,6 +39,12 @@ def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(f
         draw("mu", fetch, [0], tmp_path / "a.gif")
     with pytest.raises(ConfigError, match="cannot be written"):
         draw("mu", fetch, [0], tmp_path / "missing" / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_errors_without_a_truth_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="nobody knows the truth"):
+        draw("errors", lambda name: unjudged(spider()), [0], tmp_path / "a.png")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -17,7 +17,7 @@ from kinetree.tasks.report import report
 
 
 def page(params: ReportParams | None = None, **changes: Any) -> str:
-    told = artifacts(changes.pop("skeleton", None)) | changes
+    told = {**artifacts(changes.get("skeleton")), **changes}
     return report(**told, params=params or ReportParams(frames=4, views=1)).text.tobytes().decode()
 
 
@@ -70,7 +70,7 @@ def test_nothing_to_heed_is_no_box_at_all() -> None:
 
 def test_what_to_heed_is_said_in_plain_words() -> None:
     told = artifacts()
-    low = {"trust": np.full(len(spider().vertices), 0.1)}
+    low = {"doubted": 0.9}
     doubt = {f: a.model_copy(update=low if f in (3, 4) else {}) for f, a in told["alignment"].items()}
     cleaned = Cleaning(components=2, components_kept=1)
     removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in told["mesh"].items()}
@@ -111,6 +111,11 @@ def test_ring_is_said_to_be_no_tree_and_a_skin_that_does_not_follow_to_explain_n
 def test_two_frames_are_said_to_be_few() -> None:
     two = {name: getattr(spider(), name)[:2] for name in ("frames", "positions", "rotation", "confidence")}
     assert any(text.startswith("2 frames only") for text in heeded(page(skeleton=spider(**two))))
+
+
+def test_alignment_is_drawn_only_where_something_was_aligned(plain: str) -> None:
+    assert "there is nothing to align" in plain
+    assert "Distance of the aligned mesh to every frame" in page(**artifacts(anew=True))
 
 
 def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
