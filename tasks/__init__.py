@@ -1,6 +1,7 @@
 """The papers' table of contents: every operation, in the order in which the papers tell it.
 
-MESOSCOPIC: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default.
+MESOSCOPIC: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
+what was measured to be better in place of some of its steps. MESOSCOPIC_2014: the same to the paper's letter.
 """
 
 if __name__ != "kinetree.tasks":
@@ -8,16 +9,31 @@ if __name__ != "kinetree.tasks":
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.alignment import alignment
+from kinetree.tasks.annuli import annuli
+from kinetree.tasks.arap import arap
+from kinetree.tasks.bones import bones
 from kinetree.tasks.bvh import bvh
+from kinetree.tasks.cones import cones
 from kinetree.tasks.connectivity import connectivity
+from kinetree.tasks.consistency import consistency
+from kinetree.tasks.coordinates import coordinates
 from kinetree.tasks.correlation import correlation
+from kinetree.tasks.crossing import crossing
+from kinetree.tasks.cylinders import cylinders
 from kinetree.tasks.distribution import distribution
 from kinetree.tasks.evaluation import evaluation
 from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.glb import glb
+from kinetree.tasks.integration import integration
 from kinetree.tasks.intervals import intervals
+from kinetree.tasks.kinematic_structure import kinematic_structure
+from kinetree.tasks.landed_projection import landed_projection
+from kinetree.tasks.landing import landing
 from kinetree.tasks.leaves import leaves
+from kinetree.tasks.limb import limb
+from kinetree.tasks.matching import matching
 from kinetree.tasks.mesh import mesh
+from kinetree.tasks.middle import middle
 from kinetree.tasks.parts import parts
 from kinetree.tasks.ply import ply
 from kinetree.tasks.projection import projection
@@ -36,6 +52,7 @@ from kinetree.tasks.suspects import suspects
 from kinetree.tasks.tables import tables
 from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
+from kinetree.tasks.traces import traces
 from kinetree.tasks.tracking import tracking
 from kinetree.tasks.trust import trust
 from kinetree.tasks.truth import truth
@@ -68,6 +85,7 @@ MESOSCOPIC = (
     trust,
     parts,  # Sec. 6.1 and 6.2
     skeleton,  # Sec. 6.3
+    traces,
     truth,
     evaluation,  # Sec. 7
     glb,
@@ -81,5 +99,42 @@ MESOSCOPIC = (
     report,
 )
 
-METHODS = {"mesoscopic": Graph.of(MESOSCOPIC)}
+MESOSCOPIC_2014 = (
+    source,  # Sec. 3
+    sequence,
+    mesh,
+    connectivity,  # Sec. 7
+    geodesics,  # Sec. 4, Eq. 1
+    distribution,
+    correlation,  # Eq. 2
+    tips,  # Sec. 5.1
+    intervals,  # Sec. 4
+    leaves,  # Sec. 5.1, Eq. 3
+    coordinates,  # Sec. 5.2, Eq. 4
+    middle,  # Sec. 5.3
+    matching,  # Eqs. 5 and 6
+    arap,
+    crossing,  # for Sec. 6.1.1
+    cones,  # Sec. 6.1.1.1
+    consistency,  # Sec. 6.1.1.2 to 6.1.1.4, Eqs. 7 and 8
+    limb,
+    annuli,  # Sec. 6.1.2, Eqs. 9 to 12
+    integration,  # Sec. 6.1.3
+    cylinders,  # Sec. 6.2
+    bones,  # Sec. 6.3
+    kinematic_structure,
+    landing,
+    landed_projection,
+    truth,
+    evaluation,  # Sec. 7
+    glb,
+    bvh,
+    skeleton_json,
+    tables,
+    ply,
+    rignet,
+    usd,
+)
+
+METHODS = {"mesoscopic": Graph.of(MESOSCOPIC), "mesoscopic-2014": Graph.of(MESOSCOPIC_2014)}
 """The graph of each method, checked when this package is imported."""
