@@ -19,6 +19,7 @@ from kinetree.schemas.reference import Reference
 from kinetree.schemas.report import Report, ReportParams
 from kinetree.schemas.sequence import Sequence
 from kinetree.schemas.skeleton import Skeleton
+from kinetree.schemas.traces import Traces
 from kinetree.tasks.numerics.scene import spread
 from kinetree.tasks.page.document import Page, Section, document, picture, table
 from kinetree.tasks.page.heed import counted, heeded, off
@@ -30,11 +31,14 @@ from kinetree.tasks.plots.macroscopic import mu as mu_figure
 from kinetree.tasks.plots.motion import angles, length_variation
 from kinetree.tasks.plots.structure import confidence, tree
 from kinetree.tasks.plots.structure import skeleton as skeleton_figure
+from kinetree.tasks.plots.traces import cones, lengths, merging
+from kinetree.tasks.plots.traces import structure as structure_figure
 
 
 @task()
 def report(
     skeleton: Skeleton,
+    traces: Traces,
     reference: Reference,
     sequence: Sequence,
     correlation: Correlation,
@@ -49,6 +53,7 @@ def report(
 ) -> Report:
     """Draws and tells the run on one page that needs no network (ours)."""
     once = {"skeleton": skeleton, "reference": reference, "correlation": correlation, "intervals": intervals, "leaves": leaves}
+    once |= {"traces": traces}
     framed = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
 
     def fetch(name: str, frame: int | None = None) -> Any:
@@ -113,12 +118,26 @@ def _structure(
         picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
         + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
         + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
+        + _traced(fetch, frames, up)
         + picture(
             angles(fetch, frames, up), "Turning of every joint since the reference pose; bold where confidence is below a half."
         )
         + f"<p>Lengths in {escape(unit)}; they vary by so much over the frames where every part is followed by itself, before"
         + " they are fixed. Intervals are those in which a joint's confidence is at least a half.</p>"
         + table(head, rows)
+    )
+
+
+def _traced(fetch: Any, frames: list[int], up: int | None) -> str:
+    """What the joints were found from (2014, Figs. 7, 11 and 15)."""
+    return (
+        picture(cones(fetch, frames, up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False)
+        + picture(
+            merging(fetch, frames, up),
+            "What merging a cone's annuli across each border would cost; the first cut, and in colours the parts in the end.",
+        )
+        + picture(structure_figure(fetch, frames, up), "The graph of parts before, and the tree that was left.", vector=False)
+        + picture(lengths(fetch, frames, up), "By what bones' lengths varied before they were held; afterwards by nothing.")
     )
 
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from rigs import skinned, spider
+from traced import traces_of
 
 from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.correlation import Correlation
@@ -40,6 +41,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
+        "traces": traces_of(skeleton),
         "reference": Reference(
             frames=frames, frame=frames[0], fixed=not anew, leaves=5, free=True, vertices=skeleton.vertices,
             faces=skeleton.faces, size=float(np.ptp(skeleton.vertices)), score=np.ones(len(frames)),

@@ -92,7 +92,7 @@ def traced_cones(
     y = np.ascontiguousarray((x[:, kept] - x[:, kept].mean(axis=1, keepdims=True)) / size, np.float64)
     weight = np.broadcast_to(surface.area, y.shape[:2]) * (1.0 if trust is None else trust[:, kept])
     for row, own in zip(rows, found.own[np.ix_(rows, kept)], strict=True):
-        if (own >= 0).any():
+        if own.max() >= 0:
             M = moments(q, y, weight, own, int(own.max()) + 1)
             run, merge = _cut(M, count, cut)
             found.run[row, : len(run)] = run
@@ -102,7 +102,7 @@ def traced_cones(
 
 def _cut(M: Floats, count: int, cut: float) -> tuple[Ints, Floats]:
     """(ring,) the run of every ring of a cone · (ring − 1,) merge errors, NaN beside a ring that has no vertices."""
-    held = M[:, :, 0].mean(axis=1)
+    held: Floats = M[:, :, 0].mean(axis=1)
     mass = M.shape[1] * float(np.median(held)) * count / 5
     run = runs(M, mass * cut**2, LEAST)
     known = (held[1:] > 0.0) & (held[:-1] > 0.0) & (mass > 0.0)
@@ -113,8 +113,7 @@ def _cut(M: Floats, count: int, cut: float) -> tuple[Ints, Floats]:
 def vertex_areas(V: Floats, F: npt.NDArray[np.integer[Any]]) -> Floats:
     """(vertex,) a third of the faces around, mesh unit²."""
     n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    area: Floats = np.bincount(F.ravel(), np.repeat(np.linalg.norm(n, axis=1) / 6, 3), len(V))
-    return area
+    return np.asarray(np.bincount(F.ravel(), np.repeat(np.linalg.norm(n, axis=1) / 6, 3), len(V)), np.float64)
 
 
 def most(ring: Ints, label: Ints, area: Floats, count: int) -> Ints:

@@ -11,6 +11,7 @@ from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
 from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
+from kinetree.tasks.plots.traces import cones, lengths, merging, structure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +25,10 @@ WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
     "skeleton": skeleton,
     "tree": tree,
     "confidence": confidence,
+    "cones": cones,
+    "merging": merging,
+    "structure": structure,
+    "lengths": lengths,
     "angles": angles,
     "errors": evaluation,
 }

@@ -120,7 +120,7 @@ def _told(words: str) -> "Figure":
 
 def _ring_colours(traced: Traces, F: Ints) -> Floats:
     """(face, 4) colour of the one cone that a face is in, in turn lighter and darker by annulus."""
-    within = (traced.ring[:, F] >= 0).all(axis=2)
+    within = np.asarray((traced.ring[:, F] >= 0).all(axis=2))
     several = within.sum(axis=0)
     colour: Floats = np.ones((len(F), 4))
     colour[:, :3] = np.where(several > 1, 0.88, 0.45)[:, None]
