@@ -13,14 +13,13 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, out, print_json
 from kinetree.pipeline.printable import printable
 from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
-from kinetree.tasks.plots.drawing import verbatim
+from kinetree.tasks.plots.drawing import FORMATS, written
 from kinetree.tasks.plots.evaluation import drawn
 
 EXAMPLES = (
     "Examples: kinetree evaluate walk-out walk/truth.json · kinetree evaluate walk-out dance.bvh --set truth.unit=cm"
     " · kinetree evaluate walk-out other-run/skeleton.json --plot errors.png"
 )
-ENDINGS = (".png", ".svg", ".pdf")
 
 
 def register(app: typer.Typer) -> None:
@@ -49,11 +48,11 @@ def evaluate(
 
     Frames are compared by their numbers in the source. Computes nothing but the comparison.
     """
-    if plot is not None and plot.suffix.lower() not in ENDINGS:
-        raise ConfigError(f"--plot {plot}: pictures end in {', '.join(ENDINGS)}")
+    if plot is not None and plot.suffix.lower() not in FORMATS:
+        raise ConfigError(f"--plot {plot}: pictures end in {', '.join(FORMATS)}")
     told = evaluated(run, truth, body, sets)
     if plot is not None:
-        _draw(told, plot)
+        written(drawn(told), plot)
     if as_json:
         print_json(json.loads(told.files(())["evaluation.json"]))
         return
@@ -128,15 +127,3 @@ def _lines(s: Summary) -> list[str]:
     lines.append(f"bone lengths vary by {s.length_variation:.2g} %")
     lines.append(f"jitter {s.jitter_percent:.3f} % of the height a frame²{rough}")
     return lines
-
-
-def _draw(told: Evaluation, path: Path) -> None:
-    """Draws into a file, complete or not at all."""
-    beside = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
-        verbatim(drawn(told)).savefig(beside, dpi=150, bbox_inches="tight")
-        beside.replace(path)
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        beside.unlink(missing_ok=True)

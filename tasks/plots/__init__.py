@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.tasks.plots.alignment import alignment
-from kinetree.tasks.plots.drawing import Fetch, verbatim
+from kinetree.tasks.plots.drawing import FORMATS, Fetch, written
 from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
 from kinetree.tasks.plots.motion import angles
@@ -15,8 +15,6 @@ from kinetree.tasks.plots.traces import cones, lengths, merging, structure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FORMATS = (".png", ".svg", ".pdf")
 
 WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
     "correlation": correlation,
@@ -45,12 +43,4 @@ def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None 
         raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    figure = verbatim(WHAT[what](fetch, frames, up))
-    beside = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
-        figure.savefig(beside, dpi=150, bbox_inches="tight")
-        beside.replace(path)
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        beside.unlink(missing_ok=True)
+    written(WHAT[what](fetch, frames, up), path)

@@ -1,11 +1,14 @@
 """What every picture is made of: figures without a window, views of a body, surfaces as shaded faces."""
 
+import contextlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinetree.pipeline.errors import ConfigError
 from kinetree.schemas.array import Floats, Ints
 
 if TYPE_CHECKING:
@@ -14,6 +17,8 @@ if TYPE_CHECKING:
 
 Fetch = Callable[..., Any]
 """Gives the artifact of a task at an index, as `Pipeline.artifact` does."""
+FORMATS = (".png", ".svg", ".pdf")
+"""How a picture's name may end."""
 BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 """Okabe and Ito's eight, which the colour-blind can tell apart."""
@@ -34,6 +39,19 @@ def verbatim(figure: "Figure") -> "Figure":
     for text in figure.findobj(Text):
         text.set_parse_math(False)
     return figure
+
+
+def written(figure: "Figure", path: Path) -> None:
+    """Writes a picture, whole or not at all; raises ConfigError where it cannot be written."""
+    beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        verbatim(figure).savefig(beside, dpi=150, bbox_inches="tight")
+        beside.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            beside.unlink()
 
 
 def view(bodies: list[Floats], up: int | None) -> Floats:
