@@ -9,81 +9,9 @@ import pytest
 import trimesh
 
 from kinetree.pipeline import Pipeline
-from kinetree.pipeline.graph import Graph
-from kinetree.tasks.annuli import annuli
-from kinetree.tasks.arap import arap
-from kinetree.tasks.bones import bones
-from kinetree.tasks.bvh import bvh
-from kinetree.tasks.cones import cones
-from kinetree.tasks.connectivity import connectivity
-from kinetree.tasks.consistency import consistency
-from kinetree.tasks.coordinates import coordinates
-from kinetree.tasks.correlation import correlation
-from kinetree.tasks.crossing import crossing
-from kinetree.tasks.cylinders import cylinders
-from kinetree.tasks.distribution import distribution
-from kinetree.tasks.evaluation import evaluation
-from kinetree.tasks.geodesics import geodesics
-from kinetree.tasks.glb import glb
-from kinetree.tasks.integration import integration
-from kinetree.tasks.intervals import intervals
-from kinetree.tasks.kinematic_structure import kinematic_structure
-from kinetree.tasks.landed_projection import landed_projection
-from kinetree.tasks.landing import landing
-from kinetree.tasks.leaves import leaves
-from kinetree.tasks.limb import limb
-from kinetree.tasks.matching import matching
-from kinetree.tasks.mesh import mesh
-from kinetree.tasks.middle import middle
 from kinetree.tasks.plots.mesoscopic import cones as drawn_cones
 from kinetree.tasks.plots.mesoscopic import merging
-from kinetree.tasks.ply import ply
-from kinetree.tasks.rignet import rignet
-from kinetree.tasks.sequence import sequence
-from kinetree.tasks.skeleton_json import skeleton_json
-from kinetree.tasks.source import source
-from kinetree.tasks.tables import tables
-from kinetree.tasks.tips import tips
-from kinetree.tasks.truth import truth
-from kinetree.tasks.usd import usd
 
-MESOSCOPIC_2014 = (
-    source,  # Sec. 3
-    sequence,
-    mesh,
-    connectivity,  # Sec. 7
-    geodesics,  # Sec. 4, Eq. 1
-    distribution,
-    correlation,  # Eq. 2
-    tips,  # Sec. 5.1
-    intervals,  # Sec. 4
-    leaves,  # Sec. 5.1, Eq. 3
-    coordinates,  # Sec. 5.2, Eq. 4
-    middle,  # Sec. 5.3
-    matching,  # Eqs. 5 and 6
-    arap,
-    crossing,  # for Sec. 6.1.1
-    cones,  # Sec. 6.1.1.1
-    consistency,  # Sec. 6.1.1.2 to 6.1.1.4, Eqs. 7 and 8
-    limb,
-    annuli,  # Sec. 6.1.2, Eqs. 9 to 12
-    integration,  # Sec. 6.1.3
-    cylinders,  # Sec. 6.2
-    bones,  # Sec. 6.3
-    kinematic_structure,
-    landing,
-    landed_projection,
-    truth,
-    evaluation,  # Sec. 7
-    glb,
-    bvh,
-    skeleton_json,
-    tables,
-    ply,
-    rignet,
-    usd,
-)
-METHODS = {"mesoscopic-2014": Graph.of(MESOSCOPIC_2014)}
 TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
 HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
 DOG = {"figure": "quadruped", "frames": 4, "vertices": 500}
@@ -91,7 +19,7 @@ DOG = {"figure": "quadruped", "frames": 4, "vertices": 500}
 
 def ran(output: Path, executor: str = "sync", **blocks: Any) -> Pipeline:
     given = {"method": "mesoscopic-2014", "output": str(output), "compute": {"executor": executor}, **blocks}
-    pipeline = Pipeline.of(given, methods=METHODS)
+    pipeline = Pipeline.of(given)
     assert pipeline.run()["status"] == "done"
     return pipeline
 
