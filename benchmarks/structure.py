@@ -143,9 +143,10 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     tips = kept[leaves(mu(bases.distance, bases.weight), faces).vertex]
     area = Surface.of(case.V, case.F).area
     begun = time.process_time()
-    found = parts(case.V, case.F, case.x, leaves=tips)
+    trust = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
+    found = parts(case.V, case.F, case.x, trust, leaves=tips)
     parted = time.process_time()
-    made = skeleton(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips)
+    made = skeleton(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
     done = time.process_time()
     body, held = Surfaces(case.V, case.F, case.x, area), Carried(found.label, found.R, found.t, found.residual)
     kept_parts = pruned(body, held, tips)

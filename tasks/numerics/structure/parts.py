@@ -46,6 +46,7 @@ class PartsSettings(NamedTuple):
     split   : growth of the mean squared residual, times area, from which on patches of one run or group stay apart
     smooth  : radius of the surroundings that decide with a vertex
     bar     : what a part must pass to stay
+    slip    : the bar's own where every vertex was followed: nothing slides along the surface there
     """
 
     rings: int = 50
@@ -55,6 +56,7 @@ class PartsSettings(NamedTuple):
     split: float = 1e-7
     smooth: float = 0.015
     bar: Bar = Bar()
+    slip: float = 0.6
 
 
 def parts(
@@ -69,11 +71,13 @@ def parts(
 
     V, F    : (vertex, xyz) reference, mesh unit · (face, corner); small components go with what is nearest
     x       : (frame, vertex, xyz) mesh unit
-    trust   : (frame, vertex) how far each position is to be believed, 0 to 1; all of them if not given
+    trust   : (frame, vertex) how far each position is to be believed, 0 to 1; if not given every vertex was followed
     leaves  : (leaf,) vertices at the tips of the extremities; found on V, F if not given, and there may be none
     returns : PartsFound, parts numbered by their first vertex
     """
     chosen = settings or PartsSettings()
+    if trust is None:
+        chosen = chosen._replace(bar=chosen.bar._replace(slip=chosen.slip))
     kept, body, _ = largest_component(V, np.array(F, np.int32))
     number = np.full(len(V), -1)
     number[kept] = np.arange(len(kept))

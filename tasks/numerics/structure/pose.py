@@ -19,6 +19,8 @@ SEEN = 0.5
 """Share of a part's surface that must be trusted for its pose to serve other frames."""
 HOLD = 0.3
 """Weight of the frames around against a part seen in full, where nothing of it is seen."""
+ENOUGH = 250
+"""Vertices of a part that a fit asks."""
 MARGIN = 0.02
 """Error of a part, share of the root of the area, at which its pose is worth half."""
 
@@ -49,10 +51,11 @@ def posed(
     """
     share = area / area.sum()
     seen = seen_share(label, share, trust, len(x), len(parents))
+    asked, mass = some(label, share, len(parents))
     if trust is None:
-        motion = fitted(sums(V, x, W, parents, share), start, parents)
+        motion = fitted(sums(V[asked], x[:, asked], W[asked], parents, mass), start, parents)
     else:
-        s = sums(V, x, W, parents, share * np.maximum(trust, 1e-6))
+        s = sums(V[asked], x[:, asked], W[asked], parents, mass * np.maximum(trust[:, asked], 1e-6))
         free = fitted(s, start, parents, _expected(start, V, label, share, parents, seen))
         motion = fitted(s, free, parents, _expected(free, V, label, share, parents, seen))
     believed = np.ones(x.shape[:2]) if trust is None else trust
@@ -63,6 +66,21 @@ def posed(
     fit = seen / (1.0 + (error / (MARGIN * np.sqrt(area.sum()))) ** 2)
     above = np.maximum(parents, 0)
     return Posed(motion, error, np.clip(np.minimum(fit, fit[:, above]), 0.0, 1.0))
+
+
+def some(label: Ints, area: Floats, parts: int) -> tuple[Ints, Floats]:
+    """Vertices that a fit asks, evenly many of every part, and what each stands for: together their part's whole area.
+
+    label, area : (vertex,)
+    returns     : (asked,) vertices, ascending · (asked,) area
+    """
+    order = np.argsort(label, kind="stable")
+    count = np.bincount(label, minlength=parts)
+    rank = np.arange(len(label)) - np.repeat(np.cumsum(count) - count, count)
+    every = -(-count // ENOUGH)
+    asked = np.sort(order[rank % np.repeat(np.maximum(every, 1), count) == 0])
+    whole, held = (np.bincount(label[v], area[v], parts) for v in (np.arange(len(label)), asked))
+    return asked, area[asked] * (whole / np.maximum(held, 1e-300))[label[asked]]
 
 
 def seen_share(label: Ints, area: Floats, trust: Floats | None, frames: int, parts: int) -> Floats:

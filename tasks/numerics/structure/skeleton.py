@@ -7,6 +7,7 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 
 from kinetree.tasks.numerics.structure.articulation import Motion, beyond, placed
+from kinetree.tasks.numerics.structure.axes import towards_axes
 from kinetree.tasks.numerics.structure.ends import bone_ends
 from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
 from kinetree.tasks.numerics.structure.joints import blend_centres, rotation_centres
@@ -145,7 +146,7 @@ def _assembled(
 
 
 def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected half-way between border and blend, and their drift; the root's is its middle."""
+    """Joints in the tree's order, expected between border, blend and axis, and their drift; the root's is its middle."""
     parts, tree, met = found.parts, found.hung.tree, found.hung.borders
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
@@ -153,6 +154,7 @@ def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> 
     rows = tree.border[1:]
     blend = blend_centres(V, area, W @ beyond(tree.parents).T)[1:]
     expected = met.centre[rows] + 0.5 * np.where(np.isfinite(blend), blend - met.centre[rows], 0.0)
+    expected = towards_axes(V, area, label, W, tree.parents, expected, met.radius[rows])
     pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
     joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], parts.residual, parts.trust)
     rest[1:], drift[1:] = joints.rest, joints.drift

@@ -6,7 +6,7 @@ from articulated import chain, swings
 from limbs import rotation
 
 from kinetree.tasks.numerics.structure.articulation import Motion
-from kinetree.tasks.numerics.structure.pose import Posed, between, posed, seen_share
+from kinetree.tasks.numerics.structure.pose import Posed, between, posed, seen_share, some
 
 
 def test_rotations_not_known_lie_on_the_shortest_way_between_those_known() -> None:
@@ -50,3 +50,14 @@ def test_share_of_a_part_that_was_seen() -> None:
     share = seen_share(np.array([0, 0, 1]), np.array([1.0, 3.0, 2.0]), trust, 2, 2)
     assert share == pytest.approx(np.array([[0.25, 1.0], [0.5, 0.0]]))
     assert (seen_share(np.array([0]), np.ones(1), None, 4, 1) == 1).all()
+
+
+def test_vertices_asked_stand_for_the_whole_area_of_their_part() -> None:
+    label = np.arange(3000) % 7 // 6
+    area = np.random.default_rng(0).uniform(1.0, 2.0, 3000)
+    asked, mass = some(label, area, 2)
+    assert len(asked) < 500
+    assert np.bincount(label[asked], mass) == pytest.approx(np.bincount(label, area))
+    few, all_of_it = some(label[:90], area[:90], 2)
+    assert few.tolist() == list(range(90))
+    assert all_of_it == pytest.approx(area[:90])
