@@ -77,15 +77,12 @@ def structure(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure
     bar.set_label("what its two parts disagree by on a joint, % of the body's diagonal", fontsize=8)
     bar.ax.tick_params(labelsize=7)
     dropped = int((traced.joint < 0).sum())
-    before.set_title(
-        f"before: {len(traced.joint)} parts that meet {len(traced.pair)} times; the tree leaves out the dotted", fontsize=9
-    )
+    before.set_title(f"{len(traced.joint)} parts, {len(traced.pair)} borders; dotted: not in the spanning tree", fontsize=9)
     bones(after, found, found.rest @ axis)
     gone = (traced.rest @ axis)[_lost(traced)]
     after.plot(*gone[:, :2].T, "x", color="black", ms=7, mew=1.8, zorder=6)
-    after.set_title(
-        f"after: {found.kinds.count('joint')} joints; {dropped} parts dropped, crossed: {len(gone)} joints gone", fontsize=9
-    )
+    joints = found.kinds.count("joint")
+    after.set_title(f"{joints} joints left; crossed: {len(gone)} that are none ({dropped} parts dropped)", fontsize=9)
     return figure
 
 

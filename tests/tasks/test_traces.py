@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 from articulated import Known, chain, swings, three_arms
+from matplotlib.text import Text
 
 from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
-from kinetree.schemas.skeleton import SkeletonParams
+from kinetree.schemas.skeleton import Skeleton, SkeletonParams
 from kinetree.schemas.traces import Traces, TracesParams
+from kinetree.tasks.plots.traces import cones, lengths, merging, structure
 from kinetree.tasks.skeleton import skeleton
 from kinetree.tasks.traces import traces
 
@@ -18,6 +20,12 @@ FIRST = 10
 
 
 def told(body: Known, tips: tuple[int, ...] = (), trust: np.ndarray | None = None, degrees: float = 8.0) -> Traces:
+    return both(body, tips, trust, degrees)[1]
+
+
+def both(
+    body: Known, tips: tuple[int, ...] = (), trust: np.ndarray | None = None, degrees: float = 8.0
+) -> tuple[Skeleton, Traces]:
     count = len(body.x)
     frames = tuple(range(FIRST, FIRST + count))
     reference = Reference(
@@ -39,7 +47,7 @@ def told(body: Known, tips: tuple[int, ...] = (), trust: np.ndarray | None = Non
     )  # fmt: skip
     sequence = Sequence(frames=frames, fps=25.0, unit="mm")
     found = skeleton(reference, parts, aligned, leaves, sequence, SkeletonParams(degrees=degrees))
-    return traces(reference, aligned, leaves, parts, found, TracesParams(rings=20))
+    return found, traces(reference, aligned, leaves, parts, found, TracesParams(rings=20))
 
 
 def ends(body: Known) -> tuple[int, ...]:
@@ -84,6 +92,20 @@ def test_a_body_without_leaves_has_no_cones_and_one_without_motion_no_borders() 
     stiff = body._replace(label=np.zeros(len(body.V), int), R=body.R[:, :1], t=body.t[:, :1])
     alone = told(stiff._replace(x=np.stack([body.V] * 12)))
     assert (len(alone.pair), alone.joint.tolist(), alone.length.tolist()) == (0, [0], [0.0])
+
+
+@pytest.mark.parametrize("stiff", [False, True])
+def test_pictures_say_where_there_is_nothing_to_see(stiff: bool) -> None:
+    body = chain((0.0,), swings(8, 2))
+    if stiff:
+        body = body._replace(label=np.zeros(len(body.V), int), R=body.R[:, :1], t=body.t[:, :1], x=np.stack([body.V] * 8))
+    shown = dict(zip(("skeleton", "traces"), both(body), strict=True))
+    figures = [draw(lambda name, frame=None: shown[name], [FIRST]) for draw in (cones, merging, structure, lengths)]
+    words = [" ".join(text.get_text() for text in figure.findobj(Text)) for figure in figures]
+    assert "no cones" in words[0]
+    assert "no cones" in words[1]
+    assert ("0 joints" if stiff else "1 joints") in words[2]
+    assert ("no bones" in words[3]) == stiff
 
 
 def test_frames_that_are_not_trusted_and_a_second_run_change_nothing() -> None:
