@@ -28,7 +28,7 @@ from kinetree.tasks.plots.alignment import alignment as alignment_figure
 from kinetree.tasks.plots.evaluation import drawn as errors_figure
 from kinetree.tasks.plots.macroscopic import correlation as correlation_figure
 from kinetree.tasks.plots.macroscopic import mu as mu_figure
-from kinetree.tasks.plots.motion import angles, length_variation
+from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, tree
 from kinetree.tasks.plots.structure import skeleton as skeleton_figure
 from kinetree.tasks.plots.traces import cones, lengths, merging
@@ -68,7 +68,7 @@ def report(
         warnings=heeded(skeleton, intervals, leaves, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, alignment)),
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, traces)),
             *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
             Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
             Section("alignment", "Alignment", _aligned(fetch, frames, up, reference)),
@@ -83,9 +83,9 @@ def _structure(
     up: int | None,
     skeleton: Skeleton,
     intervals: Intervals,
-    aligned: Mapping[int, Alignment],
+    traces: Traces,
 ) -> str:
-    varies = 100 * length_variation(skeleton, aligned)
+    varies = traces.variation
     unit = skeleton.unit or "unit of the input"
     rows = [
         (
@@ -93,7 +93,7 @@ def _structure(
             skeleton.kinds[j],
             skeleton.names[parent] if parent >= 0 else "–",
             float(skeleton.lengths[j]),
-            f"{varies[j]:.2g}" if np.isfinite(varies[j]) else "–",
+            f"{varies[j]:.2g}" if parent >= 0 else "–",
             float(skeleton.degrees[j]),
             float(skeleton.drift[j]),
             int(skeleton.support[j]),
@@ -134,7 +134,7 @@ def _traced(fetch: Any, frames: list[int], up: int | None) -> str:
         picture(cones(fetch, frames, up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False)
         + picture(
             merging(fetch, frames, up),
-            "What merging a cone's annuli across each border would cost; the first cut, and in colours the parts in the end.",
+            "What merging a cone's annuli across each border would cost; the first cut; in colours the parts that are left, white where cones share annuli.",
         )
         + picture(structure_figure(fetch, frames, up), "The graph of parts before, and the tree that was left.", vector=False)
         + picture(lengths(fetch, frames, up), "By what bones' lengths varied before they were held; afterwards by nothing.")
