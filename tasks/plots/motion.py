@@ -1,12 +1,9 @@
-"""How every joint turns over time, and how far a bone's length varies before it is fixed (2014, Sec. 6.3)."""
+"""How every joint turns over time."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.array import Floats
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.plots.drawing import COLOURS, Fetch, blank
@@ -15,8 +12,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLUMNS = 4
-FEWEST = 3
-"""Vertices without which a part's motion is not known."""
 
 
 def angles(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
@@ -54,40 +49,3 @@ def turns(found: Skeleton) -> Floats:
     above = np.where(parent < 0, np.arange(len(parent)), parent)
     trace = np.einsum("tjxy,tjxy->tj", found.rotation[:, above], found.rotation)
     return np.asarray(np.degrees(np.arccos(np.clip((trace - 1) / 2, -1, 1))), dtype=np.float64)
-
-
-def length_variation(found: Skeleton, aligned: Mapping[int, Alignment]) -> Floats:
-    """Standard deviation of every bone's length over the frames, share of its mean, before lengths are fixed.
-
-    Every rigid part is laid onto the aligned mesh of each frame by itself; a joint is amid where the two parts that meet
-    in it carry it, the end of a bone where its one part does.
-    returns : (joint,) of the bone to the parent; NaN for the root and where a part has too few vertices
-    """
-    parent = np.array(found.parents)
-    X = np.stack([aligned[frame].vertices for frame in found.frames])
-    carrier = np.where([kind == "leaf" for kind in found.kinds], parent, np.arange(len(parent)))
-    part = {int(j): _laid(found.vertices, X, np.flatnonzero(found.label == j)) for j in np.unique(carrier)}
-
-    def carried(by: int, j: int) -> Floats:
-        turn, shift = part[by]
-        return np.asarray(turn @ found.rest[j] + shift, dtype=np.float64)
-
-    at = np.stack([carried(int(carrier[j]), j) for j in range(len(parent))], axis=1)
-    for j, p in enumerate(parent):
-        if p >= 0 and found.kinds[j] == "joint":
-            at[:, j] = (at[:, j] + carried(int(p), j)) / 2
-    length = np.linalg.norm(at - at[:, np.maximum(parent, 0)], axis=2)
-    varies: Floats = length.std(axis=0) / np.maximum(length.mean(axis=0), 1e-300)
-    varies[parent < 0] = np.nan
-    return varies
-
-
-def _laid(V: Floats, X: Floats, held: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """(frame, row, xyz) and (frame, xyz): the rigid motion that lays some vertices best onto each frame (Kabsch 1976)."""
-    if len(held) < FEWEST:
-        return np.full((len(X), 3, 3), np.nan), np.full((len(X), 3), np.nan)
-    v, x = V[held].mean(axis=0), X[:, held].mean(axis=1)
-    U, _, W = np.linalg.svd(np.einsum("vx,tvy->txy", V[held] - v, X[:, held] - x[:, None]))
-    U[:, :, 2] *= np.linalg.det(U @ W)[:, None]
-    R = np.swapaxes(U @ W, 1, 2)
-    return R, x - R @ v

@@ -9,11 +9,9 @@ from pages import artifacts, judged, unjudged
 from rigs import spider
 
 from kinetree.pipeline.errors import ConfigError
-from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.skeleton import Skeleton
 from kinetree.tasks.plots import WHAT, draw
 from kinetree.tasks.plots.drawing import view
-from kinetree.tasks.plots.motion import length_variation, turns
+from kinetree.tasks.plots.motion import turns
 
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -67,27 +65,6 @@ def test_feet_on_the_ground_tell_what_is_up() -> None:
     body = rng.uniform([0, 0, 0], [1, 3, 2], size=(500, 3))
     walk = [body + [0, step, 0] for step in range(4)]
     assert np.array_equal(view(walk, None)[:, 1], [0, 0, 1])
-
-
-def test_length_of_a_bone_between_rigid_parts_does_not_vary_and_a_part_that_slides_shows() -> None:
-    body = spider()
-    carrier = np.where(body.label < 0, 0, body.label)
-    x = np.einsum("tvxy,vy->tvx", body.rotation[:, carrier], body.vertices - body.rest[carrier]) + body.positions[:, carrier]
-    rigid = length_variation(body, _aligned(body, x))
-    moving = np.array(body.kinds) == "joint"
-    assert np.isnan(rigid[0])
-    assert rigid[moving].max() < 1e-9
-    arm = body.names.index("arm")
-    out = np.einsum("txy,y->tx", body.rotation[:, 0], body.rest[arm] - body.rest[0]) * np.linspace(0, 0.4, len(x))[:, None]
-    slid = x + np.where((body.label == arm)[None, :, None], out[:, None], 0.0)
-    steps = 1 + np.linspace(0, 0.2, len(x))  # the joint is amid both parts, so that half of it is seen
-    assert length_variation(body, _aligned(body, slid))[arm] == pytest.approx(steps.std() / steps.mean(), rel=1e-6)
-
-
-def _aligned(body: Skeleton, x: Any) -> dict[int, Alignment]:
-    one = np.ones(len(body.vertices))
-    told = {"residual": 0 * one, "stretch": one, "trust": one, "uncovered": 0.0}
-    return {f: Alignment(vertices=x[t], **told) for t, f in enumerate(body.frames)}
 
 
 def test_turning_of_a_hinge_is_the_angle_it_was_turned_by() -> None:
