@@ -134,7 +134,7 @@ def _traced(fetch: Any, frames: list[int], up: int | None) -> str:
         picture(cones(fetch, frames, up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False)
         + picture(
             merging(fetch, frames, up),
-            "What merging a cone's annuli across each border would cost; the first cut; in colours the parts that are left, white where cones share annuli.",
+            "What merging annuli across each border would cost, and the first cut; coloured: parts left, white: shared annuli.",
         )
         + picture(structure_figure(fetch, frames, up), "The graph of parts before, and the tree that was left.", vector=False)
         + picture(lengths(fetch, frames, up), "By what bones' lengths varied before they were held; afterwards by nothing.")
