@@ -20,9 +20,9 @@ YIELD = 0.03  # relative bending at which a tie counts half
 # the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
 # the second so finely that a section which is not quite round holds its turn
 PASSES = (
-    FitSettings(4, (0.48, 0.24), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1),
-    FitSettings(4, (0.32, 0.16), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
-    FitSettings(4, (0.12, 0.06), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+    FitSettings(4, (0.24, 0.12), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1),
+    FitSettings(4, (0.16, 0.08), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+    FitSettings(4, (0.06, 0.03), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
 )
 
 
