@@ -70,14 +70,6 @@ def test_each_interval_has_one_mesh_that_follows_the_body_whoever_computes_it(tm
     assert pipeline.run()["tasks"]["arap"]["ran"] == 0
 
 
-def test_preset_of_the_paper_reaches_the_end_of_step_two(tmp_path: Path) -> None:
-    synth = {"figure": "quadruped", "frames": 4, "vertices": 700}
-    pipeline = ran(tmp_path, extends="paper-2014", source={"synth": synth})
-    count = len(artifact(pipeline, "intervals").begin)
-    seen = [t for i in range(count) for t in artifact(pipeline, "middle", interval=i).frames]
-    assert seen == [0, 1, 2, 3]
-
-
 def test_ball_without_leaves_is_followed_by_nothing_and_the_run_says_so(tmp_path: Path) -> None:
     balls = [trimesh.creation.icosphere(subdivisions=2).apply_scale(1 + 0.1 * t) for t in range(2)]
     balls[1].faces = np.roll(balls[1].faces, 7, axis=0)

@@ -1,13 +1,14 @@
 """`kinetree plot`: pictures of what a run found."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.tasks.plots import WHAT, draw
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.plots import OF, WHAT, draw
 
 EXAMPLES = "Examples: kinetree plot walk/ correlation -o correlation.pdf · kinetree plot walk/ mu --frames 0,12,30"
 
@@ -26,12 +27,17 @@ def plot(
     ] = "",
     up: Annotated[str | None, typer.Option("--up", help="Axis that points up: x, y or z; default: guessed.")] = None,
 ) -> None:
-    """Draw what a run found: correlation, C(t) with its cuts; mu, the integral of geodesic distance with the leaves."""
+    """Draw what a run found, for a paper or a screen: curves, surfaces, the tree, errors against a truth."""
     pipeline = Pipeline.of(run)
     schedule = pipeline.schedule()
     known = sorted(node.at[0] for node in schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
-    draw(what, lambda name, **index: pipeline.artifact(name, within=schedule, **index), _wanted(frames, known), path, _axis(up))
+    skeleton = pipeline.tasks.writers[Skeleton].name
+
+    def fetch(name: str, **index: int) -> Any:
+        return pipeline.artifact(skeleton if name == "skeleton" else name, within=schedule, **index)
+
+    draw(what, fetch, _wanted(frames, known), path, _axis(up), OF[pipeline.config.method])
     typer.echo(str(path))
 
 

@@ -9,6 +9,8 @@ from kinetree.tasks.plots.alignment import alignment
 from kinetree.tasks.plots.drawing import FORMATS, Fetch, written
 from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
+from kinetree.tasks.plots.mesoscopic import cones as cones_2014
+from kinetree.tasks.plots.mesoscopic import merging as merging_2014
 from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
 from kinetree.tasks.plots.traces import cones, lengths, merging, structure
@@ -16,7 +18,9 @@ from kinetree.tasks.plots.traces import cones, lengths, merging, structure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
+Figures = Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]]
+
+WHAT: Figures = {
     "correlation": correlation,
     "mu": mu,
     "alignment": alignment,
@@ -30,17 +34,24 @@ WHAT: Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]] = {
     "angles": angles,
     "errors": evaluation,
 }
-"""What can be drawn, by the word of the command line."""
+"""What can be drawn of the default method, by the word of the command line."""
+
+_AS_EVER = ("correlation", "mu", "skeleton", "tree", "confidence", "angles", "errors")
+OF: Mapping[str, Figures] = {
+    "mesoscopic": WHAT,
+    "mesoscopic-2014": {**{name: WHAT[name] for name in _AS_EVER}, "cones": cones_2014, "merging": merging_2014},
+}
+"""What can be drawn of each method."""
 
 
-def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None = None) -> None:
-    """Draws into a file, complete or not at all.
+def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None = None, figures: Figures = WHAT) -> None:
+    """Draws one of `figures` into a file, complete or not at all.
 
     up     : axis of the coordinates that points up; None guesses it
-    raises : ConfigError where `what` is not known, the file's ending is none of FORMATS or it cannot be written
+    raises : ConfigError where `what` is not one of them, the file's ending is none of FORMATS or it cannot be written
     """
-    if what not in WHAT:
-        raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(WHAT))}")
+    if what not in figures:
+        raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(figures))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    written(WHAT[what](fetch, frames, up), path)
+    written(figures[what](fetch, frames, up), path)
