@@ -181,7 +181,7 @@ def test_export_writes_into_a_folder_that_is_named(out, tmp_path, form, left):
 
 def test_export_names_a_single_file_as_it_is_told(out, tmp_path, capsys):
     before = (out / "run.json").read_bytes()
-    export(str(out), "glb", tmp_path / "deep" / "walk.glb", ["glb.scale=0.001"])
+    export(str(out), "glb", tmp_path / "deep" / "walk.glb", ["glb.scale=0.5"])
     assert names(tmp_path / "deep") == ["walk.glb"]
     assert (tmp_path / "deep" / "walk.glb").read_bytes() != (out / "skeleton.glb").read_bytes()
     assert capsys.readouterr().out == f"{tmp_path}/deep/walk.glb\n"
