@@ -29,7 +29,9 @@ def reference(
     leaves = [len(t.vertices) for t in tips.values()]
     euler = [t.euler for t in tips.values()]
     area = [m.cleaning.area for m in mesh.values()]
-    chosen = numerics.reference(leaves, euler, area, np.stack([_quantiles(d) for d in distribution.values()]))
+    profile = np.stack([_quantiles(d) for d in distribution.values()])
+    chords = np.stack([numerics.chords(m.vertices, m.faces) for m in mesh.values()])
+    chosen = numerics.reference(leaves, euler, area, profile, chords)
     mine = mesh[frames[chosen.frame]]
     return Reference(
         frames=frames,
