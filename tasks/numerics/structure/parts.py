@@ -4,12 +4,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.components import largest_component
 from kinetree.tasks.numerics.leaves import leaves as tips
 from kinetree.tasks.numerics.mu import farthest_bases, mu
 from kinetree.tasks.numerics.rings import rings
+from kinetree.tasks.numerics.scene import decimated
 from kinetree.tasks.numerics.structure.beginning import cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated
 from kinetree.tasks.numerics.structure.fitting import fit, misfit, residuals, unevenness
@@ -46,6 +49,7 @@ class PartsSettings(NamedTuple):
     split   : growth of the mean squared residual, times area, from which on patches of one run or group stay apart
     smooth  : radius of the surroundings that decide with a vertex
     bar     : what a part must pass to stay
+    most    : vertices; a larger surface is asked at so many, and the others go with the nearest of them
     slip    : the bar's own where every vertex was followed: nothing slides along the surface there
     """
 
@@ -56,6 +60,7 @@ class PartsSettings(NamedTuple):
     split: float = 1e-7
     smooth: float = 0.015
     bar: Bar = Bar()
+    most: int = 14_000
     slip: float = 0.6
 
 
@@ -78,18 +83,43 @@ def parts(
     chosen = settings or PartsSettings()
     if trust is None:
         chosen = chosen._replace(bar=chosen.bar._replace(slip=chosen.slip))
-    kept, body, _ = largest_component(V, np.array(F, np.int32))
-    number = np.full(len(V), -1)
-    number[kept] = np.arange(len(kept))
+    kept, body = _asked(V, F, chosen.most)
+    nearest = _nearest(V, F, kept)
     surface = Surface.of(V[kept], body)
-    tip = _tips(surface, body) if leaves is None else number[leaves][number[leaves] >= 0]
+    tip = _tips(surface, body) if leaves is None else np.unique(nearest[leaves])
     size, centre, shift = float(np.sqrt(surface.area.sum())), surface.centre, x[:, kept].mean(axis=1, keepdims=True)
     X = np.ascontiguousarray((x[:, kept] - shift) / size, np.float64)
     weight = np.ones(X.shape[:2]) if trust is None else np.array(trust[:, kept], np.float64)
     found = _found(surface, body, (V[kept] - centre) / size, X, weight, tip, chosen)
     t = size * found.t + shift - found.R @ centre
-    nearest = np.arange(len(V)) if len(kept) == len(V) else cKDTree(V[kept]).query(V)[1]
     return PartsFound(found.label[nearest], found.rigid[nearest], found.R, t, size * found.residual)
+
+
+def _asked(V: Floats, F: npt.NDArray[np.integer[Any]], most: int) -> tuple[Ints, Ints]:
+    """(kept,) vertices of the largest component, of a coarser mesh on some of them if they are many · (face, corner)."""
+    kept, faces, _ = largest_component(V, np.array(F, np.int32))
+    if len(kept) <= most:
+        return kept, faces
+    some, coarse = decimated(V[kept], faces, most)
+    whole, faces, _ = largest_component(V[kept[some]], coarse.astype(np.int32))
+    return kept[some[whole]], faces
+
+
+def _nearest(V: Floats, F: npt.NDArray[np.integer[Any]], kept: Ints) -> Ints:
+    """(vertex,) which of the vertices kept lies nearest along the edges; straight, where no way leads to one."""
+    number = np.full(len(V), -1)
+    number[kept] = np.arange(len(kept))
+    if len(kept) == len(V):
+        return number
+    start, ring = rings(np.array(F, np.int64), len(V))
+    length = np.linalg.norm(V[np.repeat(np.arange(len(V)), np.diff(start))] - V[ring], axis=1)
+    way = csr_array((np.maximum(length, 1e-300), ring, start), shape=(len(V), len(V)))
+    source = dijkstra(way, indices=kept, return_predecessors=True, min_only=True)[2]
+    bare = source < 0
+    out = np.where(bare, -1, number[np.maximum(source, 0)])
+    if bare.any():
+        out[bare] = cKDTree(V[kept]).query(V[bare])[1]
+    return out
 
 
 def _tips(surface: Surface, F: Ints) -> Ints:

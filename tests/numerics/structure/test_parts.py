@@ -6,14 +6,14 @@ import shapes
 import trimesh
 from limbs import bent, rotation, tube
 
-from kinetree.tasks.numerics.structure.parts import parts
+from kinetree.tasks.numerics.structure.parts import PartsSettings, parts
 
 FRAMES = 8
 
 
-def linked(*hinges):
+def linked(*hinges, around=20, along=56):
     """A tube that bends at each hinge, out of phase, about x: V, F, x and the true part of every vertex."""
-    V, F = tube(around=20, along=56)
+    V, F = tube(around, along)
     x = np.empty((FRAMES, *V.shape))
     for f in range(FRAMES):
         x[f] = V
@@ -128,3 +128,23 @@ def test_small_components_go_with_what_is_nearest():
 def test_one_frame_shows_no_parts():
     V, F, _, _ = linked(0.0)
     assert parts(V, F, V[None]).R.shape[1] == 1
+
+
+def test_a_large_surface_asked_at_some_of_its_vertices_has_the_same_parts():
+    V, F, x, true = linked(-1.7, 1.6, around=40, along=120)
+    lone = np.array([[0.9, 0.0, 3.0], [0.9, 0.1, 3.0], [0.9, 0.0, 3.1]])
+    F = np.concatenate([F, [[len(V), len(V) + 1, len(V) + 2]]])
+    x = np.concatenate([x, np.tile(lone, (FRAMES, 1, 1))], axis=1)
+    found = parts(np.concatenate([V, lone]), F, x, settings=PartsSettings(most=2000))
+    assert_parts_are(found, V, np.append(true, [2, 2, 2]))
+    assert len(found.label) == len(found.rigid) == len(V) + 3
+
+
+def test_what_slides_along_the_surface_counts_only_where_every_vertex_was_followed():
+    V, F = tube(around=24, along=56, flat=1.0)
+    share = np.clip((V[:, 2] + 0.2) / 0.4, 0.0, 1.0)
+    twist = 0.065 * np.sin(1.1 * np.arange(FRAMES))[:, None] * share
+    x = np.stack([np.cos(twist) * V[:, 0] - np.sin(twist) * V[:, 1], np.sin(twist) * V[:, 0] + np.cos(twist) * V[:, 1]], 2)
+    x = np.concatenate([x, np.tile(V[:, 2:], (FRAMES, 1, 1))], axis=2)
+    assert parts(V, F, x).R.shape[1] == 2
+    assert parts(V, F, x, np.ones(x.shape[:2])).R.shape[1] == 1
