@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import trimesh
 from articulated import Known, chain, swings, three_arms
-from limbs import rotation
+from limbs import bent, rotation
 
+from kinetree.tasks.numerics.structure.parts import parts
 from kinetree.tasks.numerics.structure.skeleton import Skeleton, skeleton
 
 
@@ -102,3 +104,16 @@ def test_distrust_of_one_frame_is_told_and_changes_no_joint() -> None:
     assert found.support.min() == 15
     assert found.confidence[5].min() < 0.1
     assert found.rest[1] == pytest.approx(of(body).rest[1], abs=1e-3)
+
+
+@pytest.mark.parametrize("leaves", [(), (0,)])
+def test_a_ring_with_no_leaf_or_one_has_one_tree(leaves: tuple[int, ...]) -> None:
+    ring = trimesh.creation.torus(3.0, 0.8, major_sections=48, minor_sections=16)
+    V, F, tips = np.array(ring.vertices), np.array(ring.faces), np.array(leaves, dtype=np.int64)
+    x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
+    held = parts(V, F, x, leaves=tips)
+    found = skeleton(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips)
+    assert (found.parents < 0).sum() == 1
+    assert found.kinds.count("joint") >= 1
+    assert found.kinds.count("joint") + found.kinds.count("leaf") + 1 == len(found.kinds)
+    assert np.isfinite(found.positions).all()
