@@ -31,7 +31,7 @@ from kinetree.tasks.numerics.leaves import leaves
 from kinetree.tasks.numerics.mesh import Cleaned, clean
 from kinetree.tasks.numerics.mu import farthest_bases, mu
 from kinetree.tasks.numerics.projection import projected
-from kinetree.tasks.numerics.reference import chords, profile, reference
+from kinetree.tasks.numerics.reference import profile, reference
 from kinetree.tasks.numerics.repair import Tracked, repaired, tracked
 from kinetree.tasks.numerics.stiffness import PASSES, learned
 from kinetree.tasks.numerics.surface import Surface
@@ -86,9 +86,8 @@ def chosen(meshes: list[Cleaned]) -> int:
         bases = farthest_bases(surface, 60)
         integral = mu(bases.distance, bases.weight)
         count.append(len(leaves(integral, mesh.F).vertex))
-        poses.append((profile(integral, surface.area), chords(mesh.V, mesh.F)))
-    touching, bending = (np.stack(p) for p in zip(*poses, strict=True))
-    return reference(count, [m.euler for m in meshes], [m.area for m in meshes], touching, bending).frame
+        poses.append(profile(integral, surface.area))
+    return reference(count, [m.euler for m in meshes], [m.area for m in meshes], np.stack(poses)).frame
 
 
 def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:

@@ -29,9 +29,7 @@ def reference(
     leaves = [len(t.vertices) for t in tips.values()]
     euler = [t.euler for t in tips.values()]
     area = [m.cleaning.area for m in mesh.values()]
-    profile = np.stack([_quantiles(d) for d in distribution.values()])
-    chords = np.stack([numerics.chords(m.vertices, m.faces) for m in mesh.values()])
-    chosen = numerics.reference(leaves, euler, area, profile, chords)
+    chosen = numerics.reference(leaves, euler, area, np.stack([_quantiles(d) for d in distribution.values()]))
     mine = mesh[frames[chosen.frame]]
     return Reference(
         frames=frames,

@@ -5,20 +5,16 @@ is lost to the area. A reference with a fused hand can never open it, so contact
 amid the others' poses leaves less way to go.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.distance import pdist
-
-from kinetree.tasks.numerics.correspondence import spread
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 HANDLE = 0.01  # of the area: fingers fuse and part at the resolution of the grid, so one handle is weak evidence
 POSE = 0.08  # of the area: for a pose as far from all others as is usual in the sequence
-STILL = 0.001  # of √area: by so much μ and chords of one pose differ when it is sampled anew
 STEADY = 2  # frames on either side that should be as free of contact
 
 
@@ -35,7 +31,7 @@ class Reference(NamedTuple):
     score: Floats
 
 
-def reference(leaves: npt.ArrayLike, euler: npt.ArrayLike, area: npt.ArrayLike, *poses: Floats) -> Reference:
+def reference(leaves: npt.ArrayLike, euler: npt.ArrayLike, area: npt.ArrayLike, profile: Floats) -> Reference:
     """The frame with most leaves, and among those one of large area, few handles and a pose amid all others.
 
     Leaves and handles count as in the worst of a frame and its neighbours, so that frames just before or after contact
@@ -44,14 +40,13 @@ def reference(leaves: npt.ArrayLike, euler: npt.ArrayLike, area: npt.ArrayLike, 
     leaves  : (frame,) number of leaves
     euler   : (frame,) vertices − edges + faces of the frame's clean mesh
     area    : (frame,) mesh unit²
-    poses   : (frame, quantile) each, what changes with the pose, ascending along each row: `profile` tells what touches,
-              `chords` how limbs are bent
+    profile : (frame, quantile) quantiles over the surface of μ / area^1.5, which change with the pose
     returns : Reference; ties go to the frame nearest to the middle, then to the earlier one
     """
     count, characteristic, surface = (np.asarray(x, np.float64) for x in (leaves, euler, area))
     missing = _worst_around(count.max() - count)
     handles = _worst_around((characteristic.max() - characteristic) / 2.0)
-    score = surface / surface.max() - missing - HANDLE * handles - POSE * sum(remoteness(p) for p in poses)
+    score = surface / surface.max() - missing - HANDLE * handles - POSE * remoteness(profile)
     distance = np.abs(np.arange(len(score)) - (len(score) - 1) / 2.0)
     frame = int(np.lexsort((distance, -np.round(score, 9)))[0])
     return Reference(frame, bool(missing[frame] == 0), score)
@@ -69,32 +64,16 @@ def profile(mu: Floats, area: Floats, quantiles: int = 100) -> Floats:
     return np.interp((np.arange(quantiles) + 0.5) / quantiles, total / total[-1], mu[order]) / total[-1] ** 1.5
 
 
-def chords(V: Floats, F: npt.NDArray[np.integer[Any]], points: int = 400, quantiles: int = 100) -> Floats:
-    """Quantiles of the straight distances between points of the surface, in √area: they tell a pose at any scale and
-    tessellation, and do not change when the body moves as a whole  (D2 of Osada et al. 2002).
-
-    V, F    : (vertex, xyz) mesh unit · (face, corner)
-    points  : vertices that stand for equal areas
-    returns : (quantile,) ascending, without unit
-    """
-    P = V[F]
-    area = np.linalg.norm(np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]), axis=1) / 2.0
-    own = np.bincount(F.ravel(), np.repeat(area / 3.0, 3), len(V))
-    order = spread(V, len(V))
-    total = np.cumsum(own[order])
-    chosen = order[np.searchsorted(total, (np.arange(points) + 0.5) / points * total[-1])]
-    return np.quantile(pdist(V[chosen]), (np.arange(quantiles) + 0.5) / quantiles) / np.sqrt(total[-1])
-
-
 def remoteness(profile: Floats) -> Floats:
     """Mean earth mover's distance of each frame's values to all frames', in units of its median over the sequence.
 
     profile : (frame, quantile) ascending along each row
-    returns : (frame,) without unit; near 0 everywhere if frames differ by no more than two samplings of one pose do
+    returns : (frame,) without unit; 0 everywhere if no frame differs from another
     """
     # between distributions given by equally many quantiles the distance is the mean difference
     distance = np.array([np.abs(profile - row).mean() for row in profile])
-    return distance / max(float(np.median(distance)), STILL)
+    middle = float(np.median(distance))
+    return distance / middle if middle > 0.0 else np.zeros(len(profile))
 
 
 def _worst_around(lack: Floats) -> Floats:

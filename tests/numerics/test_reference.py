@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from limbs import bent, rotation, tube
-from shapes import sphere
 
-from kinetree.tasks.numerics.reference import chords, profile, reference, remoteness
+from kinetree.tasks.numerics.reference import profile, reference, remoteness
 
 SAME = np.zeros((9, 5))
 
@@ -80,24 +78,3 @@ def test_the_profile_of_a_pose_knows_neither_scale_nor_tessellation():
     np.testing.assert_allclose(profile(1000 * (2 + x**2), np.full(1001, 100 / 1001)), fine, rtol=1e-9)
     uneven = np.linspace(0, 1, 1001) ** 3
     np.testing.assert_allclose(profile(2 + uneven**2, np.gradient(uneven)), fine, atol=0.01)
-
-
-def test_chords_of_a_ball_are_those_of_the_sphere():
-    V, F = sphere(4)
-    share = (np.arange(100) + 0.5) / 100
-    np.testing.assert_allclose(chords(V, F), 2 * np.sqrt(share) / np.sqrt(4 * np.pi), atol=0.01)
-
-
-def test_chords_know_neither_scale_nor_place_nor_tessellation():
-    V, F = tube()
-    told = chords(V, F)
-    np.testing.assert_allclose(chords(1000 * V, F), told, rtol=1e-9)
-    np.testing.assert_allclose(chords(V @ rotation((1, 2, 3), 1.0).T + 5, F), told, atol=0.01)
-    np.testing.assert_allclose(chords(*tube(around=31, along=70, start=0.1)), told, atol=0.01)
-
-
-def test_the_half_bent_limb_is_amid_the_bent_and_the_straight_one():
-    V, F = tube()
-    poses = np.stack([chords(bent(V, angle), F) for angle in (0.0, 0.5, 1.0, 1.5, 2.0)])
-    assert reference([2] * 5, [2] * 5, [1.0] * 5, poses).frame in (2, 3)
-    assert remoteness(poses).argmax() == 4

@@ -27,23 +27,12 @@ def posed(middle: float) -> Distribution:
     return Distribution(normalisation="sequence", low=0.5, high=1.5, mass=fine / fine.sum())
 
 
-def chosen(
-    leaves: list[int],
-    *,
-    fixed: bool = False,
-    poses: list[float] | None = None,
-    widths: list[float] | None = None,
-    first: int = 0,
-) -> Reference:
+def chosen(leaves: list[int], *, fixed: bool = False, poses: list[float] | None = None, first: int = 0) -> Reference:
     frames = range(first, first + len(leaves))
     middles = poses or [0.5] * len(leaves)
-    width = dict(zip(frames, widths or [1.0] * len(leaves), strict=True))
     cleaning = Cleaning(area=4.0)
     return reference(
-        mesh={
-            t: Mesh(vertices=V * [1.0, 1.0, width[t]] + t, faces=F, vertex_of_input=np.arange(4), cleaning=cleaning)
-            for t in frames
-        },
+        mesh={t: Mesh(vertices=V + t, faces=F, vertex_of_input=np.arange(4), cleaning=cleaning) for t in frames},
         distribution={t: posed(m) for t, m in zip(frames, middles, strict=True)},
         tips={t: seen(n) for t, n in zip(frames, leaves, strict=True)},
         connectivity=Connectivity(fixed=fixed, first_change=None if fixed else first + 1, vertices=4, faces=4),
@@ -60,10 +49,6 @@ def test_frame_far_from_every_contact_is_the_reference() -> None:
 
 def test_pose_amid_the_others_goes_before_a_remote_one() -> None:
     assert chosen([5] * 5, poses=[0.5, 0.5, 0.9, 0.5, 0.5]).frame in (1, 3)
-
-
-def test_shape_amid_the_others_goes_before_a_remote_one() -> None:
-    assert chosen([5] * 5, widths=[1.0, 1.0, 2.0, 1.0, 1.0]).frame in (1, 3)
 
 
 def test_frames_are_reached_outwards_in_both_directions() -> None:
