@@ -15,6 +15,7 @@ Flags = npt.NDArray[np.bool_]
 
 HANDLE = 0.01  # of the area: fingers fuse and part at the resolution of the grid, so one handle is weak evidence
 POSE = 0.08  # of the area: for a pose as far from all others as is usual in the sequence
+FOREIGN = 5.0  # times as far from all others as is usual: another body, or none
 STEADY = 2  # frames on either side that should be as free of contact
 
 
@@ -44,9 +45,11 @@ def reference(leaves: npt.ArrayLike, euler: npt.ArrayLike, area: npt.ArrayLike, 
     returns : Reference; ties go to the frame nearest to the middle, then to the earlier one
     """
     count, characteristic, surface = (np.asarray(x, np.float64) for x in (leaves, euler, area))
-    missing = _worst_around(count.max() - count)
-    handles = _worst_around((characteristic.max() - characteristic) / 2.0)
-    score = surface / surface.max() - missing - HANDLE * handles - POSE * remoteness(profile)
+    far = remoteness(profile)
+    own = far <= FOREIGN
+    missing = _worst_around(np.where(own, count[own].max() - count, count.max()))
+    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0)
+    score = surface / surface[own].max() - missing - HANDLE * handles - POSE * far - np.where(own, 0.0, far)
     distance = np.abs(np.arange(len(score)) - (len(score) - 1) / 2.0)
     frame = int(np.lexsort((distance, -np.round(score, 9)))[0])
     return Reference(frame, bool(missing[frame] == 0), score)

@@ -39,6 +39,13 @@ def test_where_every_frame_touches_the_least_fused_is_chosen_and_marked():
     assert not found.free
 
 
+def test_a_frame_of_another_body_is_neither_chosen_nor_the_measure_of_the_others():
+    leaves, area = [5, 5, 5, 5, 8, 5, 5, 5, 5, 5, 5, 5], [1.0] * 4 + [2.0] + [1.0] * 7
+    found = reference(leaves, [2] * 12, area, poses([0, 0.1, 0, 0.1, 50, 0, 0.1, 0, 0.1, 0, 0.1, 0]))
+    assert found.frame >= 7
+    assert found.free
+
+
 def test_of_free_frames_the_one_with_more_surface_is_chosen():
     area = np.ones(9)
     area[6] = 1.05
