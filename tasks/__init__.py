@@ -1,7 +1,8 @@
 """The papers' table of contents: every operation, in the order in which the papers tell it.
 
 MESOSCOPIC: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
-what was measured to be better in place of some of its steps. MESOSCOPIC_2014: the same to the paper's letter.
+what was measured to be better in place of some of its steps. MESOSCOPIC_2014: the same to the paper's letter. Both begin
+with MACROSCOPIC.
 """
 
 if __name__ != "kinetree.tasks":
@@ -58,7 +59,7 @@ from kinetree.tasks.trust import trust
 from kinetree.tasks.truth import truth
 from kinetree.tasks.usd import usd
 
-MESOSCOPIC = (
+MACROSCOPIC = (
     source,  # Sec. 3
     sequence,
     mesh,
@@ -69,6 +70,10 @@ MESOSCOPIC = (
     tips,  # Sec. 5.1
     intervals,  # Sec. 4
     leaves,  # Sec. 5.1, Eq. 3
+)
+
+MESOSCOPIC = (
+    *MACROSCOPIC,
     reference,  # Sec. 5.3
     template,  # for Sec. 5.2
     tracking,
@@ -100,16 +105,7 @@ MESOSCOPIC = (
 )
 
 MESOSCOPIC_2014 = (
-    source,  # Sec. 3
-    sequence,
-    mesh,
-    connectivity,  # Sec. 7
-    geodesics,  # Sec. 4, Eq. 1
-    distribution,
-    correlation,  # Eq. 2
-    tips,  # Sec. 5.1
-    intervals,  # Sec. 4
-    leaves,  # Sec. 5.1, Eq. 3
+    *MACROSCOPIC,
     coordinates,  # Sec. 5.2, Eq. 4
     middle,  # Sec. 5.3
     matching,  # Eqs. 5 and 6
