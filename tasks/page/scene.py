@@ -95,6 +95,7 @@ def scene(
         "fps": skeleton.fps,
         "rate": (skeleton.fps or 25.0) * len(frames) / len(skeleton.frames),
         "unit": skeleton.unit,
+        "reach": float(np.linalg.norm(high - low)),
         "size": float(np.median(np.linalg.norm(np.ptp(positions, axis=1), axis=1))),
         "centre": positions.mean(axis=(0, 1)).tolist(),
         "low": lattice.low.tolist(),

@@ -149,7 +149,9 @@ class Player {
 
   home() {
     this.controls.target.copy(new THREE.Vector3(...this.scene.centre));
-    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(this.scene.size * 1.75));
+    const { size, reach } = this.scene;
+    const away = Math.min(Math.max(1.75 * size, 1.45 * reach), 3.5 * size); // one that walks far is followed on demand
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(away));
     this.followed = null;
     this.controls.update();
   }
