@@ -45,6 +45,35 @@ def test_first_frame_that_differs_is_told_by_its_number(other):
     assert (made.fixed, made.first_change) == (False, 14)
 
 
+def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_reason():
+    merged = Mesh(vertices=V[:3], faces=F[:1], vertex_of_input=np.array([0, 1, 2, 2]), cleaning=Cleaning(merged=1))
+    made = connectivity({10: merged, 12: frame(), 14: frame(V * 2), 16: frame(V * 3)})
+    assert not made.fixed
+    assert [(o.frame, o.welded, o.vertices, o.faces) for o in made.odd] == [(10, 1, -1, -3)]
+    (said,) = made.remarks()
+    assert "frame 10 does not: 1 vertex lies on another and was welded there (mesh.merge)" in said
+
+
+@pytest.mark.parametrize(
+    ("other", "why"),
+    [
+        (frame(origin=[0, 1, 2, 3, -1]), "its file has 1 vertex more"),
+        (frame(faces=F[:2]), "after cleaning it has 0 vertices more and 2 faces fewer"),
+        (frame(faces=F[::-1]), "its faces are others, or in another order"),
+    ],
+    ids=["another file", "fewer faces", "another order"],
+)
+def test_what_differs_is_told_in_words(other, why):
+    made = connectivity({0: frame(), 1: frame(V * 2), 2: frame(V * 3), 3: other, 4: other})
+    (said,) = made.remarks()
+    assert f"frame 3 (and 1 other frame) does not: {why};" in said
+
+
+def test_a_sequence_surfaced_anew_in_every_frame_says_nothing_of_fixed_connectivity():
+    made = connectivity({t: frame(faces=np.roll(F, t, axis=0)) for t in range(4)})
+    assert (made.fixed, made.odd, made.remarks()) == (False, (), ())
+
+
 def test_change_is_seen_against_the_first_frame():
     made = connectivity({0: frame(faces=F[:3]), 1: frame(), 2: frame()})
     assert (made.fixed, made.first_change, made.vertices, made.faces) == (False, 1, 4, 3)
