@@ -11,13 +11,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.correspondence import Target, uncovered
+from kinetree.tasks.numerics.correspondence import COVERED, Target, uncovered
 from kinetree.tasks.numerics.deformation import FitSettings, Pose, fit, shape
+from kinetree.tasks.numerics.projection import projected
 from kinetree.tasks.numerics.template import Template
 
 Floats = npt.NDArray[np.float64]
 
 LOST = 0.004  # share of a frame that may stay uncovered without a second look
+LIMB = 0.003  # share of a frame this far from the body that is a lost limb; folds of cloth stay uncovered, but near it
+AWAY = 3.0 * COVERED  # share of the body's size
 
 
 @dataclass(frozen=True)
@@ -60,23 +63,30 @@ def tracked(
     settings: FitSettings | None = None,
     usual: float = 0.0,
 ) -> Tracked:
-    """Fit a frame from its neighbour's pose; if much stays uncovered, try the other ways and take what covers most.
+    """Fit a frame from its neighbour's pose; if a limb stays uncovered, try the other ways and take what covers most.
 
     before  : the pose of the neighbour's neighbour, from which to predict; None where there is none
     last    : the pose of the neighbouring frame
     usual   : the least that any frame on the way here left uncovered: holes of a capture, which no way would cover
-    returns : Tracked; the first way that leaves no more than LOST beyond the usual uncovered, else the best of all
+    returns : Tracked; the first way that leaves no more than LOST beyond the usual uncovered, or no more than LIMB of the
+              frame AWAY from the body, else the best of all
     """
     ways = attempts(settings or FitSettings())
     best = _taken(template, last, target, ways[0].settings, 0)
     for number, way in enumerate(ways[1:], start=1):
-        if best.uncovered <= usual + LOST:
+        if best.uncovered <= usual + LOST or strayed(template, best.pose, target) <= LIMB:
             break
         if way.predicted and before is None:
             continue
         start = last if before is None or not way.predicted else predicted(before, last)
         best = min(best, _taken(template, start, target, way.settings, number), key=lambda found: found.uncovered)
     return best
+
+
+def strayed(template: Template, pose: Pose, target: Target) -> float:
+    """Share of a frame further than AWAY from the body: a lost limb, where what is merely uncovered may be a fold."""
+    distance = projected(target.V[target.sample], shape(template, pose)[0], template.F, 1).distance
+    return float((distance > AWAY * target.size).mean())
 
 
 def predicted(before: Pose, last: Pose) -> Pose:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
 
+from kinetree.tasks.numerics import repair
 from kinetree.tasks.numerics.correspondence import Target
-from kinetree.tasks.numerics.deformation import FitSettings, Pose, at_rest, shape
-from kinetree.tasks.numerics.repair import LOST, Tracked, attempts, predicted, repaired, suspects, tracked
+from kinetree.tasks.numerics.deformation import FitSettings, Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.repair import LOST, Tracked, attempts, predicted, repaired, strayed, suspects, tracked
 from kinetree.tasks.numerics.template import TemplateSettings, template
 
 ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
@@ -54,6 +55,25 @@ def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
     V, F = tube(around=29, along=57)
     longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
     assert tracked(body, None, at_rest(body), longer, usual=1.0).attempt == 0
+
+
+def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, monkeypatch):
+    V, F = tube(around=29, along=57)
+    inner = F[V[F, 2].max(axis=1) < V[:, 2].min() + 0.3 * LENGTH][:, ::-1]
+    folded = Target.of(np.concatenate([V, 0.97 * V]), np.concatenate([F, inner + len(V)]), body.size)
+    fits = []
+    monkeypatch.setattr(repair, "fit", lambda *a: fits.append(a) or fit(*a))
+    found = tracked(body, None, at_rest(body), folded)
+    assert found.uncovered > 2 * LOST
+    assert strayed(body, found.pose, folded) == 0
+    assert len(fits) == 1
+
+
+def test_what_strays_is_the_share_of_a_frame_far_from_the_body(body):
+    V, F = tube(around=29, along=57)
+    there = Target.of(V, F, body.size)
+    assert strayed(body, at_rest(body), there) == 0
+    assert strayed(body, rigid(body, np.eye(3), np.array([10 * LENGTH, 0, 0])), there) == 1
 
 
 def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
