@@ -1,8 +1,13 @@
-"""How an interval's reference is deformed to its frames (2014, Sec. 5.3; Sorkine, Alexa 2007); the result is an `Alignment`."""
+"""An interval's reference in one of its frames, and how it is deformed to it (2014, Sec. 5.3; Sorkine, Alexa 2007)."""
 
 from pydantic import Field
 
+from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.array import Params
+
+
+class Arap(Alignment):
+    """Where every vertex of the interval's own reference is in this frame, told as every alignment is."""
 
 
 class ArapParams(Params):

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,6 @@ class ReportParams(Params):
     """Vertices of an input mesh at most."""
     views: int = Field(default=4, ge=1, le=12)
     """Frames of which still pictures are drawn."""
-    up: Literal["x", "y", "z"] | None = None
-    """Axis of the coordinates that points up; None guesses it."""
 
 
 class Report(Artifact):

@@ -23,14 +23,17 @@ from kinetree.tasks.crossing import crossing
 from kinetree.tasks.cylinders import cylinders
 from kinetree.tasks.distribution import distribution
 from kinetree.tasks.evaluation import evaluation
+from kinetree.tasks.evidence import evidence
 from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.glb import glb
 from kinetree.tasks.integration import integration
 from kinetree.tasks.intervals import intervals
 from kinetree.tasks.kinematic_structure import kinematic_structure
+from kinetree.tasks.landed_alignment import landed_alignment
 from kinetree.tasks.landed_projection import landed_projection
 from kinetree.tasks.landing import landing
 from kinetree.tasks.leaves import leaves
+from kinetree.tasks.letter_evidence import letter_evidence
 from kinetree.tasks.limb import limb
 from kinetree.tasks.matching import matching
 from kinetree.tasks.mesh import mesh
@@ -57,6 +60,7 @@ from kinetree.tasks.traces import traces
 from kinetree.tasks.tracking import tracking
 from kinetree.tasks.trust import trust
 from kinetree.tasks.truth import truth
+from kinetree.tasks.upright import upright
 from kinetree.tasks.usd import usd
 
 MACROSCOPIC = (
@@ -70,6 +74,7 @@ MACROSCOPIC = (
     tips,  # Sec. 5.1
     intervals,  # Sec. 4
     leaves,  # Sec. 5.1, Eq. 3
+    upright,
 )
 
 MESOSCOPIC = (
@@ -101,6 +106,7 @@ MESOSCOPIC = (
     ply,
     rignet,
     usd,
+    evidence,  # Figs. 7, 11 and 15
     report,
 )
 
@@ -120,16 +126,20 @@ MESOSCOPIC_2014 = (
     bones,  # Sec. 6.3
     kinematic_structure,
     landing,
+    landed_alignment,
     landed_projection,
     truth,
     evaluation,  # Sec. 7
     glb,
     bvh,
     skeleton_json,
+    segmentation,
     tables,
     ply,
     rignet,
     usd,
+    letter_evidence,  # Figs. 7, 11, 13 and 15
+    report,
 )
 
 METHODS = {"mesoscopic": Graph.of(MESOSCOPIC), "mesoscopic-2014": Graph.of(MESOSCOPIC_2014)}

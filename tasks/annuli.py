@@ -5,15 +5,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.annuli import Annuli, AnnuliParams
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.limb import Limb
 from kinetree.schemas.middle import Middle
 from kinetree.tasks.numerics.mesoscopic.clustering import clustered
 
 
 @task(over="interval/cone")
-def annuli(limb: Limb, middle: Middle, alignment: Mapping[int, Alignment], params: AnnuliParams) -> Annuli:
+def annuli(limb: Limb, middle: Middle, alignment: Mapping[int, Arap], params: AnnuliParams) -> Annuli:
     """Clusters annuli that move as one, from the leaf on, by the ratio of cast- to self-error (2014, Eqs. 9 to 12)."""
     used = np.unique(limb.ring[limb.ring >= 0])
     inside = np.flatnonzero(limb.ring >= 0)

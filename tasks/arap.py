@@ -5,8 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.arap import ArapParams
+from kinetree.schemas.arap import Arap, ArapParams
 from kinetree.schemas.array import Floats
 from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.matching import Matching
@@ -20,19 +19,19 @@ from kinetree.tasks.numerics.trust import stretches
 
 
 @task(over="interval/frame")
-def arap(middle: Middle, matching: Matching, mesh: Mesh, connectivity: Connectivity, params: ArapParams) -> Alignment:
+def arap(middle: Middle, matching: Matching, mesh: Mesh, connectivity: Connectivity, params: ArapParams) -> Arap:
     """Deforms the reference as rigidly as possible, softly held where the mapping takes its vertices (2014, Sec. 5.3)."""
     rest, F = np.array(middle.vertices), middle.faces.astype(np.int64)
     if connectivity.fixed:
         x = np.array(mesh.vertices)
-        return Alignment(
+        return Arap(
             vertices=x, residual=np.zeros(len(x)), stretch=stretches(rest, x, F), trust=np.ones(len(x)), uncovered=0.0
         )
     x = _deformed(middle, matching, mesh, params)
     target = Target.of(np.array(mesh.vertices), mesh.faces, middle.size)
     # the mapping leaves much uncovered everywhere: that is no sign of a lost limb, and `uncovered` tells it
     found = belief(rest, x, smoothed_normals(x, F), F, target, usual=1.0)
-    return Alignment(vertices=x, residual=found.residual, stretch=found.stretch, trust=found.trust, uncovered=found.uncovered)
+    return Arap(vertices=x, residual=found.residual, stretch=found.stretch, trust=found.trust, uncovered=found.uncovered)
 
 
 def _deformed(middle: Middle, matching: Matching, mesh: Mesh, params: ArapParams) -> Floats:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.bones import Bones
 from kinetree.schemas.consistency import Consistency
 from kinetree.schemas.crossing import Crossing
@@ -17,7 +17,7 @@ from kinetree.tasks.numerics.mesoscopic.transfer import centroids, labels
 @task()
 def bones(
     middle: tuple[Middle, ...],
-    alignment: tuple[Alignment, ...],
+    alignment: tuple[Arap, ...],
     consistency: Consistency,
     crossing: Crossing,
     cylinders: Cylinders,

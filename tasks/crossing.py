@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.array import Floats
 from kinetree.schemas.crossing import Crossing
 from kinetree.schemas.leaves import Leaves
@@ -21,7 +21,7 @@ Ints = NDArray[np.int64]
 
 @task()
 def crossing(
-    middle: tuple[Middle, ...], alignment: tuple[Alignment, ...], tips: Mapping[int, Tips], leaves: Leaves
+    middle: tuple[Middle, ...], alignment: tuple[Arap, ...], tips: Mapping[int, Tips], leaves: Leaves
 ) -> Crossing:
     """Relates vertices and leaves of each interval to those of the next by nearness at the cut (2014, Eqs. 3, 7 and 8)."""
     end = np.cumsum([len(m.frames) for m in middle])
@@ -44,7 +44,7 @@ def crossing(
     )  # fmt: skip
 
 
-def _sides(middle: Middle, alignment: Alignment) -> tuple[Floats, Floats]:
+def _sides(middle: Middle, alignment: Arap) -> tuple[Floats, Floats]:
     """An interval's reference in one of its frames, and its normals there."""
     return alignment.vertices, smoothed_normals(np.array(alignment.vertices), middle.faces, rounds=0)
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.array import Bools, Floats
 from kinetree.schemas.consistency import Consistency
 from kinetree.schemas.crossing import Crossing
@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 @task()
 def cylinders(
     middle: tuple[Middle, ...],
-    alignment: tuple[Alignment, ...],
+    alignment: tuple[Arap, ...],
     consistency: Consistency,
     crossing: Crossing,
     integration: Integration,
@@ -66,7 +66,7 @@ def ways_to(home: int, middle: tuple[Middle, ...], crossing: Crossing) -> list[I
     return [way(onward, backward, i, home, len(m.vertices)) for i, m in enumerate(middle)]
 
 
-def motions(middle: tuple[Middle, ...], alignment: tuple[Alignment, ...]) -> list[Floats]:
+def motions(middle: tuple[Middle, ...], alignment: tuple[Arap, ...]) -> list[Floats]:
     """Of every interval, (frame, vertex, xyz) its reference in all of its frames."""
     end = np.cumsum([len(m.frames) for m in middle])
     return [np.stack([a.vertices for a in alignment[e - len(m.frames) : e]]) for m, e in zip(middle, end, strict=True)]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.array import Floats
 from kinetree.schemas.bones import Bones
 from kinetree.schemas.consistency import Consistency
@@ -19,13 +19,13 @@ from kinetree.tasks.cylinders import motions
 from kinetree.tasks.numerics.mesoscopic import structure
 from kinetree.tasks.numerics.mesoscopic.areas import adjacent
 from kinetree.tasks.numerics.mesoscopic.assembly import Hung, hung
-from kinetree.tasks.numerics.mesoscopic.transfer import way
+from kinetree.tasks.numerics.mesoscopic.transfer import carried, way
 
 
 @task()
 def kinematic_structure(
     middle: tuple[Middle, ...],
-    alignment: tuple[Alignment, ...],
+    alignment: tuple[Arap, ...],
     consistency: Consistency,
     crossing: Crossing,
     cylinders: Cylinders,
@@ -79,7 +79,7 @@ def _carried(home: int, middle: tuple[Middle, ...], moving: list[Floats], crossi
     out = []
     for i, x in enumerate(moving):
         to = way(onward, backward, home, i, len(middle[home].vertices))
-        out.append(np.where((to >= 0)[None, :, None], x[:, to], np.nan))
+        out.append(carried(x, to))
     return np.concatenate(out)
 
 

@@ -8,43 +8,45 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.correlation import Correlation
 from kinetree.schemas.evaluation import Evaluation
+from kinetree.schemas.evidence import Evidence
 from kinetree.schemas.geodesics import Geodesics
 from kinetree.schemas.intervals import Intervals
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.mesh import Mesh
 from kinetree.schemas.projection import Projection
-from kinetree.schemas.reference import Reference
 from kinetree.schemas.report import Report, ReportParams
 from kinetree.schemas.sequence import Sequence
 from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.traces import Traces
+from kinetree.schemas.upright import UNSURE, Upright
 from kinetree.tasks.numerics.scene import spread
+from kinetree.tasks.page.chapters import sections
 from kinetree.tasks.page.document import Page, Section, document, picture, table
 from kinetree.tasks.page.heed import counted, heeded, off
 from kinetree.tasks.page.scene import Limits, scene
 from kinetree.tasks.plots.alignment import alignment as alignment_figure
+from kinetree.tasks.plots.alignment import at_rest
 from kinetree.tasks.plots.evaluation import drawn as errors_figure
 from kinetree.tasks.plots.macroscopic import correlation as correlation_figure
 from kinetree.tasks.plots.macroscopic import mu as mu_figure
 from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, tree
 from kinetree.tasks.plots.structure import skeleton as skeleton_figure
-from kinetree.tasks.plots.traces import cones, lengths, merging
-from kinetree.tasks.plots.traces import structure as structure_figure
 
 
 @task()
 def report(
     skeleton: Skeleton,
-    traces: Traces,
-    reference: Reference,
+    evidence: Evidence,
     sequence: Sequence,
+    connectivity: Connectivity,
     correlation: Correlation,
     intervals: Intervals,
     leaves: Leaves,
     evaluation: Evaluation,
+    upright: Upright,
     alignment: Mapping[int, Alignment],
     projection: Mapping[int, Projection],
     mesh: Mapping[int, Mesh],
@@ -52,93 +54,65 @@ def report(
     params: ReportParams,
 ) -> Report:
     """Draws and tells the run on one page that needs no network (ours)."""
-    once = {"skeleton": skeleton, "reference": reference, "correlation": correlation, "intervals": intervals, "leaves": leaves}
-    once |= {"traces": traces}
+    once = {"skeleton": skeleton, "correlation": correlation, "intervals": intervals, "leaves": leaves}
     framed = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
 
     def fetch(name: str, frame: int | None = None) -> Any:
         return once[name] if frame is None else framed[name][frame]
 
     limits = Limits(params.frames, params.vertices, params.input_vertices)
-    up = None if params.up is None else "xyz".index(params.up)
+    up = upright.axis
     frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
-        facts=_facts(skeleton, sequence, reference, intervals, alignment),
+        facts=_facts(skeleton, sequence, intervals, upright, alignment),
         warnings=heeded(skeleton, intervals, leaves, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, traces)),
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, evidence)),
             *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
+            *sections(evidence),
             Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
-            Section("alignment", "Alignment", _aligned(fetch, frames, up, reference)),
+            Section("alignment", "Alignment", _aligned(fetch, frames, up, connectivity)),
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
 def _structure(
-    fetch: Any,
-    frames: list[int],
-    up: int | None,
-    skeleton: Skeleton,
-    intervals: Intervals,
-    traces: Traces,
+    fetch: Any, frames: list[int], up: int, skeleton: Skeleton, intervals: Intervals, evidence: Evidence
 ) -> str:
-    varies = traces.variation
     unit = skeleton.unit or "unit of the input"
-    rows = [
-        (
-            name,
-            skeleton.kinds[j],
-            skeleton.names[parent] if parent >= 0 else "–",
-            float(skeleton.lengths[j]),
-            f"{varies[j]:.2g}" if parent >= 0 else "–",
-            float(skeleton.degrees[j]),
-            float(skeleton.drift[j]),
-            int(skeleton.support[j]),
-            _supporting(skeleton, intervals, j),
-            float(skeleton.confidence[:, j].mean()),
-        )
-        for j, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True))
-    ]
-    head = (
-        "joint",
-        "kind",
-        "parent",
-        "bone",
-        "varies by, %",
-        "turns, °",
-        "parts disagree by",
-        "frames",
-        "intervals",
-        "confidence",
-    )
-    return (
+    pictures = (
         picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
         + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
         + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
-        + _traced(fetch, frames, up)
         + picture(
             angles(fetch, frames, up), "Turning of every joint since the reference pose; bold where confidence is below a half."
         )
-        + f"<p>Lengths in {escape(unit)}; they vary by so much over the frames where every part is followed by itself, before"
-        + " they are fixed. Intervals are those in which a joint's confidence is at least a half.</p>"
-        + table(head, rows)
     )
+    told = f"<p>Lengths in {escape(unit)}. Intervals are those in which a joint's confidence is at least a half.</p>"
+    return pictures + told + table(*_joints(skeleton, intervals, evidence))
 
 
-def _traced(fetch: Any, frames: list[int], up: int | None) -> str:
-    """What the joints were found from (2014, Figs. 7, 11 and 15)."""
-    return (
-        picture(cones(fetch, frames, up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False)
-        + picture(
-            merging(fetch, frames, up),
-            "What merging annuli across each border would cost, and the first cut; coloured: parts left, white: shared annuli.",
-        )
-        + picture(structure_figure(fetch, frames, up), "The graph of parts before, and the tree that was left.", vector=False)
-        + picture(lengths(fetch, frames, up), "By what bones' lengths varied before they were held; afterwards by nothing.")
-    )
+def _joints(skeleton: Skeleton, intervals: Intervals, evidence: Evidence) -> tuple[list[str], list[list[object]]]:
+    """A row for every joint; what no joint has is no column."""
+    parents = np.array(skeleton.parents)
+    columns: dict[str, list[object]] = {
+        "joint": list(skeleton.names),
+        "kind": list(skeleton.kinds),
+        "parent": [skeleton.names[p] if p >= 0 else "–" for p in parents],
+        "bone": skeleton.lengths.tolist(),
+        "varies by, %": [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, evidence.varies)],
+        "turns, °": skeleton.degrees.tolist(),
+        "parts disagree by": skeleton.drift.tolist(),
+        "frames": skeleton.support.tolist(),
+        "intervals": [_supporting(skeleton, intervals, j) for j in range(len(parents))],
+        "confidence": skeleton.confidence.mean(axis=0).tolist(),
+    }
+    if not np.isfinite(evidence.varies).any():
+        del columns["varies by, %"]
+    return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
 
 
 def _supporting(skeleton: Skeleton, intervals: Intervals, j: int) -> str:
@@ -167,34 +141,31 @@ def _judged(evaluation: Evaluation) -> str:
     return told + picture(errors_figure(evaluation), caption) + table(head, rows)
 
 
-def _macroscopic(fetch: Any, frames: list[int], up: int | None) -> str:
+def _macroscopic(fetch: Any, frames: list[int], up: int) -> str:
     return picture(
         correlation_figure(fetch, frames, up),
         "C(t) of Eq. 2 with the cuts and the intervals; below, how near every cue came to its threshold.",
     ) + picture(mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high, with the leaves.", vector=False)
 
 
-def _aligned(fetch: Any, frames: list[int], up: int | None, reference: Reference) -> str:
-    if reference.fixed:
+def _aligned(fetch: Any, frames: list[int], up: int, connectivity: Connectivity) -> str:
+    if connectivity.fixed:
         return "<p>Every frame has the same faces: a vertex is where it is, and there is nothing to align.</p>"
     caption = "Distance of the aligned mesh to every frame, over time and on the surface."
     return picture(alignment_figure(fetch, frames, up), caption, vector=False)
 
 
 def _facts(
-    skeleton: Skeleton,
-    sequence: Sequence,
-    reference: Reference,
-    intervals: Intervals,
-    aligned: Mapping[int, Alignment],
+    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, upright: Upright, aligned: Mapping[int, Alignment]
 ) -> list[tuple[str, str]]:
     return [
         ("frames", str(len(skeleton.frames))),
         ("joints", str(skeleton.kinds.count("joint"))),
         ("ends of bones", str(skeleton.kinds.count("leaf"))),
         ("intervals", str(len(intervals.begin))),
-        ("reference frame", str(reference.frame)),
+        ("reference frame", str(at_rest(skeleton, aligned))),
         ("skin off the aligned meshes by", f"{100 * off(skeleton, aligned):.2g} % of the body's diagonal"),
         ("unit", sequence.unit or "not known"),
         ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),
+        ("up", upright.up + (", a guess" if upright.confidence < UNSURE else "")),
     ]

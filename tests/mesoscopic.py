@@ -10,8 +10,8 @@ from functools import cache
 import numpy as np
 from articulated import Known, swings, three_arms
 
-from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.annuli import Annuli, AnnuliParams
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.array import Floats
 from kinetree.schemas.bones import Bones
 from kinetree.schemas.cones import Cones, ConesParams
@@ -47,7 +47,7 @@ class Made:
 
     body: Known
     middle: tuple[Middle, ...]
-    alignment: tuple[Alignment, ...]
+    alignment: tuple[Arap, ...]
     crossing: Crossing
     cones: tuple[Cones, ...]
     consistency: Consistency
@@ -88,11 +88,11 @@ def passed(body: Known, middle: tuple[Middle, ...]) -> Crossing:
     )  # fmt: skip
 
 
-def followed(body: Known) -> tuple[Alignment, ...]:
+def followed(body: Known) -> tuple[Arap, ...]:
     """The vertices in all frames."""
     plain = np.ones(len(body.V))
     return tuple(
-        Alignment(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0) for x in body.x[: SPANS[-1].stop]
+        Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0) for x in body.x[: SPANS[-1].stop]
     )
 
 

@@ -8,6 +8,7 @@ from rigs import skinned, spider
 from traced import traces_of
 
 from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.correlation import Correlation
 from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.geodesics import Geodesics
@@ -15,11 +16,14 @@ from kinetree.schemas.intervals import Intervals
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.mesh import Cleaning, Mesh
 from kinetree.schemas.projection import Projection
-from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
 from kinetree.schemas.skeleton import Skeleton
+from kinetree.schemas.upright import Upright
+from kinetree.tasks.evidence import evidence
 from kinetree.tasks.page.document import Page, Section, document, table
 from kinetree.tasks.page.scene import Limits, Scene, scene
+
+UP = Upright(up="y", confidence=1.0)
 
 
 def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
@@ -41,12 +45,9 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
-        "traces": traces_of(skeleton),
-        "reference": Reference(
-            frames=frames, frame=frames[0], fixed=not anew, leaves=5, free=True, vertices=skeleton.vertices,
-            faces=skeleton.faces, size=float(np.ptp(skeleton.vertices)), score=np.ones(len(frames)),
-            before=np.arange(-1, steps, dtype=np.int32),
-        ),
+        "evidence": evidence(skeleton, traces_of(skeleton), UP),
+        "upright": UP,
+        "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
         "correlation": Correlation(histograms=np.full((len(frames), 4), 0.25), correlation=np.linspace(0.9, 1.0, steps)),
         "intervals": halves(frames),

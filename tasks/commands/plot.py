@@ -4,11 +4,14 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from pydantic import ValidationError
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.pipeline.errors import ConfigError, KinetreeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.schemas.skeleton import Skeleton
+from kinetree.schemas.upright import Upright
 from kinetree.tasks.plots import OF, WHAT, draw
+from kinetree.tasks.plots.drawing import Fetch
 
 EXAMPLES = "Examples: kinetree plot walk/ correlation -o correlation.pdf · kinetree plot walk/ mu --frames 0,12,30"
 
@@ -25,7 +28,9 @@ def plot(
     frames: Annotated[
         str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw; default: four across the sequence.")
     ] = "",
-    up: Annotated[str | None, typer.Option("--up", help="Axis that points up: x, y or z; default: guessed.")] = None,
+    up: Annotated[
+        str | None, typer.Option("--up", help="What points up: x, y, z, -x, -y or -z; default: as the run has it.")
+    ] = None,
 ) -> None:
     """Draw what a run found, for a paper or a screen: curves, surfaces, the tree, errors against a truth."""
     pipeline = Pipeline.of(run)
@@ -37,14 +42,20 @@ def plot(
     def fetch(name: str, **index: int) -> Any:
         return pipeline.artifact(skeleton if name == "skeleton" else name, within=schedule, **index)
 
-    draw(what, fetch, _wanted(frames, known), path, _axis(up), OF[pipeline.config.method])
+    draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), OF[pipeline.config.method])
     typer.echo(str(path))
 
 
-def _axis(up: str | None) -> int | None:
-    if up is not None and up not in ("x", "y", "z"):
-        raise ConfigError(f"--up {up}: write x, y or z")
-    return None if up is None else "xyz".index(up)
+def _axis(up: str | None, fetch: Fetch) -> int:
+    if up is None:
+        try:
+            return int(fetch("upright").axis)
+        except KinetreeError:  # a run that did not come so far
+            return 1
+    try:
+        return Upright.model_validate({"up": up, "confidence": 1.0}).axis
+    except ValidationError:
+        raise ConfigError(f"--up {up}: write x, y, z, -x, -y or -z") from None
 
 
 def _wanted(text: str, known: list[int]) -> list[int]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinetree.schemas.report import RUN
 from kinetree.tasks.page.scene import Scene
@@ -89,7 +89,12 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 
 
 def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
-    """A figure in the page itself: lines as SVG, surfaces as PNG; its caption is its text for those who cannot see it."""
+    """A figure in the page itself: lines as SVG, surfaces as PNG."""
+    return embedded(rendered(drawn, vector=vector), caption, "svg" if vector else "png")
+
+
+def rendered(drawn: "Figure", *, vector: bool) -> bytes:
+    """A figure as the bytes of a file, the same for the same figure."""
     from matplotlib import rc_context
 
     out = io.BytesIO()
@@ -98,10 +103,15 @@ def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
             verbatim(drawn).savefig(out, format="svg", metadata={"Date": None, "Creator": None})
         else:
             verbatim(drawn).savefig(out, format="png", dpi=110, metadata={"Software": None})
-    kind = "svg+xml" if vector else "png"
-    data = base64.b64encode(out.getvalue()).decode()
+    return out.getvalue()
+
+
+def embedded(content: bytes, caption: str, kind: Literal["png", "svg"]) -> str:
+    """A picture in the page itself; its caption is its text for those who cannot see it."""
+    data = base64.b64encode(content).decode()
+    media = "svg+xml" if kind == "svg" else kind
     return (
-        f'<figure><div class="scroll" tabindex="0"><img alt="{escape(caption)}" src="data:image/{kind};base64,{data}"></div>'
+        f'<figure><div class="scroll" tabindex="0"><img alt="{escape(caption)}" src="data:image/{media};base64,{data}"></div>'
         f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
 

@@ -56,13 +56,13 @@ def scene(
     leaves: Leaves,
     intervals: Intervals,
     limits: Limits,
-    up: int | None = None,
+    up: int = 1,
 ) -> Scene:
     """The body playing, reduced to what a page can hold.
 
     Vertices are turned so that across is x, up is y and towards the eye is z.
 
-    up : axis of the coordinates that points up; None guesses it
+    up : see `view`
     """
     shown = spread(len(skeleton.frames), limits.frames)
     frames = [skeleton.frames[t] for t in shown]

@@ -10,7 +10,9 @@ from kinetree.tasks.plots.drawing import FORMATS, Fetch, written
 from kinetree.tasks.plots.evaluation import evaluation
 from kinetree.tasks.plots.macroscopic import correlation, mu
 from kinetree.tasks.plots.mesoscopic import cones as cones_2014
+from kinetree.tasks.plots.mesoscopic import lengths as lengths_2014
 from kinetree.tasks.plots.mesoscopic import merging as merging_2014
+from kinetree.tasks.plots.mesoscopic import structure as structure_2014
 from kinetree.tasks.plots.motion import angles
 from kinetree.tasks.plots.structure import confidence, skeleton, tree
 from kinetree.tasks.plots.traces import cones, lengths, merging, structure
@@ -18,7 +20,7 @@ from kinetree.tasks.plots.traces import cones, lengths, merging, structure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Figures = Mapping[str, Callable[[Fetch, list[int], int | None], "Figure"]]
+Figures = Mapping[str, Callable[[Fetch, list[int], int], "Figure"]]
 
 WHAT: Figures = {
     "correlation": correlation,
@@ -36,18 +38,15 @@ WHAT: Figures = {
 }
 """What can be drawn of the default method, by the word of the command line."""
 
-_AS_EVER = ("correlation", "mu", "skeleton", "tree", "confidence", "angles", "errors")
-OF: Mapping[str, Figures] = {
-    "mesoscopic": WHAT,
-    "mesoscopic-2014": {**{name: WHAT[name] for name in _AS_EVER}, "cones": cones_2014, "merging": merging_2014},
-}
+_LETTER: Figures = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
+OF: Mapping[str, Figures] = {"mesoscopic": WHAT, "mesoscopic-2014": {**WHAT, **_LETTER}}
 """What can be drawn of each method."""
 
 
-def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int | None = None, figures: Figures = WHAT) -> None:
+def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int = 1, figures: Figures = WHAT) -> None:
     """Draws one of `figures` into a file, complete or not at all.
 
-    up     : axis of the coordinates that points up; None guesses it
+    up     : see `view`
     raises : ConfigError where `what` is not one of them, the file's ending is none of FORMATS or it cannot be written
     """
     if what not in figures:

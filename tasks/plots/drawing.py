@@ -54,20 +54,18 @@ def written(figure: "Figure", path: Path) -> None:
             beside.unlink()
 
 
-def view(bodies: list[Floats], up: int | None) -> Floats:
+def view(bodies: list[Floats], up: int = 1) -> Floats:
     """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
 
-    Where nobody says what is up, it is y or z, as all conventions have it: the one along which the body's lowest point
-    moves less, because feet stand on the ground. The eye looks along the shorter of the other two extents.
+    The eye looks along the shorter of the other two extents.
+
+    up : 0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions
     """
     extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
-    if up is None:
-        lowest = np.array([V.min(axis=0) for V in bodies])
-        sways = np.ptp(lowest, axis=0) - 1e-6 * extent  # of two that do not move, the longer
-        up = 1 if sways[1] <= sways[2] else 2
-    eye = min((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
-    across = 3 - eye - up
-    view = np.eye(3)[:, [across, up, eye]]
+    axis = up if up >= 0 else ~up
+    eye = min((a for a in range(3) if a != axis), key=lambda a: float(extent[a]))
+    view = np.eye(3)[:, [3 - eye - axis, axis, eye]]
+    view[:, 1] *= 1.0 if up >= 0 else -1.0
     view[:, 2] *= np.linalg.det(view)
     return np.asarray(view, dtype=np.float64)
 
@@ -103,6 +101,14 @@ def levels(F: Ints, values: Floats, low: float | None = None, high: float | None
     colour: Floats = colormaps["viridis"](np.nan_to_num((level - low) / max(high - low, 1e-300)))
     colour[np.isnan(level)] = (0.7, 0.7, 0.7, 1.0)
     return colour
+
+
+def graded(highest: float) -> Any:
+    """Colours from 0 to the highest value, for lines and a bar beside them."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    return ScalarMappable(Normalize(0.0, highest), "viridis")
 
 
 def limits(x: NDArray[np.float64]) -> tuple[float, float]:

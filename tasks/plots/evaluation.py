@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 DASHES = ("-", "--", ":", "-.")
 
 
-def evaluation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def evaluation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Error of every scored joint over time with mean and deviation beside it; below, the two measures of 2009."""
     told = fetch("evaluation")
     if told.summary is None:

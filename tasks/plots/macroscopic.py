@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def correlation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """C(t) with the cuts and what made them, intervals shaded in turn (2014, Fig. 5); below, how near each cue came."""
     series, cut = fetch("correlation"), fetch("intervals")
     figure, (axes, below) = blank(9.0, 6.0, rows=2)
@@ -35,7 +35,7 @@ def correlation(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figu
     return figure
 
 
-def mu(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
     followed = fetch("leaves")
     figure, row = blank(3.2 * len(frames), 4.2, len(frames))

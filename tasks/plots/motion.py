@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 COLUMNS = 4
 
 
-def angles(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def angles(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """How far every joint has turned against its parent since the reference pose, a picture a joint."""
     found: Skeleton = fetch("skeleton")
     inner = [j for j, kind in enumerate(found.kinds) if kind == "joint"]

@@ -19,7 +19,7 @@ PALE = ("#7FB8DB", "#EFB27F", "#7FCEB9", "#E5BCD3", "#F2CF7F", "#AAD9F4", "#BFBF
 """Pale enough that a skeleton is seen over them."""
 
 
-def skeleton(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Parts and skeleton on the aligned mesh, one view a frame; white where the surface is not rigid."""
     found = fetch("skeleton")
     figure, row = blank(3.4 * len(frames), 4.6, len(frames))
@@ -32,7 +32,7 @@ def skeleton(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure"
     return figure
 
 
-def tree(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """The tree of joints by name, from the root outwards: lengths of bones and range of turning."""
     found = fetch("skeleton")
     place = _layout(found.parents)
@@ -53,7 +53,7 @@ def tree(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     return figure
 
 
-def confidence(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """How far every joint is to be believed in every frame, and by what its place is uncertain."""
     found = fetch("skeleton")
     inner = [j for j, kind in enumerate(found.kinds) if kind != "leaf"]

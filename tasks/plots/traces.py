@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.schemas.traces import Traces
-from kinetree.tasks.plots.drawing import BEHIND, COLOURS, Fetch, blank, surface, view
+from kinetree.tasks.plots.drawing import BEHIND, COLOURS, Fetch, blank, graded, surface, view
 from kinetree.tasks.plots.structure import bones, part_colours
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NO_CONES = "no cones: no leaf is seen on the reference mesh"
 
 
-def cones(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Every cone in a colour of its own, its annuli in turn lighter and darker, from both sides.
 
     Pale where cones overlap, dark where there is none.
@@ -38,7 +38,7 @@ def cones(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     return figure
 
 
-def merging(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Merge error along each cone from its tip inwards, the threshold, the first cut, and the parts that are left."""
     found, traced = fetch("skeleton"), fetch("traces")
     count = len(traced.tips)
@@ -62,7 +62,7 @@ def merging(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
     return figure
 
 
-def structure(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Left, all parts that meet, by how far their joint drifts; right, the tree that is left."""
     found, traced = fetch("skeleton"), fetch("traces")
     axis = view([found.vertices], up)
@@ -71,7 +71,7 @@ def structure(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure
     for axes, colour in ((before, pale), (after, part_colours(found))):
         surface(axes, found.vertices @ axis, found.faces, colour)
     drift = 100 * traced.drift / float(np.linalg.norm(np.ptp(found.vertices, axis=0)))
-    shade = _shades(float(drift.max(initial=1e-3)))
+    shade = graded(float(drift.max(initial=1e-3)))
     _graph(before, traced, traced.middle @ axis, traced.rest @ axis, shade.to_rgba(drift))
     bar = figure.colorbar(shade, ax=before, shrink=0.7, location="left", pad=0.0)
     bar.set_label("what its two parts disagree by on a joint, % of the body's diagonal", fontsize=8)
@@ -86,7 +86,7 @@ def structure(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure
     return figure
 
 
-def lengths(fetch: Fetch, frames: list[int], up: int | None = None) -> "Figure":
+def lengths(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """By what every bone's length varies over the sequence as the parts alone carry its ends; held lengths vary by 0."""
     found, traced = fetch("skeleton"), fetch("traces")
     row = [j for j, parent in enumerate(found.parents) if parent >= 0]
@@ -157,14 +157,6 @@ def _lost(traced: Traces) -> Any:
     """(border,) whether a border is a joint no longer: not in the tree, or of a part that was dropped."""
     dropped = traced.joint < 0
     return ~traced.kept | dropped[traced.pair].any(axis=1) if len(traced.pair) else np.zeros(0, np.bool_)
-
-
-def _shades(highest: float) -> Any:
-    """Colours from 0 to the highest value."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    return ScalarMappable(Normalize(0.0, highest), "viridis")
 
 
 def _graph(axes: "Axes", traced: Traces, middle: Floats, rest: Floats, colour: Floats) -> None:

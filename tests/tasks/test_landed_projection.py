@@ -10,7 +10,8 @@ from kinetree.tasks.landed_projection import landed_projection
 def test_every_vertex_that_lands_is_a_corner_of_a_face_and_others_say_so() -> None:
     here = made()
     corner = np.array([5, 0, -1])
-    told = landed_projection((Landing(corner=corner, distance=np.array([0.5, 0.0, np.nan])),), here.skeleton)
+    way = Landing(corner=corner, distance=np.array([0.5, 0.0, np.nan]), place=np.zeros((0, 3)))
+    told = landed_projection((way,), here.skeleton)
     at = np.einsum("vk,vkx->vx", told.share[:2], here.skeleton.vertices[here.skeleton.faces[told.face[:2]]])
     np.testing.assert_array_equal(at, here.skeleton.vertices[corner[:2]])
     assert told.face[2] == -1

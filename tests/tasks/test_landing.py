@@ -13,7 +13,9 @@ def test_tracked_vertices_land_on_themselves_and_dropped_ones_nowhere() -> None:
     became = np.append(np.arange(count)[::-1], -1)
     for interval, t in ((0, 3), (1, 14)):
         mesh = Mesh(vertices=here.body.x[t], faces=here.body.F, vertex_of_input=became, cleaning=Cleaning())
-        told = landing(mesh, here.middle[interval], here.alignment[t], here.consistency, here.bones)
+        given = (here.middle[interval], here.alignment[t], here.consistency, here.crossing, here.cylinders, here.bones)
+        told = landing(mesh, *given)
         assert (told.corner == became).all()
         assert (told.distance[:-1] == 0.0).all()
         assert np.isnan(told.distance[-1])
+        np.testing.assert_array_equal(told.place, here.body.x[t])

@@ -4,6 +4,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+AROUND = 12
+"""Vertices whose motion one without a place follows."""
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -30,3 +33,24 @@ def first_corners(vertices: int, F: Ints) -> tuple[Ints, Floats]:
     face[used] = first // 3
     share[used, first % 3] = 1.0
     return face, share
+
+
+def completed(rest: Floats, place: Floats) -> Floats:
+    """(vertex, xyz) places of all vertices: one that has none moves rigidly with the nearest that have.
+
+    rest  : (vertex, xyz) the mesh where every vertex is known
+    place : (vertex, xyz) in a frame, NaN where there is no way; all are as at rest if none has one
+    """
+    known = np.isfinite(place[:, 0])
+    if not known.any():
+        return rest.copy()
+    out, bare = place.copy(), np.flatnonzero(~known)
+    if len(bare):
+        there = np.flatnonzero(known)
+        near = there[cKDTree(rest[there]).query(rest[bare], k=min(AROUND, len(there)))[1].reshape(len(bare), -1)]
+        P, Q = rest[near], place[near]
+        p, q = P.mean(axis=1, keepdims=True), Q.mean(axis=1, keepdims=True)
+        U, _, Vt = np.linalg.svd((P - p).transpose(0, 2, 1) @ (Q - q))
+        Vt[:, 2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))[:, None]
+        out[bare] = ((rest[bare][:, None] - p) @ U @ Vt + q)[:, 0]
+    return out

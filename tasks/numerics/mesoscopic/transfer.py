@@ -53,3 +53,12 @@ def centroids(x: Floats, label: Ints, area: Floats, count: int) -> Floats:
         if mine.any():
             out[:, a] = np.einsum("v,tvx->tx", area[mine] / area[mine].sum(), x[:, mine])
     return out
+
+
+def carried(x: Floats, to: Ints) -> Floats:
+    """(…, vertex, xyz) where the vertices that each one became are; NaN where the way is broken.
+
+    x  : (…, other, xyz) mesh unit
+    to : (vertex,) see `way`
+    """
+    return np.where((to >= 0)[:, None], x[..., to, :], np.nan)

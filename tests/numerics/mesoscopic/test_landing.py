@@ -3,7 +3,7 @@
 import numpy as np
 from limbs import tube
 
-from kinetree.tasks.numerics.mesoscopic.landing import first_corners, landed
+from kinetree.tasks.numerics.mesoscopic.landing import completed, first_corners, landed
 
 V, F = tube()
 
@@ -28,3 +28,16 @@ def test_every_vertex_is_a_corner_of_its_face():
     assert (np.einsum("vk,vk->v", share[:-1], F[face[:-1]]) == np.arange(len(V))).all()
     assert face[-1] == -1
     assert share[-1].tolist() == [0, 0, 0]
+
+
+def test_places_that_are_missing_of_a_body_that_moves_rigidly_are_found_exactly():
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    x = V @ turn.T + [1, 2, 3]
+    place = x.copy()
+    place[:5] = np.nan
+    np.testing.assert_allclose(completed(V, place), x, atol=1e-9)
+    np.testing.assert_array_equal(completed(V, x), x)
+
+
+def test_body_of_which_nothing_is_known_stays_as_it_was():
+    np.testing.assert_array_equal(completed(V, np.full_like(V, np.nan)), V)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinetree.tasks.numerics.mesoscopic.areas import Areas
-from kinetree.tasks.numerics.mesoscopic.transfer import centroids, labels, way
+from kinetree.tasks.numerics.mesoscopic.transfer import carried, centroids, labels, way
 
 ONWARD = [np.array([1, 2, -1]), np.array([3, 2, 1, 0])]
 BACKWARD = [np.array([-1, 0, 1, 2]), np.array([3, 2, 1, 0])]
@@ -38,3 +38,10 @@ def test_centroid_is_of_the_surface_and_of_what_is_seen():
     found = centroids(x, np.array([0, 0, -1]), np.array([3.0, 1.0, 1.0]), 2)
     assert found[0, 0].tolist() == [1.0, 0.0, 0.0]
     assert np.isnan(found[0, 1]).all()
+
+
+def test_what_has_a_way_is_carried_and_the_rest_is_not_known():
+    x = np.arange(6.0).reshape(1, 2, 3)
+    out = carried(x, np.array([1, -1, 0]))
+    np.testing.assert_array_equal(out[0, [0, 2]], x[0, [1, 0]])
+    assert np.isnan(out[0, 1]).all()
