@@ -76,15 +76,26 @@ def borders(V: Floats, F: Ints, label: Ints) -> Borders:
 
 
 def rotation_centres(
-    R: Floats, t: Floats, pair: Ints, centre: Floats, radius: Floats, residual: Floats, trust: Floats | None = None
+    R: Floats,
+    t: Floats,
+    pair: Ints,
+    centre: Floats,
+    radius: Floats,
+    residual: Floats,
+    trust: Floats | None = None,
+    *,
+    spread: float = SPREAD,
+    alike: float = np.inf,
 ) -> Joints:
     """Rotation centres, c = argmin Σ_t w_t |(R_a − R_b) c − (t_b − t_a)|² + Σ_t w_t (σ / (ρ r))² |c − c₀|², w robust.
 
     R        : (frame, part, 3, 3), t : (frame, part, xyz), from the reference to each frame
     pair     : (border, 2) the parts a, b
-    centre   : (border, xyz) c₀, radius : (border,) r, mesh unit; ρ is `SPREAD`
+    centre   : (border, xyz) c₀, radius : (border,) r, mesh unit
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit; the least that σ can be
     trust    : (frame, part) weight of each part in each frame; None believes all
+    spread   : ρ, standard deviation of a joint about c₀, in r
+    alike    : frames that err alike even where neighbours do not, so that errors of more frames average out; all do not
     """
     a, b = pair[:, 0], pair[:, 1]
     M, d = R[:, a] - R[:, b], t[:, b] - t[:, a]
@@ -92,16 +103,30 @@ def rotation_centres(
     floor = np.sqrt((residual[:, a] ** 2 + residual[:, b] ** 2).mean(axis=0)) + 1e-4 * radius
     c, w, sigma = centre, believed, floor
     for _ in range(ROUNDS):
-        stiff = w.sum(axis=0) * (sigma / (SPREAD * np.maximum(radius, np.finfo(float).tiny))) ** 2
+        stiff = w.sum(axis=0) * (sigma / (spread * np.maximum(radius, np.finfo(float).tiny))) ** 2
         A = np.einsum("tj,tjxy,tjxz->jyz", w, M, M) + stiff[:, None, None] * np.eye(3)
         g = np.einsum("tj,tjxy,tjx->jy", w, M, d) + stiff[:, None] * centre
         c = np.linalg.solve(A, g[..., None])[..., 0]
-        away = np.linalg.norm(np.einsum("tjxy,jy->tjx", M, c) - d, axis=2)
+        rest = np.einsum("tjxy,jy->tjx", M, c) - d
+        away = np.linalg.norm(rest, axis=2)
         usual = np.maximum(np.median(away, axis=0), floor)
         w = believed / (1.0 + (away / (3.0 * usual)) ** 2)
-        sigma = np.maximum(np.sqrt((w * away**2).sum(axis=0) / w.sum(axis=0)), floor)
+        sigma = np.maximum(np.sqrt((w * away**2).sum(axis=0) / w.sum(axis=0)), floor) * np.sqrt(_lasting(rest, w, alike))
     drift = np.sqrt((believed * away**2).sum(axis=0) / believed.sum(axis=0))
     return Joints(c, drift)
+
+
+def _lasting(rest: Floats, w: Floats, alike: float) -> Floats:
+    """(border,) share of the variance of what is left that does not average out over the frames.
+
+    All of it where frames err as their neighbours do, `alike` of T frames where each errs by itself.
+
+    rest : (frame, border, xyz) mesh unit, w : (frame, border) weights
+    """
+    whole = np.maximum((w[:, :, None] * rest**2).sum(axis=(0, 2)), np.finfo(float).tiny)
+    both = (np.sqrt(w[1:] * w[:-1])[:, :, None] * rest[1:] * rest[:-1]).sum(axis=(0, 2))
+    agree = np.clip(both / whole, 0.0, 0.999)
+    return np.minimum(alike / len(rest) * (1.0 + agree) / (1.0 - agree), 1.0)
 
 
 def blend_error(V: Floats, F: Ints, x: Floats, label: Ints, pair: Ints, R: Floats, t: Floats) -> Floats:
@@ -123,15 +148,3 @@ def blend_error(V: Floats, F: Ints, x: Floats, label: Ints, pair: Ints, R: Float
             share = np.clip((apart * rest).sum(axis=(0, 2)) / square, 0.0, 1.0)
             left[row] = np.sqrt(((rest - share[:, None] * apart) ** 2).sum(axis=2).mean())
     return left
-
-
-def blend_centres(V: Floats, area: Floats, share: Floats) -> Floats:
-    """(joint, xyz) the middle of where the surface goes over from one side of each joint to the other, Σ (s (1 − s))² v.
-
-    V, area : (vertex, xyz), (vertex,) mesh unit
-    share   : (vertex, joint) s, how much of each vertex follows what lies beyond the joint
-    returns : NaN where it goes over nowhere
-    """
-    blend = area[:, None] * (share * (1.0 - share)) ** 2
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray((blend.T @ V) / blend.sum(axis=0)[:, None])

@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-from kinetree.tasks.numerics.structure.articulation import Motion, beyond, placed
+from kinetree.tasks.numerics.structure.articulation import Motion, placed
 from kinetree.tasks.numerics.structure.axes import towards_axes
 from kinetree.tasks.numerics.structure.ends import bone_ends
 from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
-from kinetree.tasks.numerics.structure.joints import blend_centres, rotation_centres
+from kinetree.tasks.numerics.structure.joints import rotation_centres
 from kinetree.tasks.numerics.structure.naming import named
 from kinetree.tasks.numerics.structure.pose import SEEN, posed, seen_share
 from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
@@ -22,6 +22,10 @@ Ints = npt.NDArray[np.int64]
 
 NOISE = 0.002
 """Error of a vertex below which its motion says nothing of its weights, share of the root of the area."""
+SPREAD = 0.35
+"""Standard deviation of a joint about where it is expected, in radii of its border."""
+ALIKE = 3.0
+"""Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it."""
 RIGID = 0.75
 """Weight of one part above which a vertex belongs to it."""
 
@@ -146,17 +150,16 @@ def _assembled(
 
 
 def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected between border, blend and axis, and their drift; the root's is its middle."""
+    """Joints in the tree's order, expected amid border or on centre lines, and their drift; the root's is its middle."""
     parts, tree, met = found.parts, found.hung.tree, found.hung.borders
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
     rest[0] = area[root] @ V[root] / area[root].sum()
     rows = tree.border[1:]
-    blend = blend_centres(V, area, W @ beyond(tree.parents).T)[1:]
-    expected = met.centre[rows] + 0.5 * np.where(np.isfinite(blend), blend - met.centre[rows], 0.0)
-    expected = towards_axes(V, area, label, W, tree.parents, expected, met.radius[rows])
+    expected = towards_axes(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
     pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
-    joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], parts.residual, parts.trust)
+    held = (expected, met.radius[rows], parts.residual, parts.trust)
+    joints = rotation_centres(parts.R, parts.t, pair, *held, spread=SPREAD, alike=ALIKE)
     rest[1:], drift[1:] = joints.rest, joints.drift
     return rest, drift
 
