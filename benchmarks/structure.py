@@ -2,13 +2,14 @@
 
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     python benchmarks/structure.py [--data FOLDER] [--aligned FOLDER] [--only NAME ...] [--seeds 10] [--frames 36]
-                                   [--vertices 4000] [--slide 0.005] [--peer 20 30]
+                                   [--vertices 4000] [--slide 0.005] [--noise 0.00067] [--peer 20 30]
 
 Connectivity is fixed, so that what is measured is Step III alone. FOLDER of --data may hold NAME-body.npz (vertices, faces,
 vertex_offsets) beside NAME-body.truth.json; that of --aligned NAME.npz (x, V, F) with the truth in the other. Generated are
 humans, quadrupeds and random trees, so many seeds of each, of other proportions; --seeds 0 leaves them out. --slide moves
 every vertex by a smooth random displacement of that share of the height, correlated over 5 % of it: a harsh picture of an
-alignment's error.
+alignment's error. --noise moves every coordinate of every vertex by a normal deviate of that share of the height (2014,
+Fig. 21: 1 mm of 1,500) and prints how far joints have come, in % of the height, and how many are new or gone.
 
 Stages: `hung`, all parts in a tree; `pruned`, after those that are none were dropped; `fitted`, the finished skeleton with
 bones of one length. --peer gives Dem Bones (py-dem-bones) that many bones and hangs them in the same tree with the same
@@ -114,6 +115,21 @@ def slid(case: Case, share: float) -> Case:
     return Case(case.name, case.group, case.V, case.F, case.x + away, case.truth)
 
 
+def roughened(case: Case, share: float) -> Case:
+    """The same with noise of its own at every vertex in every frame, the reference among them."""
+    x = case.x + np.random.default_rng(0).normal(size=case.x.shape) * share * case.height
+    return Case(case.name, case.group, x[0], case.F, x, case.truth)
+
+
+def displaced(case: Case, quiet: Floats, rough: Floats) -> str:
+    """How far joints (frame, joint, xyz) are from the nearest ones after noise."""
+    apart = 100.0 * np.linalg.norm(quiet[:, :, None] - rough[:, None], axis=3).mean(axis=0) / case.height
+    there, back = apart.min(axis=1), apart.min(axis=0)
+    worst = " ".join(f"{far:.2f}" for far in np.sort(there[there <= 5.0])[::-1][:3])
+    stay = f"{(there <= 0.5).sum()} of {len(there)} within 0.5 %"
+    return f"{case.name:16s} noise      {stay}, worst {worst}, gone {(there > 5.0).sum()}, new {(back > 5.0).sum()}"
+
+
 def score(case: Case, X: Floats) -> Score:
     """What joints X (frame, joint, xyz) are worth."""
     told = case.truth["joints"]
@@ -188,6 +204,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=36)
     parser.add_argument("--vertices", type=int, default=4000)
     parser.add_argument("--slide", type=float, default=0.0)
+    parser.add_argument("--noise", type=float, default=0.0)
     parser.add_argument("--peer", type=int, nargs="*", default=[])
     asked = parser.parse_args()
     stages(made("warm", "warm", random_tree(0), None, 0, 8, 1000))
@@ -199,6 +216,8 @@ def main() -> None:
             continue
         case = slid(case, asked.slide) if asked.slide else case
         joints, parting, rest = stages(case)
+        if asked.noise:
+            print(displaced(case, joints["fitted"], stages(roughened(case, asked.noise))[0]["fitted"]), flush=True)
         rows = [(stage, X, f"{parting:.4f} + {rest:.4f}" if stage == "fitted" else "") for stage, X in joints.items()]
         for bones in asked.peer:
             X, seconds = peer(case, bones)

@@ -66,6 +66,18 @@ def test_stiff_body_is_one_root_and_has_no_joint() -> None:
     assert of(one, leaves=(3,)).names == ("root", "root_end")
 
 
+def test_noise_at_every_vertex_moves_no_joint_by_half_a_percent() -> None:
+    body = chain((-2.0, 2.0), blend=1.0)
+    rough = body.x + 0.00067 * 10.0 * np.random.default_rng(0).normal(size=body.x.shape)
+    joints = []
+    for x in (body.x, rough):
+        p = parts(x[0], body.F, x)
+        found = skeleton(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, np.zeros(0, dtype=np.int64))
+        joints.append(found.positions[:, [kind == "joint" for kind in found.kinds]])
+    assert joints[0].shape == joints[1].shape == (24, 2, 3)
+    assert np.linalg.norm(joints[0] - joints[1], axis=2).mean(axis=0).max() < 0.005 * 10.0
+
+
 def test_body_turns_and_moves_as_a_whole_with_space() -> None:
     body = three_arms()
     Q, shift = rotation((1.0, -2.0, 0.5), 0.7), np.array([3.0, 50.0, -8.0])
