@@ -25,9 +25,10 @@ import trimesh
 from turning import Truth
 
 from kinetree.schemas.synth import ContactParams, SynthParams
+from kinetree.tasks.numerics.correlation import dimensionless
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.leaves import leaves
+from kinetree.tasks.numerics.leaves import leaves, stems
 from kinetree.tasks.numerics.mesh import Cleaned, clean
 from kinetree.tasks.numerics.mu import farthest_bases, mu
 from kinetree.tasks.numerics.projection import projected
@@ -37,6 +38,7 @@ from kinetree.tasks.numerics.stiffness import PASSES, learned
 from kinetree.tasks.numerics.surface import Surface
 from kinetree.tasks.numerics.synth.body import Body
 from kinetree.tasks.numerics.template import Template, template
+from kinetree.tasks.numerics.tracking import follow
 from kinetree.tasks.numerics.trust import residuals, trusted
 from kinetree.tasks.synth import body as posed
 from kinetree.tasks.synth import recipe
@@ -80,14 +82,22 @@ def generated(name: str, number: int) -> tuple[list[Cleaned], Body, Body]:
 
 def chosen(meshes: list[Cleaned]) -> int:
     """The reference frame by the rule."""
-    count, poses = [], []
+    poses, own, value, centre = [], [], [], []
     for mesh in meshes:
         surface = Surface.of(mesh.V, mesh.F)
         bases = farthest_bases(surface, 60)
         integral = mu(bases.distance, bases.weight)
-        count.append(len(leaves(integral, mesh.F).vertex))
+        found = leaves(integral, mesh.F)
         poses.append(profile(integral, surface.area))
-    return reference(count, [m.euler for m in meshes], [m.area for m in meshes], np.stack(poses)).frame
+        own.append(stems(mesh.V, mesh.F, integral, surface.area, found))
+        value.append(dimensionless(integral, surface.area)[found.vertex])
+        centre.append(surface.area @ mesh.V / surface.area.sum())
+    count, area = [len(x) for x in own], np.array([m.area for m in meshes])
+    rows = follow(own, value, np.sqrt(area), np.stack(centre))
+    limbs = np.full((len(rows), len(meshes), *own[0].shape[1:]), np.nan)
+    for leaf, t in np.argwhere(rows >= 0):
+        limbs[leaf, t] = own[t][rows[leaf, t]]
+    return reference(count, [m.euler for m in meshes], area, np.stack(poses), limbs).frame
 
 
 def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:

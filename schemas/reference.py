@@ -41,6 +41,8 @@ class Reference(Artifact):
         if self.leaves < 3:
             seen = ("no limb is", "one limb is", "two limbs are")[self.leaves]
             told.append(f"{seen} seen in any frame: nothing tells contact from freedom, the reference may be a poor one")
+        if len(self.frames) == 2:
+            told.append("two frames show one movement: joints that it does not turn cannot be found")
         if not self.free:
             told.append(
                 f"no frame is free of contact for long: frame {self.frame} lacks least; limbs that touch in it stay joined"

@@ -9,6 +9,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
 from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.distribution import Distribution
+from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.mesh import Mesh
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.tips import Tips
@@ -22,20 +23,22 @@ def reference(
     mesh: Mapping[int, Mesh],
     distribution: Mapping[int, Distribution],
     tips: Mapping[int, Tips],
+    leaves: Leaves,
     connectivity: Connectivity,
 ) -> Reference:
     """Chooses the frame to which all others are aligned, free of contact and amid the poses (2014, Sec. 5.3)."""
     frames = tuple(mesh)
-    leaves = [len(t.vertices) for t in tips.values()]
+    count = [len(t.vertices) for t in tips.values()]
     euler = [t.euler for t in tips.values()]
     area = [m.cleaning.area for m in mesh.values()]
-    chosen = numerics.reference(leaves, euler, area, np.stack([_quantiles(d) for d in distribution.values()]))
+    profile = np.stack([_quantiles(d) for d in distribution.values()])
+    chosen = numerics.reference(count, euler, area, profile, _followed(leaves, tuple(tips.values())))
     mine = mesh[frames[chosen.frame]]
     return Reference(
         frames=frames,
         frame=frames[chosen.frame],
         fixed=connectivity.fixed,
-        leaves=max(leaves),
+        leaves=max(count),
         free=chosen.free,
         vertices=mine.vertices,
         faces=mine.faces,
@@ -50,6 +53,16 @@ def outwards(count: int, start: int) -> NDArray[np.int64]:
     at = np.arange(count)
     before: NDArray[np.int64] = np.where(at == start, -1, at - np.sign(at - start))
     return before
+
+
+def _followed(leaves: Leaves, tips: tuple[Tips, ...]) -> Floats:
+    """(leaf, frame, station, xyz) the stem of every leaf that was followed; NaN where it is not seen."""
+    shape = tips[0].stems.shape[1:]
+    stems = np.full((*leaves.rows.shape, *shape), np.nan)
+    for t, own in enumerate(tips):
+        here = np.flatnonzero(leaves.rows[:, t] >= 0)
+        stems[here, t] = own.stems[leaves.rows[here, t]]
+    return stems
 
 
 def _quantiles(distribution: Distribution) -> Floats:

@@ -5,6 +5,7 @@ import pytest
 
 from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.distribution import Distribution
+from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.mesh import Cleaning, Mesh
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.tips import Tips
@@ -14,27 +15,38 @@ V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
 
 
-def seen(leaves: int, euler: int = 2) -> Tips:
+def seen(leaves: int, bent: float = 0.0, euler: int = 2) -> Tips:
+    stem = np.array([[0, 0, 0], [0, 0, 1], [np.sin(bent), 0, 1 + np.cos(bent)]])
     return Tips(
-        vertices=np.zeros(leaves, int), persistence=np.full(leaves, 0.5), stems=np.zeros((leaves, 4, 3)),
+        vertices=np.zeros(leaves, int), persistence=np.full(leaves, 0.5), stems=np.tile(stem, (leaves, 1, 1)),
         normals=np.zeros((leaves, 3)), value=np.full(leaves, 0.7), peaks=np.full(leaves, 0.5), loops=np.zeros(0), size=1.0,
         centre=(0.0, 0.0, 0.0), euler=euler, components=1,
     )  # fmt: skip
 
 
-def posed(middle: float) -> Distribution:
-    fine = np.exp(-(((np.linspace(0, 1, 500) - middle) / 0.1) ** 2))
+def followed(leaves: list[int]) -> Leaves:
+    rows = np.array([[k if k < n else -1 for n in leaves] for k in range(max(leaves))], int).reshape(-1, len(leaves))
+    none = np.zeros(0, int)
+    return Leaves(
+        frames=tuple(range(len(leaves))), rows=rows, positions=np.zeros((*rows.shape, 3)), kept=rows[:, :1].T >= 0,
+        lost=none, lost_begin=none, lost_end=none,
+    )  # fmt: skip
+
+
+def same() -> Distribution:
+    fine = np.exp(-(((np.linspace(0, 1, 500) - 0.5) / 0.1) ** 2))
     return Distribution(normalisation="sequence", low=0.5, high=1.5, mass=fine / fine.sum())
 
 
-def chosen(leaves: list[int], *, fixed: bool = False, poses: list[float] | None = None, first: int = 0) -> Reference:
+def chosen(leaves: list[int], *, fixed: bool = False, bent: list[float] | None = None, first: int = 0) -> Reference:
     frames = range(first, first + len(leaves))
-    middles = poses or [0.5] * len(leaves)
+    angles = bent or [0.5] * len(leaves)
     cleaning = Cleaning(area=4.0)
     return reference(
         mesh={t: Mesh(vertices=V + t, faces=F, vertex_of_input=np.arange(4), cleaning=cleaning) for t in frames},
-        distribution={t: posed(m) for t, m in zip(frames, middles, strict=True)},
-        tips={t: seen(n) for t, n in zip(frames, leaves, strict=True)},
+        distribution={t: same() for t in frames},
+        tips={t: seen(n, a) for t, n, a in zip(frames, leaves, angles, strict=True)},
+        leaves=followed(leaves),
         connectivity=Connectivity(fixed=fixed, first_change=None if fixed else first + 1, vertices=4, faces=4),
     )
 
@@ -48,7 +60,7 @@ def test_frame_far_from_every_contact_is_the_reference() -> None:
 
 
 def test_pose_amid_the_others_goes_before_a_remote_one() -> None:
-    assert chosen([5] * 5, poses=[0.5, 0.5, 0.9, 0.5, 0.5]).frame in (1, 3)
+    assert chosen([5] * 5, bent=[0.5, 0.5, 1.5, 0.5, 0.5]).frame in (1, 3)
 
 
 def test_frames_are_reached_outwards_in_both_directions() -> None:
@@ -74,6 +86,7 @@ def test_one_or_two_frames_have_a_reference() -> None:
     assert chosen([5]).previous(0) is None
     two = chosen([5, 5])
     assert sorted((two.previous(0), two.previous(1)), key=str) == [two.frame, None]
+    assert any(text.startswith("two frames show one movement") for text in two.remarks())
 
 
 def test_fixed_connectivity_is_passed_on() -> None:
