@@ -9,6 +9,8 @@ import numpy as np
 
 from kinetree.schemas.distribution import DistributionParams
 from kinetree.schemas.geodesics import GeodesicsParams
+from kinetree.schemas.intervals import Intervals
+from kinetree.schemas.leaves import LeavesParams
 from kinetree.schemas.mesh import Cleaning, Mesh
 from kinetree.schemas.synth import SynthParams
 from kinetree.schemas.template import TemplateParams
@@ -17,6 +19,7 @@ from kinetree.tasks.alignment import alignment
 from kinetree.tasks.connectivity import connectivity
 from kinetree.tasks.distribution import distribution
 from kinetree.tasks.geodesics import geodesics
+from kinetree.tasks.leaves import leaves
 from kinetree.tasks.numerics.mesh import clean
 from kinetree.tasks.numerics.synth.body import Body
 from kinetree.tasks.projection import projection
@@ -65,13 +68,23 @@ def along(task: Any, order: Any, frames: Sequence[int], **per_frame: Any) -> dic
     return {frame: at(frame) for frame in frames}
 
 
+def uncut(count: int) -> Intervals:
+    """One interval of so many frames."""
+    return Intervals(
+        frames=tuple(range(count)), begin=np.array([0]), end=np.array([count - 1]), z=np.zeros(count - 1), cues=(),
+        strengths=np.zeros((0, count - 1)), cue_names=(), threshold=2.0,
+    )  # fmt: skip
+
+
 def referred(meshes: dict[int, Mesh]) -> Any:
     """The reference of a sequence."""
     mu = {t: geodesics(m, GeodesicsParams(bases=40)) for t, m in meshes.items()}
+    seen = {t: tips(meshes[t], g, TipsParams()) for t, g in mu.items()}
     return reference(
         mesh=meshes,
         distribution={t: distribution(g, DistributionParams()) for t, g in mu.items()},
-        tips={t: tips(meshes[t], g, TipsParams()) for t, g in mu.items()},
+        tips=seen,
+        leaves=leaves(seen, uncut(len(seen)), LeavesParams()),
         connectivity=connectivity(meshes),
     )
 
