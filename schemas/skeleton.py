@@ -3,19 +3,9 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import CORNER, FACE, FRAME, INFLUENCE, JOINT, ROW, VERTEX, XYZ
-
-
-class SkeletonParams(Params):
-    """What counts as a joint."""
-
-    degrees: float = Field(default=8.0, ge=0, le=180)
-    """A joint turns by at least this many degrees between some two frames, or its parts are one."""
-    ratio: float = Field(default=0.8, ge=0)
-    """How far turning moves a joint's smaller part, against how far the joint drifts; below it the part slides, like cloth."""
 
 
 class Skeleton(Artifact):

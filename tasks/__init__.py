@@ -12,6 +12,7 @@ from kinetree.pipeline.graph import Graph
 from kinetree.tasks.alignment import alignment
 from kinetree.tasks.annuli import annuli
 from kinetree.tasks.arap import arap
+from kinetree.tasks.articulation import articulation
 from kinetree.tasks.bones import bones
 from kinetree.tasks.bvh import bvh
 from kinetree.tasks.cones import cones
@@ -24,6 +25,7 @@ from kinetree.tasks.cylinders import cylinders
 from kinetree.tasks.distribution import distribution
 from kinetree.tasks.evaluation import evaluation
 from kinetree.tasks.evidence import evidence
+from kinetree.tasks.fit import fit
 from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.glb import glb
 from kinetree.tasks.integration import integration
@@ -94,7 +96,9 @@ MESOSCOPIC = (
     projection,
     trust,
     parts,  # Sec. 6.1 and 6.2
-    skeleton,  # Sec. 6.3
+    articulation,  # Sec. 6.3
+    fit,  # for Sec. 7.3
+    skeleton,
     traces,
     truth,
     evaluation,  # Sec. 7

@@ -9,9 +9,9 @@ from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.parts import Parts, PartsParams
 from kinetree.schemas.reference import Reference
+from kinetree.tasks.articulation import tips_of, trust_of
 from kinetree.tasks.numerics.structure import parts as structure
 from kinetree.tasks.numerics.structure.elimination import Bar
-from kinetree.tasks.skeleton import tips_of, trust_of
 
 
 @task()

@@ -1,66 +1,37 @@
-"""The articulated body: one tree of joints over the rigid parts, a pose for every frame, and the skin that follows."""
-
-from collections.abc import Mapping
+"""The articulated body with its poses as they are left: those of the aligned vertices, or of the fit where it was better."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.leaves import Leaves
-from kinetree.schemas.parts import Parts
-from kinetree.schemas.reference import Reference
-from kinetree.schemas.sequence import Sequence
-from kinetree.schemas.skeleton import Skeleton, SkeletonParams
-from kinetree.tasks.numerics.structure import skeleton as structure
-from kinetree.tasks.numerics.structure.ends import nearest_vertices
-from kinetree.tasks.numerics.surface import Surface
+from kinetree.schemas.articulation import Articulation
+from kinetree.schemas.fit import Fit
+from kinetree.schemas.skeleton import Skeleton
+from kinetree.tasks.numerics.structure.turning import turning_range
 
 
 @task()
-def skeleton(
-    reference: Reference,
-    parts: Parts,
-    alignment: Mapping[int, Alignment],
-    leaves: Leaves,
-    sequence: Sequence,
-    params: SkeletonParams,
-) -> Skeleton:
-    """Joins the rigid parts into one tree, places its joints and poses it in every frame (2014, Sec. 6.3)."""
-    aligned = list(alignment.values())
-    V, F = reference.vertices, reference.faces
-    found = structure.skeleton(
-        V,
-        np.asarray(F, dtype=np.int64),
-        np.stack([a.vertices for a in aligned]),
-        Surface.of(V, F).area,
-        np.asarray(parts.label, dtype=np.int64),
-        parts.rotation,
-        parts.translation,
-        parts.residual,
-        tips_of(leaves, reference),
-        trust_of(aligned),
-        degrees=params.degrees,
-        ratio=params.ratio,
-    )
-    return Skeleton(
-        frames=tuple(alignment),
-        fps=sequence.fps,
-        unit=sequence.unit,
-        vertices=V,
-        faces=F,
-        **{**found._asdict(), "parents": tuple(found.parents.tolist())},
-    )
+def skeleton(articulation: Articulation, fit: tuple[Fit, ...]) -> Skeleton:
+    """Puts the fitted poses in their places; bones have one length in all of them (2014, Sec. 6.3)."""
+    told = {name: getattr(articulation, name) for name in Skeleton.model_fields}
+    if any(run.moved.any() for run in fit):
+        for name in ("positions", "rotation", "confidence"):
+            told[name] = _placed(told[name], articulation.frames, fit, name)
+        told["degrees"] = _degrees(articulation, told["rotation"])
+    return Skeleton(**told)
 
 
-def tips_of(leaves: Leaves, reference: Reference) -> NDArray[np.int64]:
-    """(leaf,) vertices of the reference mesh at the leaves that count in some interval and are seen in its frame."""
-    at = leaves.frames.index(reference.frame)
-    seen = (leaves.rows[:, at] >= 0) & leaves.kept.any(axis=0)
-    return nearest_vertices(reference.vertices, leaves.positions[seen, at])
+def _placed(before: NDArray[np.float64], frames: tuple[int, ...], fit: tuple[Fit, ...], name: str) -> NDArray[np.float64]:
+    after = np.array(before)
+    for run in fit:
+        after[[frames.index(frame) for frame in run.frames]] = getattr(run, name)
+    return after
 
 
-def trust_of(aligned: list[Alignment]) -> NDArray[np.float64] | None:
-    """(frame, vertex) trust; None where everything is believed."""
-    trust = np.stack([a.trust for a in aligned])
-    return None if (trust == 1.0).all() else trust
+def _degrees(articulation: Articulation, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(joint,) range of the turning of each joint against its parent."""
+    told = [
+        turning_range(np.einsum("txy,txz->tyz", rotation[:, p], rotation[:, j])) if kind == "joint" else 0.0
+        for j, (p, kind) in enumerate(zip(articulation.parents, articulation.kinds, strict=True))
+    ]
+    return np.array(told)

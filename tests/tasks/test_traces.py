@@ -6,14 +6,15 @@ from articulated import Known, chain, swings, three_arms
 from matplotlib.text import Text
 
 from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.articulation import ArticulationParams
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
-from kinetree.schemas.skeleton import Skeleton, SkeletonParams
+from kinetree.schemas.skeleton import Skeleton
 from kinetree.schemas.traces import Traces, TracesParams
+from kinetree.tasks.articulation import articulation
 from kinetree.tasks.plots.traces import cones, lengths, merging, structure
-from kinetree.tasks.skeleton import skeleton
 from kinetree.tasks.traces import traces
 
 FIRST = 10
@@ -46,7 +47,7 @@ def both(
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
     sequence = Sequence(frames=frames, fps=25.0, unit="mm")
-    found = skeleton(reference, parts, aligned, leaves, sequence, SkeletonParams(degrees=degrees))
+    found = articulation(reference, parts, aligned, leaves, sequence, ArticulationParams(degrees=degrees))
     return found, traces(reference, aligned, leaves, parts, found, TracesParams(rings=20))
 
 

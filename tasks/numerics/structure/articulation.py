@@ -98,7 +98,7 @@ def fitted(s: Sums, start: Motion, parents: Ints, expected: Expected | None = No
         H[:, diagonal, diagonal] += DAMPING * np.trace(H, axis1=1, axis2=2)[:, None] / len(diagonal)
         move = np.linalg.solve(H, g[..., None])[..., 0]
         omega = np.asarray(move[:, :-3].reshape(*motion.R.shape[:2], 3), dtype=np.float64)
-        motion = Motion(motion.rest, _turns(omega) @ motion.R, motion.x + move[:, -3:])
+        motion = Motion(motion.rest, turns(omega) @ motion.R, motion.x + move[:, -3:])
         if np.abs(omega).max(initial=0.0) < STILL:
             break
     return motion
@@ -184,7 +184,7 @@ def _crossing(p: Floats) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def _turns(omega: Floats) -> Floats:
+def turns(omega: Floats) -> Floats:
     """(…, 3, 3) rotation by the vector ω (Rodrigues)."""
     angle = np.maximum(np.linalg.norm(omega, axis=-1)[..., None, None], 1e-12)
     K = _crossing(omega)
