@@ -8,7 +8,7 @@ class FirstRefit(Pose):
 
 
 class SecondRefit(Pose):
-    """With what the first refit taught."""
+    """With what the first refit taught, from limbs that have their twist."""
 
 
 class ThirdRefit(Pose):

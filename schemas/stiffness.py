@@ -18,7 +18,7 @@ class FirstStiffness(Stiffness):
 
 
 class SecondStiffness(Stiffness):
-    """Learned from the first refit."""
+    """Learned from the first refit with twists brought back."""
 
 
 class ThirdStiffness(Stiffness):

@@ -41,6 +41,7 @@ from kinetree.tasks.matching import matching
 from kinetree.tasks.mesh import mesh
 from kinetree.tasks.middle import middle
 from kinetree.tasks.parts import parts
+from kinetree.tasks.pieces import pieces
 from kinetree.tasks.ply import ply
 from kinetree.tasks.projection import projection
 from kinetree.tasks.reference import reference
@@ -62,6 +63,9 @@ from kinetree.tasks.traces import traces
 from kinetree.tasks.tracking import tracking
 from kinetree.tasks.trust import trust
 from kinetree.tasks.truth import truth
+from kinetree.tasks.turns import turns
+from kinetree.tasks.twist import twist
+from kinetree.tasks.untwisting import untwisting
 from kinetree.tasks.upright import upright
 from kinetree.tasks.usd import usd
 
@@ -88,6 +92,10 @@ MESOSCOPIC = (
     repair,
     first_stiffness,
     first_refit,
+    pieces,
+    turns,
+    twist,
+    untwisting,
     second_stiffness,
     second_refit,
     third_stiffness,

@@ -9,6 +9,7 @@ from kinetree.schemas.refit import FirstRefit, SecondRefit, ThirdRefit
 from kinetree.schemas.repair import Repair
 from kinetree.schemas.stiffness import FirstStiffness, SecondStiffness, Stiffness, ThirdStiffness
 from kinetree.schemas.template import Template
+from kinetree.schemas.untwisting import Untwisting
 from kinetree.tasks.numerics.deformation import FitSettings, fit
 from kinetree.tasks.numerics.stiffness import PASSES
 from kinetree.tasks.pose import graph, pose, target
@@ -23,7 +24,7 @@ def first_refit(mesh: Mesh, template: Template, repair: Repair, stiffness: First
 
 
 @task(over="frame")
-def second_refit(mesh: Mesh, template: Template, refit: FirstRefit, stiffness: SecondStiffness) -> SecondRefit:
+def second_refit(mesh: Mesh, template: Template, refit: Untwisting, stiffness: SecondStiffness) -> SecondRefit:
     """Fits a frame again, softer, with what the first refit taught (ours)."""
     return _fitted(SecondRefit, mesh, template, refit, stiffness, PASSES[1])
 

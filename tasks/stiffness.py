@@ -7,11 +7,13 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.pose import Pose
-from kinetree.schemas.refit import FirstRefit, SecondRefit
+from kinetree.schemas.refit import SecondRefit
 from kinetree.schemas.repair import Repair
 from kinetree.schemas.stiffness import FirstStiffness, SecondStiffness, Stiffness, ThirdStiffness
 from kinetree.schemas.template import Template
-from kinetree.tasks.numerics.stiffness import learned
+from kinetree.schemas.twist import Twist
+from kinetree.schemas.untwisting import Untwisting
+from kinetree.tasks.numerics.stiffness import freed, learned
 from kinetree.tasks.pose import graph, pose
 
 S = TypeVar("S", bound=Stiffness)
@@ -24,18 +26,20 @@ def first_stiffness(template: Template, repair: tuple[Repair, ...]) -> FirstStif
 
 
 @task()
-def second_stiffness(template: Template, refit: tuple[FirstRefit, ...]) -> SecondStiffness:
-    """Learns again from the first refit (ours)."""
-    return _learned(SecondStiffness, template, refit)
+def second_stiffness(template: Template, refit: tuple[Untwisting, ...], twist: Twist) -> SecondStiffness:
+    """Learns again from the first refit, in which limbs got their twist back (ours)."""
+    return _learned(SecondStiffness, template, refit, twist)
 
 
 @task()
-def third_stiffness(template: Template, refit: tuple[SecondRefit, ...]) -> ThirdStiffness:
+def third_stiffness(template: Template, refit: tuple[SecondRefit, ...], twist: Twist) -> ThirdStiffness:
     """Learns again from the second refit (ours)."""
-    return _learned(ThirdStiffness, template, refit)
+    return _learned(ThirdStiffness, template, refit, twist)
 
 
-def _learned(cls: type[S], template: Template, poses: Iterable[Pose]) -> S:
+def _learned(cls: type[S], template: Template, poses: Iterable[Pose], twist: Twist | None = None) -> S:
     if not len(template.nodes):
         return cls(stiffness=np.empty(0))
-    return cls(stiffness=learned(graph(template), [pose(p) for p in poses]))
+    body = graph(template)
+    found = learned(body, [pose(p) for p in poses])
+    return cls(stiffness=found if twist is None else freed(body, found, twist.limb.astype(np.int64)))

@@ -15,6 +15,7 @@ from kinetree.schemas.mesh import Cleaning, Mesh
 from kinetree.schemas.synth import SynthParams
 from kinetree.schemas.template import TemplateParams
 from kinetree.schemas.tips import TipsParams
+from kinetree.schemas.turns import Turns
 from kinetree.tasks.alignment import alignment
 from kinetree.tasks.connectivity import connectivity
 from kinetree.tasks.distribution import distribution
@@ -22,6 +23,7 @@ from kinetree.tasks.geodesics import geodesics
 from kinetree.tasks.leaves import leaves
 from kinetree.tasks.numerics.mesh import clean
 from kinetree.tasks.numerics.synth.body import Body
+from kinetree.tasks.pieces import pieces
 from kinetree.tasks.projection import projection
 from kinetree.tasks.reference import reference
 from kinetree.tasks.refit import first_refit, second_refit, third_refit
@@ -33,6 +35,9 @@ from kinetree.tasks.template import template
 from kinetree.tasks.tips import tips
 from kinetree.tasks.tracking import tracking
 from kinetree.tasks.trust import trust
+from kinetree.tasks.turns import turns
+from kinetree.tasks.twist import twist
+from kinetree.tasks.untwisting import untwisting
 
 
 def cleaned(V: np.ndarray, F: np.ndarray) -> Mesh:
@@ -97,11 +102,17 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     made.tracking = along(tracking, made.reference, list(meshes), **both)
     made.suspects = suspects(made.tracking, made.reference)
     made.repair = along(repair, made.suspects, list(meshes), tracking=made.tracking, suspects=made.suspects, **both)
-    last = made.repair
-    passes = ((first_stiffness, first_refit), (second_stiffness, second_refit), (third_stiffness, third_refit))
-    for learn, fit in passes:
-        stiffness = learn(made.template, tuple(last.values()))
-        last = {t: fit(meshes[t], made.template, pose, stiffness) for t, pose in last.items()}
+    body = made.template
+    made.first_stiffness = first_stiffness(body, tuple(made.repair.values()))
+    made.first_refit = {t: first_refit(meshes[t], body, pose, made.first_stiffness) for t, pose in made.repair.items()}
+    made.pieces = pieces(body, tuple(made.first_refit.values()))
+    made.turns = {t: turns(meshes[t], body, pose, made.pieces) for t, pose in made.first_refit.items()}
+    made.twist = twist(made.turns, body, made.pieces, made.reference)
+    last = {t: untwisting(body, made.first_refit[t], made.pieces, made.turns[t], made.twist) for t in meshes}
+    made.untwisting = last
+    for learn, fit in ((second_stiffness, second_refit), (third_stiffness, third_refit)):
+        stiffness = learn(body, tuple(last.values()), made.twist)
+        last = {t: fit(meshes[t], body, pose, stiffness) for t, pose in last.items()}
         setattr(made, learn.name, stiffness)
         setattr(made, fit.name, last)
     made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
@@ -114,3 +125,16 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
 def walk() -> SimpleNamespace:
     """A walking human, aligned: what most tests look at."""
     return aligned(generated())
+
+
+def lost(limb: int) -> dict[int, Turns]:
+    """The turns of `walk` as frames would tell them if one limb fitted a quarter of a turn further, but in the reference."""
+    made, out = walk(), {}
+    for t, told in made.turns.items():
+        angle = np.tile(2 * np.pi * np.arange(told.angle.shape[1]) / told.angle.shape[1], (len(told.angle), 1))
+        misfit = np.full_like(angle, 0.2 + 0.001 * t)
+        misfit[:, 0] -= 0.05
+        if t != made.reference.frame:
+            misfit[limb, 3] -= 0.15
+        out[t] = told.model_copy(update={"angle": angle, "misfit": misfit})
+    return out

@@ -148,15 +148,21 @@ def _rows(
     match: _Pair,
     limits: tuple[float, float, float],
 ) -> _Rows:
-    """Matches nearer than `reach`, weighted (n·m) / (1 + (distance from the plane / scale)²)²; limits: reach, scale, b."""
+    """Matches nearer than `reach`, weighted (n·m) / (1 + (distance from the plane / scale)²)²; limits: reach, scale, b.
+
+    Planes are halfway between both normals: then matches that are not quite opposite cost nothing on a round surface
+    (Rusinkiewicz 2019).
+    """
     reach, scale, b = limits
     vertex, other = np.concatenate([samples[0], match[1]]), np.concatenate([match[0], samples[1]])
     r, m = x[vertex] - target.V[other], target.N[other]
     alike = np.einsum("rx,rx->r", n[vertex], m)
     near = (alike > _ALIKE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
-    off = np.einsum("rx,rx->r", r, m)
+    halfway = m + n[vertex]
+    halfway /= np.maximum(np.linalg.norm(halfway, axis=1, keepdims=True), np.finfo(float).tiny)
+    off = np.einsum("rx,rx->r", r, halfway)
     a = len(template.node) / len(vertex) * alike / (1.0 + (off / scale) ** 2) ** 2
-    return _Rows(vertex[near], target.V[other[near]], m[near], a[near], b * a[near])
+    return _Rows(vertex[near], target.V[other[near]], halfway[near], a[near], b * a[near])
 
 
 def _energy(template: Template, pose: Pose, rows: _Rows, stiffness: Floats) -> tuple[float, Floats]:

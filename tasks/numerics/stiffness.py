@@ -14,8 +14,10 @@ from kinetree.tasks.numerics.template import Template
 from kinetree.tasks.numerics.ties import strains
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
 YIELD = 0.03  # relative bending at which a tie counts half
+FREED = 0.15  # of its stiffness a tie keeps that leads to a limb which had lost a twist
 
 # the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
 # the second so finely that a section which is not quite round holds its turn
@@ -37,3 +39,14 @@ def learned(template: Template, poses: Sequence[Pose], yields: float = YIELD) ->
     # sorted, so that the sum does not depend on the order in which frames arrive
     strain = np.sort(np.stack([strains(template.edge, *pose, g) for pose in poses]), axis=0).mean(axis=0)
     return yields**2 / (yields**2 + strain)
+
+
+def freed(template: Template, stiffness: Floats, limb: Ints) -> Floats:
+    """Stiffness where some limbs are known to turn: rigid in themselves, loose at their ends.
+
+    stiffness : (edge,) as learned
+    limb      : (node,) number of the limb, −1 for nodes of none
+    returns   : (edge,)
+    """
+    a, b = limb[template.edge[:, 0]], limb[template.edge[:, 1]]
+    return np.where(a != b, FREED * stiffness, np.where(a >= 0, 1.0, stiffness))

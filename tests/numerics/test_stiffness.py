@@ -6,7 +6,7 @@ from limbs import bent, rotation, tube
 
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.stiffness import PASSES, YIELD, learned
+from kinetree.tasks.numerics.stiffness import FREED, PASSES, YIELD, freed, learned
 from kinetree.tasks.numerics.template import TemplateSettings, template
 
 ANGLES = (0.2, 0.4, 0.6)
@@ -71,3 +71,14 @@ def test_a_refit_with_learned_stiffness_is_no_worse_and_keeps_the_turning(body, 
         outer = body.g[:, 2] > 2.5
         turn = np.arctan2(again.rotation[outer, 2, 1], again.rotation[outer, 1, 1]).mean()
         assert turn == pytest.approx(angle, rel=0.1)
+
+
+def test_a_limb_that_turned_is_rigid_and_loose_at_its_ends(body):
+    s = np.full(len(body.edge), 0.5)
+    limb = np.where(body.g[:, 2] > 0, 3, -1)
+    ends = limb[body.edge]
+    found = freed(body, s, limb)
+    assert (found[(ends == 3).all(axis=1)] == 1.0).all()
+    assert (found[(ends == -1).all(axis=1)] == 0.5).all()
+    assert (found[ends[:, 0] != ends[:, 1]] == FREED * 0.5).all()
+    np.testing.assert_array_equal(freed(body, s, np.full(len(limb), -1)), s)

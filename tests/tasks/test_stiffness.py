@@ -31,5 +31,5 @@ def test_body_that_never_moves_is_stiff_everywhere() -> None:
 def test_fixed_connectivity_has_nothing_to_learn() -> None:
     made = walk()
     empty = template(made.reference.model_copy(update={"fixed": True}), TemplateParams())
-    assert len(second_stiffness(empty, tuple(made.first_refit.values())).stiffness) == 0
-    assert len(third_stiffness(empty, ()).stiffness) == 0
+    assert len(second_stiffness(empty, tuple(made.untwisting.values()), made.twist).stiffness) == 0
+    assert len(third_stiffness(empty, (), made.twist).stiffness) == 0
