@@ -26,7 +26,7 @@ import numpy.typing as npt
 from turning import Truth
 
 from kinetree.pipeline import Pipeline
-from kinetree.schemas.alignment import Alignment
+from kinetree.schemas.arap import Arap
 from kinetree.schemas.connectivity import Connectivity
 from kinetree.schemas.coordinates import Coordinates, CoordinatesParams
 from kinetree.schemas.geodesics import Geodesics
@@ -149,7 +149,7 @@ def compared(folder: Path, name: str, args: argparse.Namespace, here: Sequence, 
     truths = [Truth.of(folder, name, np.array(start.vertices), start.frame) for start in starts]
     total = 0
     for order in args.order:
-        alignments: list[Alignment] = []
+        alignments: list[Arap] = []
         for start, truth in zip(starts, truths, strict=True):
             images = mapped(here, start, order, spent)
             total += len(images)
@@ -175,12 +175,12 @@ def compared(folder: Path, name: str, args: argparse.Namespace, here: Sequence, 
     )
 
 
-def _alignment(x: Floats) -> Alignment:
+def _alignment(x: Floats) -> Arap:
     plain = np.ones(len(x))
-    return Alignment(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0)
+    return Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, moved=9.0)
 
 
-def _cuts(here: Sequence, starts: list[Middle], truths: list[Truth], alignments: list[Alignment]) -> None:
+def _cuts(here: Sequence, starts: list[Middle], truths: list[Truth], alignments: list[Arap]) -> None:
     """How far the vertices to which the crossing leads are from where they should be."""
     across = crossing(tuple(starts), tuple(alignments), here.tips, here.leaves)
     for i, (a, b) in enumerate(pairwise(starts)):

@@ -9,6 +9,14 @@ from kinetree.schemas.array import Params
 class Arap(Alignment):
     """Where every vertex of the interval's own reference is in this frame, told as every alignment is."""
 
+    moved: float
+    """How far the reference, moved as one rigid body, stays off the frame's surface: 1 is what noise and triangles explain."""
+
+    @property
+    def still(self) -> bool:
+        """Whether nothing tells that any part moved against another."""
+        return self.moved <= 1.0
+
 
 class ArapParams(Params):
     """How rigid, and how long."""

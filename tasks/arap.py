@@ -14,6 +14,7 @@ from kinetree.schemas.middle import Middle
 from kinetree.tasks.numerics.belief import belief
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.mesoscopic.arap import Factorised, soft_weights
+from kinetree.tasks.numerics.mesoscopic.stillness import rigid_gap
 from kinetree.tasks.numerics.normals import smoothed_normals
 from kinetree.tasks.numerics.trust import stretches
 
@@ -24,14 +25,20 @@ def arap(middle: Middle, matching: Matching, mesh: Mesh, connectivity: Connectiv
     rest, F = np.array(middle.vertices), middle.faces.astype(np.int64)
     if connectivity.fixed:
         x = np.array(mesh.vertices)
-        return Arap(
-            vertices=x, residual=np.zeros(len(x)), stretch=stretches(rest, x, F), trust=np.ones(len(x)), uncovered=0.0
-        )
+        gap, one = rigid_gap(rest, x, np.array(middle.area), x, F), np.ones(len(x))
+        return Arap(vertices=x, residual=0.0 * one, stretch=stretches(rest, x, F), trust=one, uncovered=0.0, moved=gap)
     x = _deformed(middle, matching, mesh, params)
     target = Target.of(np.array(mesh.vertices), mesh.faces, middle.size)
     # the mapping leaves much uncovered everywhere: that is no sign of a lost limb, and `uncovered` tells it
     found = belief(rest, x, smoothed_normals(x, F), F, target, usual=1.0)
-    return Arap(vertices=x, residual=found.residual, stretch=found.stretch, trust=found.trust, uncovered=found.uncovered)
+    return Arap(
+        vertices=x,
+        residual=found.residual,
+        stretch=found.stretch,
+        trust=found.trust,
+        uncovered=found.uncovered,
+        moved=rigid_gap(rest, x, np.array(middle.area), target.V, target.F.astype(np.int64)),
+    )
 
 
 def _deformed(middle: Middle, matching: Matching, mesh: Mesh, params: ArapParams) -> Floats:

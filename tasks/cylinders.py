@@ -37,16 +37,17 @@ def cylinders(
     ways = ways_to(home, middle, crossing)
     moving = motions(middle, alignment)
     floors = [integration.floor * m.size for m in middle]
+    still = stillness(middle, alignment)
 
     def cluster(annuli: list[Ints]) -> Bools:
         label = np.full(count, -1)
         for k, mine in enumerate(annuli):
             label[mine] = k
         seen, rigid = [], []
-        for x, back, floor in zip(moving, ways, floors, strict=True):
+        for x, back, floor, rests in zip(moving, ways, floors, still, strict=True):
             at = np.where(back >= 0, label[back], -1)
             seen.append(np.unique(at[at >= 0]))
-            rigid.append(clustered([x[:, at == k] for k in seen[-1]], integration.theta, floor).rigid)
+            rigid.append(clustered([x[:, at == k] for k in seen[-1]], integration.theta, floor).rigid | rests)
         return integrated(seen, rigid, len(annuli))
 
     leaf = consistency.leaf[home]
@@ -70,6 +71,12 @@ def motions(middle: tuple[Middle, ...], alignment: tuple[Arap, ...]) -> list[Flo
     """Of every interval, (frame, vertex, xyz) its reference in all of its frames."""
     end = np.cumsum([len(m.frames) for m in middle])
     return [np.stack([a.vertices for a in alignment[e - len(m.frames) : e]]) for m, e in zip(middle, end, strict=True)]
+
+
+def stillness(middle: tuple[Middle, ...], alignment: tuple[Arap, ...]) -> list[bool]:
+    """Of every interval, whether nothing on the body moves against anything else in it."""
+    end = np.cumsum([len(m.frames) for m in middle])
+    return [all(a.still for a in alignment[e - len(m.frames) : e]) for m, e in zip(middle, end, strict=True)]
 
 
 def _fullest(middle: tuple[Middle, ...], consistency: Consistency) -> int:

@@ -88,11 +88,12 @@ def passed(body: Known, middle: tuple[Middle, ...]) -> Crossing:
     )  # fmt: skip
 
 
-def followed(body: Known) -> tuple[Arap, ...]:
+def followed(body: Known, moved: float) -> tuple[Arap, ...]:
     """The vertices in all frames."""
     plain = np.ones(len(body.V))
     return tuple(
-        Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0) for x in body.x[: SPANS[-1].stop]
+        Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, moved=moved)
+        for x in body.x[: SPANS[-1].stop]
     )
 
 
@@ -103,7 +104,7 @@ def made(*, still: bool = False) -> Made:
     body = three_arms(turn)
     distance = geodesic_distance(Surface.of(body.V, body.F), tips(body))
     middle = tuple(interval(body, span, arms, distance) for span, arms in zip(SPANS, SEEN, strict=True))
-    alignment, crossing = followed(body), passed(body, middle)
+    alignment, crossing = followed(body, 1.0 if still else 9.0), passed(body, middle)
     mu = Geodesics(mu=distance.sum(axis=0), area=body.area, bases=np.zeros(0, int), share=1.0)
     grown = tuple(cones(m, dict.fromkeys(m.frames, mu), ConesParams()) for m in middle)
     whole = consistency(middle, grown, crossing, ConsistencyParams())
