@@ -10,6 +10,7 @@ import typing
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
@@ -80,19 +81,21 @@ def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Gr
     """
     paths = path_fields(methods)
     blocks, where = blocks_at(target, paths)
+    sets = tuple(sets)
     for text in sets:
         override(blocks, text, paths)
+    said = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
     method = blocks.get("method", "mesoscopic")
     if not isinstance(method, str) or method not in methods:
         raise ConfigError(f"{where}: method {method!r}; {nearest(str(method), methods)}")
     graph = methods[method]
     known = {task.name: task.params for task in graph.tasks if task.params is not None}
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, where)
-    params = {name: checked(cls, block(blocks, name), f"{where}: {name}") for name, cls in known.items()}
+    params = {name: checked(cls, block(blocks, name), f"{where}: {name}", said) for name, cls in known.items()}
     output = _folder(blocks, "output", where) or Path("kinetree-output").absolute()
     store = _folder(blocks, "store", where) or output / "store"
     _refuse_own_input(params, output, where)
-    return Config(method, params, output, store, checked(Compute, compute_block(blocks), f"{where}: compute"))
+    return Config(method, params, output, store, checked(Compute, compute_block(blocks), f"{where}: compute", said))
 
 
 def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) -> None:
@@ -115,15 +118,28 @@ def with_compute(config: Config, **changes: Any) -> Config:
     return replace(config, compute=checked(Compute, told, "compute"))
 
 
-def checked(cls: type[M], values: Any, where: str) -> M:
-    """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key."""
+def checked(cls: type[M], values: Any, where: str, said: Mapping[str, str] = MappingProxyType({})) -> M:
+    """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key.
+
+    where : the file and the block, which is blamed but for the keys that the command line `said`, by the block's name
+    """
     if not isinstance(values, Mapping):
         raise ConfigError(f"{where}: expected keys with values, got {_short(values)}")
     try:
         return cls.model_validate(dict(values))
     except ValidationError as error:
-        told = [_told(where, cls, fault) for fault in error.errors()]
+        told = [_told(_blamed(where, fault, said), cls, fault) for fault in error.errors()]
         raise ConfigError("\n".join(told)) from None
+
+
+def _blamed(where: str, fault: Any, said: Mapping[str, str]) -> str:
+    """The words of the command line that set the faulty key, or the file."""
+    name = where.rpartition(": ")[2]
+    keys = [str(part) for part in fault["loc"]]
+    prefixes = [".".join([name, *keys[:depth]]) for depth in range(len(keys), -1, -1)]
+    origin = next((said[prefix] for prefix in prefixes if prefix in said), None)
+    origin = origin or next((text for key, text in said.items() if key.startswith(prefixes[0] + ".")), None)
+    return where if origin is None else f"{origin}: {name}"
 
 
 def _told(where: str, cls: type[BaseModel], fault: Any) -> str:

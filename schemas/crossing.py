@@ -36,6 +36,9 @@ class Crossing(Artifact):
     moved: Annotated[Floats, Array("float64", PAIR, unit="length")]
     """How far apart they are: |v(t_end) − v(t_begin)|, which Eq. 7 holds against a threshold."""
 
+    handles: tuple[int, ...] = ()
+    """Genus of each interval's reference."""
+
     def rows(self, interval: int) -> slice:
         """The rows of an interval's vertices."""
         last = interval + 1 == len(self.first)
@@ -49,7 +52,9 @@ class Crossing(Artifact):
     def remarks(self) -> tuple[str, ...]:
         """Said where there are too few leaves to tell places apart."""
         few = ("no leaf", "one leaf", "two leaves")
-        return tuple(
+        closed = "as a ring has or limbs that touch: a tree of joints cannot close it"
+        rings = tuple(f"interval {i} has {n} handle{'s' * (n > 1)}, {closed}" for i, n in enumerate(self.handles) if n > 0)
+        return rings + tuple(
             f"interval {i} has {few[n]}: the geodesic mapping cannot tell places apart there"
             for i, n in enumerate(self.leaves.tolist())
             if n < len(few)

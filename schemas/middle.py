@@ -2,6 +2,8 @@
 
 from typing import Annotated
 
+import numpy as np
+
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import CORNER, FACE, FRAME, LEAF, VERTEX, XYZ
 
@@ -29,6 +31,14 @@ class Middle(Artifact):
     """Geodesic coordinates of the reference: g(v, leaf); NaN outside the largest component and for a leaf not seen."""
     trail: Annotated[Floats, Array("float64", LEAF, FRAME, XYZ, unit="length", finite=False)]
     """Where each leaf is in every frame of the interval; NaN where it is not seen."""
+
+    @property
+    def handles(self) -> int:
+        """Genus of the mesh where it is one closed surface, V − E + F = 2 − 2g; 0 where it is not."""
+        F = np.asarray(self.faces)
+        sides = np.sort(np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+        edges, uses = np.unique(sides, axis=0, return_counts=True)
+        return 0 if (uses != 2).any() else (2 - len(np.unique(F)) + len(edges) - len(F)) // 2
 
     def previous(self, member: int) -> int | None:
         """The frame from which this one is reached, its neighbour towards the middle; None for the reference."""

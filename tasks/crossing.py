@@ -41,6 +41,7 @@ def crossing(
     return Crossing(
         first=first[:-1], leaves=np.array([len(m.leaf) for m in middle]), onward=onto["onward"], onward_distance=away["onward"],
         backward=onto["backward"], backward_distance=away["backward"], cut=cut, before=before, behind=behind, moved=found[:, 3],
+        handles=tuple(m.handles for m in middle),
     )  # fmt: skip
 
 

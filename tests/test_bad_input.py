@@ -357,6 +357,12 @@ def test_typo_in_yaml_is_refused_with_the_nearest_key(refused, tmp_path):
     assert refused("walk.yaml") == "walk.yaml: no such key 'mehs'; did you mean 'mesh'?"
 
 
+def test_what_the_command_line_says_is_blamed_on_it_and_not_on_the_file(refused, tmp_path):
+    (tmp_path / "walk.yaml").write_text("source: {input: scans}\n")
+    told = refused("walk.yaml", "--set", "mesh.component_share=2")
+    assert told == "--set mesh.component_share=2: mesh.component_share: input should be less than or equal to 1, got 2"
+
+
 def test_yaml_that_would_run_code_is_refused_and_runs_none(refused, tmp_path):
     (tmp_path / "walk.yaml").write_text("source: {input: scans}\nmesh: !!python/object/apply:os.system [touch exploded]\n")
     assert refused("walk.yaml").startswith("walk.yaml, line 2: not valid YAML: could not determine a constructor for the tag")
@@ -566,4 +572,5 @@ def test_memory_that_is_no_size(kinetree, scans):
     code, _, complained = kinetree(
         "run", "-i", "scans", "-o", "out", "--until", "mesh", "--executor", "processes", "--set", "compute.memory=lots", "-q"
     )
-    assert (code, complained) == (2, "kinetree: config: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'\n")
+    told = "--set compute.memory=lots: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'"
+    assert (code, complained) == (2, f"kinetree: {told}\n")

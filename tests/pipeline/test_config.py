@@ -257,10 +257,10 @@ def test_set_that_sets_nothing_is_refused_with_an_example(text):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("mesh.mrge=1", "config: mesh.mrge: no such key; did you mean 'merge'?"),
+        ("mesh.mrge=1", "--set mesh.mrge=1: mesh.mrge: no such key; did you mean 'merge'?"),
         ("mseh.merge=1", "config: no such key 'mseh'; did you mean 'mesh'?"),
-        ("mesh.=1", "config: mesh.: no such key; there are: "),
-        ("mesh.merge.x=1", "config: mesh.merge: input should be a valid number, got {'x': 1}"),
+        ("mesh.=1", "--set mesh.=1: mesh.: no such key; there are: "),
+        ("mesh.merge.x=1", "--set mesh.merge.x=1: mesh.merge: input should be a valid number, got {'x': 1}"),
         ("mesh.merge=[1", "--set mesh.merge=[1, line 1: not valid YAML: "),
         ("mesh.merge=!!python/object:os.system {}", "--set mesh.merge=!!python/object:os.system {}, line 1: not valid YAML: "),
         ("source.frames=2001-13-45", "--set source.frames=2001-13-45: not valid YAML: month must be in 1..12"),

@@ -3,7 +3,8 @@
 import numpy as np
 from mesoscopic import made
 
-from kinetree.schemas.annuli import LADDER
+from kinetree.schemas.annuli import LADDER, AnnuliParams
+from kinetree.tasks.annuli import annuli
 
 
 def test_annulus_at_the_joint_is_the_only_one_that_is_not_rigid() -> None:
@@ -26,3 +27,10 @@ def test_still_body_is_rigid_all_over() -> None:
     for told in made(still=True).annuli.values():
         assert told.rigid.all()
         assert (told.merge == 1.0).all()
+
+
+def test_alignment_that_errs_makes_no_joint_of_a_body_that_lies_still() -> None:
+    here = made()
+    for moved, rigid in ((1.0, True), (9.0, False)):
+        erring = {t: here.alignment[t].model_copy(update={"moved": moved}) for t in here.middle[0].frames}
+        assert bool(annuli(here.limb[0, 0], here.middle[0], erring, AnnuliParams()).rigid.all()) is rigid

@@ -24,7 +24,7 @@ def test_lengths_are_fixed_and_turning_is_that_of_the_arms() -> None:
             length = np.linalg.norm(told.positions[:, j] - told.positions[:, p], axis=1)
             assert length == pytest.approx(told.lengths[j])
     assert all(60 < d < 110 for d, kind in zip(told.degrees, told.kinds, strict=True) if kind == "joint")
-    assert (told.confidence == 1.0).all()
+    assert told.confidence.min() > 0.9
 
 
 def test_still_body_has_no_joint() -> None:

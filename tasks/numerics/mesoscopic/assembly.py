@@ -33,6 +33,7 @@ class Fitted(NamedTuple):
     positions : (frame, node, xyz) mesh unit, ends : (frame, leaf, xyz)
     end_rest  : (leaf, xyz) in the reference
     drift     : (node,) root mean square distance to where the joint was seen, mesh unit
+    gap       : (frame, node) that distance, NaN where it was not seen
     """
 
     motion: Motion
@@ -40,6 +41,7 @@ class Fitted(NamedTuple):
     ends: Floats
     end_rest: Floats
     drift: Floats
+    gap: Floats
 
 
 def hung(bone: Ints, carrier: Ints, touches: Bools, area: Floats, body_area: Floats) -> Hung:
@@ -148,7 +150,7 @@ def posed(
     gap = np.linalg.norm(places - X, axis=2)
     drift = np.sqrt(np.nanmean(np.where(np.isfinite(gap).any(axis=0), gap, 0.0) ** 2, axis=0))
     moved = places[:, on] + np.einsum("texy,ey->tex", found.R[:, on], ends - rest[on])
-    return Fitted(found, places, moved, ends, drift)
+    return Fitted(found, places, moved, ends, drift, gap)
 
 
 def _offset(R: Floats, apart: Floats) -> Floats:

@@ -10,10 +10,10 @@ Ints = npt.NDArray[np.int64]
 
 NOISE = 0.004
 """What a reconstruction errs by, share of the root of the area."""
-SAG = 0.2
+SAG = 0.35
 """By what share of an edge's length triangles miss what they were cut from, amply."""
-MOST = 0.995
-"""Share of the vertices that must lie on the frame's surface."""
+MOST = 0.98
+"""Share of the vertices that must lie on the frame's surface: thin ends are cut differently in every frame."""
 ROUNDS = 6
 """Times that the rigid motion is found anew; a body that moves is known for one at once."""
 

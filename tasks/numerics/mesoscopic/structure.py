@@ -8,6 +8,9 @@ from kinetree.tasks.numerics.structure.naming import named
 from kinetree.tasks.numerics.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.structure.turning import turning_range
 
+HALF = 0.04
+"""At this distance between a joint and where it was seen it is half believed, share of the root of the area."""
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -41,7 +44,7 @@ def skeleton(
     on = _bearers(V, tip, of, label, tree)
     middle = weight @ V / weight.sum()
     found = posed(V, y, of, tree, X, R, middle, on, tips, surface)
-    return _named(V, label, body, of, tree, X, tips, on, found)
+    return _named(V, label, body, of, tree, X, tips, on, found, HALF * float(np.sqrt(area.sum())))
 
 
 def _own(label: Ints, body: Ints, tree: Hung) -> list[npt.NDArray[np.bool_]]:
@@ -77,9 +80,12 @@ def _bearers(V: Floats, tip: Ints, of: Ints, label: Ints, tree: Hung) -> Ints:
 
 
 def _named(
-    V: Floats, label: Ints, body: Ints, of: Ints, tree: Hung, X: Floats, tips: Floats, on: Ints, found: Fitted
+    V: Floats, label: Ints, body: Ints, of: Ints, tree: Hung, X: Floats, tips: Floats, on: Ints, found: Fitted, half: float
 ) -> Skeleton:
-    """Nodes and leaves as one list of joints, named and in the order of their names."""
+    """Nodes and leaves as one list of joints, named and in the order of their names.
+
+    A joint is believed as far as it is where it was seen, 1 / (1 + (gap / half)²), and not at all where it was not.
+    """
     nodes, frames = len(tree.parents), len(X)
     carrying = np.concatenate([np.arange(nodes), on])
     above = np.concatenate([tree.parents, on])
@@ -91,6 +97,7 @@ def _named(
     turns = np.einsum("tpxy,tpxz->tpyz", R[:, np.maximum(tree.parents, 0)], R)
     degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, nodes)), *np.zeros(len(on))])
     seen = np.isfinite(np.concatenate([X, tips], axis=1)[:, :, 0])
+    gap = np.nan_to_num(np.concatenate([found.gap, np.linalg.norm(found.ends - tips, axis=2)], axis=1))
     influence, weight = _skin(label, of, tree)
     rigid = body[label] >= 0 if len(body) else np.ones(len(V), dtype=bool)
     return Skeleton(
@@ -100,7 +107,7 @@ def _named(
         rest=rest[order],
         positions=np.concatenate([found.positions, found.ends], axis=1)[:, order],
         rotation=R[:, carrying[order]],
-        confidence=seen[:, order].astype(np.float64).reshape(frames, -1),
+        confidence=(seen / (1.0 + (gap / half) ** 2))[:, order].reshape(frames, -1),
         degrees=degrees[order],
         drift=np.concatenate([found.drift, np.zeros(len(on))])[order],
         support=seen.sum(axis=0)[order],

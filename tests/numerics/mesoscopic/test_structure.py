@@ -27,7 +27,7 @@ def test_two_links_have_one_joint_where_they_meet_and_two_ends():
     joint = found.kinds.index("joint")
     assert np.linalg.norm(found.positions[:, joint], axis=1).max() < 0.5, "it is at the origin in every frame"
     assert found.degrees[joint] == pytest.approx(120, abs=15)
-    assert found.confidence.min() == 1.0
+    assert found.confidence.min() > 0.9
 
 
 def test_joints_follow_their_parents_as_the_convention_has_it():
