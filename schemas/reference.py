@@ -5,6 +5,9 @@ from typing import Annotated
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import CORNER, FACE, FRAME, VERTEX, XYZ
 
+LOOP = 0.12
+"""Reach of a loop that a limb makes where it touches another; fingers that fuse make shorter ones."""
+
 
 class Reference(Artifact):
     """The reference mesh, from which frame it is, and before which frame each frame is reached."""
@@ -19,6 +22,8 @@ class Reference(Artifact):
     """Most limbs seen in any frame."""
     free: bool
     """Whether as many limbs are seen there, and in the frames around it, as anywhere."""
+    loop: float = 0.0
+    """How far the longest loop of its surface reaches, share of the range of μ; 0 without loops."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
     """Its vertices, as its cleaned mesh has them."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
@@ -47,4 +52,6 @@ class Reference(Artifact):
             told.append(
                 f"no frame is free of contact for long: frame {self.frame} lacks least; limbs that touch in it stay joined"
             )
+        elif self.loop >= LOOP:
+            told.append(f"frame {self.frame} has a loop, as a hand on the hip makes one: limbs that touch in it stay joined")
         return tuple(told)

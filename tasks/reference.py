@@ -40,6 +40,7 @@ def reference(
         fixed=connectivity.fixed,
         leaves=max(count),
         free=chosen.free,
+        loop=float(tips[frames[chosen.frame]].loops.max(initial=0.0)),
         vertices=mine.vertices,
         faces=mine.faces,
         size=float(np.sqrt(area[chosen.frame])),

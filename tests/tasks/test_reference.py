@@ -15,11 +15,11 @@ V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
 
 
-def seen(leaves: int, bent: float = 0.0, euler: int = 2) -> Tips:
+def seen(leaves: int, bent: float = 0.0, loop: float = 0.0, euler: int = 2) -> Tips:
     stem = np.array([[0, 0, 0], [0, 0, 1], [np.sin(bent), 0, 1 + np.cos(bent)]])
     return Tips(
         vertices=np.zeros(leaves, int), persistence=np.full(leaves, 0.5), stems=np.tile(stem, (leaves, 1, 1)),
-        normals=np.zeros((leaves, 3)), value=np.full(leaves, 0.7), peaks=np.full(leaves, 0.5), loops=np.zeros(0), size=1.0,
+        normals=np.zeros((leaves, 3)), value=np.full(leaves, 0.7), peaks=np.full(leaves, 0.5), loops=np.array([loop]), size=1.0,
         centre=(0.0, 0.0, 0.0), euler=euler, components=1,
     )  # fmt: skip
 
@@ -38,14 +38,16 @@ def same() -> Distribution:
     return Distribution(normalisation="sequence", low=0.5, high=1.5, mass=fine / fine.sum())
 
 
-def chosen(leaves: list[int], *, fixed: bool = False, bent: list[float] | None = None, first: int = 0) -> Reference:
+def chosen(
+    leaves: list[int], *, fixed: bool = False, bent: list[float] | None = None, loop: float = 0.0, first: int = 0
+) -> Reference:
     frames = range(first, first + len(leaves))
     angles = bent or [0.5] * len(leaves)
     cleaning = Cleaning(area=4.0)
     return reference(
         mesh={t: Mesh(vertices=V + t, faces=F, vertex_of_input=np.arange(4), cleaning=cleaning) for t in frames},
         distribution={t: same() for t in frames},
-        tips={t: seen(n, a) for t, n, a in zip(frames, leaves, angles, strict=True)},
+        tips={t: seen(n, a, loop) for t, n, a in zip(frames, leaves, angles, strict=True)},
         leaves=followed(leaves),
         connectivity=Connectivity(fixed=fixed, first_change=None if fixed else first + 1, vertices=4, faces=4),
     )
@@ -73,6 +75,11 @@ def test_contact_in_every_frame_gives_the_least_bad_one_and_says_so() -> None:
     told = chosen([4, 5, 4, 5, 4, 5])
     assert not told.free
     assert any("no frame is free of contact for long" in text for text in told.remarks())
+
+
+def test_a_loop_in_the_reference_is_told_since_what_touches_there_stays_joined() -> None:
+    assert any("has a loop" in text for text in chosen([5] * 5, loop=0.2).remarks())
+    assert not any("has a loop" in text for text in chosen([5] * 5, loop=0.05).remarks())
 
 
 @pytest.mark.parametrize(("leaves", "words"), [(0, "no limb is"), (1, "one limb is"), (2, "two limbs are")])
