@@ -86,6 +86,7 @@ def rotation_centres(
     *,
     spread: float = SPREAD,
     alike: float = np.inf,
+    far: float = np.inf,
 ) -> Joints:
     """Rotation centres, c = argmin Σ_t w_t |(R_a − R_b) c − (t_b − t_a)|² + Σ_t w_t (σ / (ρ r))² |c − c₀|², w robust.
 
@@ -95,15 +96,17 @@ def rotation_centres(
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit; the least that σ can be
     trust    : (frame, part) weight of each part in each frame; None believes all
     spread   : ρ, standard deviation of a joint about c₀, in r
+    far      : distance from c₀, in r, at which a joint is held twice as firmly
     alike    : frames that err alike even where neighbours do not, so that errors of more frames average out; all do not
     """
     a, b = pair[:, 0], pair[:, 1]
     M, d = R[:, a] - R[:, b], t[:, b] - t[:, a]
     believed = np.ones(M.shape[:2]) if trust is None else np.minimum(trust[:, a], trust[:, b]) + 1e-3
     floor = np.sqrt((residual[:, a] ** 2 + residual[:, b] ** 2).mean(axis=0)) + 1e-4 * radius
-    c, w, sigma = centre, believed, floor
+    c, w, sigma, r = centre, believed, floor, np.maximum(radius, np.finfo(float).tiny)
     for _ in range(ROUNDS):
-        stiff = w.sum(axis=0) * (sigma / (spread * np.maximum(radius, np.finfo(float).tiny))) ** 2
+        held = 1.0 + (np.linalg.norm(c - centre, axis=1) / (far * r)) ** 2
+        stiff = held * w.sum(axis=0) * (sigma / (spread * r)) ** 2
         A = np.einsum("tj,tjxy,tjxz->jyz", w, M, M) + stiff[:, None, None] * np.eye(3)
         g = np.einsum("tj,tjxy,tjx->jy", w, M, d) + stiff[:, None] * centre
         c = np.linalg.solve(A, g[..., None])[..., 0]

@@ -26,6 +26,8 @@ SPREAD = 0.35
 """Standard deviation of a joint about where it is expected, in radii of its border."""
 ALIKE = 3.0
 """Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it."""
+FAR = 0.7
+"""Distance from where it is expected, in radii of its border, at which a joint is held twice as firmly."""
 QUIET = 0.5
 """Share of what a part's motion leaves of single vertices that its motion may err by: noise averages out over a part."""
 RIGID = 0.75
@@ -161,7 +163,7 @@ def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> 
     expected = towards_axes(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
     pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
     held = (expected, met.radius[rows], QUIET * parts.residual, parts.trust)
-    joints = rotation_centres(parts.R, parts.t, pair, *held, spread=SPREAD, alike=ALIKE)
+    joints = rotation_centres(parts.R, parts.t, pair, *held, spread=SPREAD, alike=ALIKE, far=FAR)
     rest[1:], drift[1:] = joints.rest, joints.drift
     return rest, drift
 

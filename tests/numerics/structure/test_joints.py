@@ -86,6 +86,20 @@ def test_errors_of_single_frames_average_out_and_lasting_ones_do_not() -> None:
     assert weakly_turning(slow)[0] > 0.3
 
 
+def test_a_joint_that_runs_away_goes_a_smaller_share_of_the_way() -> None:
+    turn = swings(24, 2, degrees=4.0)
+    body = chain((0.5,), turn)
+    residual = np.full(body.R.shape[:2], 0.02)
+
+    def share(way: float, far: float) -> float:
+        expected = body.joints[1:] - [0.0, 0.0, way]
+        found = rotation_centres(body.R, body.t, np.array([[0, 1]]), expected, np.ones(1), residual, far=far)
+        return float((found.rest - expected)[0, 2] / way)
+
+    assert share(0.2, 0.7) == pytest.approx(share(0.2, np.inf), abs=0.05)
+    assert share(1.0, 0.7) < share(1.0, np.inf) - 0.1
+
+
 def test_skin_between_parts_that_it_follows_is_explained_by_them() -> None:
     body = chain((-1.5, 1.5), blend=1.0)
     met = borders(body.V, body.F, body.label)
