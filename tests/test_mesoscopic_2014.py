@@ -10,7 +10,7 @@ import trimesh
 
 from kinetree.pipeline import Pipeline
 from kinetree.tasks.plots.mesoscopic import cones as drawn_cones
-from kinetree.tasks.plots.mesoscopic import merging
+from kinetree.tasks.plots.mesoscopic import lengths, merging, structure
 
 TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
 HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
@@ -50,12 +50,16 @@ def test_exports_are_those_of_every_method(human: Pipeline) -> None:
     assert json.loads((out / "skeleton.json").read_text())["format"] == "kinetree.skeleton/1"
     assert (out / "skeleton.glb").is_file()
     assert (out / "skeleton.bvh").is_file()
+    assert (out / "segmentation.zarr").is_dir()
+    page = (out / "report.html").read_text()
+    for anchor in ("structure", "truth", "cones", "bones", "intervals", "alignment", "run"):
+        assert f'<section id="{anchor}">' in page
 
 
-def test_pictures_of_cones_and_of_merge_errors_are_drawn(human: Pipeline, tmp_path: Path) -> None:
-    schedule = human.schedule()
-    for name, draw in (("cones", drawn_cones), ("merging", merging)):
-        figure = draw(lambda task, **index: human.artifact(task, within=schedule, **index), [0, 7])
+def test_pictures_of_cones_merge_errors_and_bones_are_drawn(human: Pipeline, tmp_path: Path) -> None:
+    schedule, named = human.schedule(), {"skeleton": "kinematic_structure"}
+    for name, draw in (("cones", drawn_cones), ("merging", merging), ("structure", structure), ("lengths", lengths)):
+        figure = draw(lambda task, **index: human.artifact(named.get(task, task), within=schedule, **index), [0, 7])
         figure.savefig(tmp_path / f"{name}.png", dpi=40)
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
 
