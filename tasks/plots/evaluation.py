@@ -42,7 +42,7 @@ def drawn(told: Evaluation) -> "Figure":
     names = [f"{told.joints[j].name}  {_length(told, j)}" for j in shown]
     beside.set(yticks=range(len(shown)), xlim=(0, None), xlabel="mean ± deviation over the frames, % of the height")
     beside.set_yticklabels(names, fontsize=7)
-    beside.set_ylim(len(shown) - 0.5, -0.5)
+    beside.set_ylim(max(len(shown), 1) - 0.5, -0.5)
     below.plot(told.frames, told.detection, color=COLOURS[0], lw=1.1, label="R_detection (2009, Eq. 8)")
     below.plot(told.frames, told.distance, color=COLOURS[1], lw=1.1, label="E_dist / height (2009, Eq. 9)")
     below.set(xlabel="frame", ylim=(0, 1.05))
