@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import trimesh
-from turning import Truth
+from turning import Truth, twisted
 
 from kinetree.schemas.synth import ContactParams, SynthParams
 from kinetree.tasks.numerics.correlation import dimensionless
@@ -35,19 +35,16 @@ from kinetree.tasks.numerics.pieces import pieces
 from kinetree.tasks.numerics.projection import projected
 from kinetree.tasks.numerics.reference import profile, reference
 from kinetree.tasks.numerics.repair import Tracked, repaired, tracked
-from kinetree.tasks.numerics.stiffness import PASSES, freed, learned
+from kinetree.tasks.numerics.stiffness import PASSES, freed, learned, loosened
 from kinetree.tasks.numerics.surface import Surface
 from kinetree.tasks.numerics.synth.body import Body
 from kinetree.tasks.numerics.template import Template, template
 from kinetree.tasks.numerics.tracking import follow
 from kinetree.tasks.numerics.trust import residuals, trusted
-from kinetree.tasks.numerics.turns import limbs, turns, untwisted
-from kinetree.tasks.numerics.twist import choices
 from kinetree.tasks.synth import body as posed
 from kinetree.tasks.synth import recipe
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 # figure:motion, or random:SEED, and per contact: limb, target, first and last frame
 GENERATED: dict[str, tuple[tuple[str, str, int, int], ...]] = {
@@ -127,25 +124,16 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[Template, li
     kept = sorted({start, *range(0, len(meshes), every)})
     poses = [found[t].pose for t in kept]
     begun = time.process_time()
-    limb = np.full(len(body.node), -1)
+    limb = piece = np.full(len(body.node), -1)
     for number, settings in enumerate(PASSES):
-        s = freed(body, learned(body, poses), limb) if number else learned(body, poses)
+        s = freed(body, learned(body, poses), limb)
+        s = loosened(body, s, piece) if number == len(PASSES) - 1 else s
         poses = [fit(body, pose, targets[t], settings, s).pose for t, pose in zip(kept, poses, strict=True)]
         if not number:
-            poses, limb = twisted(body, poses, [targets[t] for t in kept], kept.index(start))
+            piece = pieces(body, poses)
+            poses, limb = twisted(body, piece, poses, [targets[t] for t in kept], kept.index(start))
     seconds = first + (time.process_time() - begun) / len(kept)
     return body, kept, poses, np.array([found[t].uncovered for t in kept]), seconds
-
-
-def twisted(body: Template, poses: list[Pose], targets: list[Target], start: int) -> tuple[list[Pose], Ints]:
-    """Poses in which limbs have their twist back, and (node,) the limb of those that turned."""
-    piece = pieces(body, poses)
-    tried = [turns(body, pose, target, piece) for pose, target in zip(poses, targets, strict=True)]
-    turn = choices(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
-    limb = np.full(len(body.node), -1)
-    for k, one in enumerate(limbs(body, piece)):
-        limb[one.node] = k if (turn[:, k] >= 0).any() else -1
-    return [untwisted(body, pose, piece, t, row) for pose, t, row in zip(poses, tried, turn, strict=True)], limb
 
 
 def peer(meshes: list[Cleaned], body: Template, start: int, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""True trajectories of an observed mesh, and how far each true joint turns in an alignment against the truth."""
+"""True trajectories of an observed mesh, how far each true joint turns in an alignment, and how lost twists come back."""
 
 import json
 from dataclasses import dataclass
@@ -9,7 +9,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.correspondence import Target
+from kinetree.tasks.numerics.deformation import Pose
 from kinetree.tasks.numerics.projection import projected
+from kinetree.tasks.numerics.template import Template
+from kinetree.tasks.numerics.turns import limbs, turns, untwisted
+from kinetree.tasks.numerics.twist import choices
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -73,6 +78,16 @@ class Truth:
                 U[:, :, 2] *= np.sign(np.linalg.det(U @ Vt))[:, None]
                 out[name] = U @ Vt
         return out
+
+
+def twisted(body: Template, piece: Ints, poses: list[Pose], targets: list[Target], start: int) -> tuple[list[Pose], Ints]:
+    """Poses in which limbs have their twist back, and (node,) the limb of those that turned."""
+    tried = [turns(body, pose, target, piece) for pose, target in zip(poses, targets, strict=True)]
+    turn = choices(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
+    limb = np.full(len(body.node), -1)
+    for k, one in enumerate(limbs(body, piece)):
+        limb[one.node] = k if (turn[:, k] >= 0).any() else -1
+    return [untwisted(body, pose, piece, t, row) for pose, t, row in zip(poses, tried, turn, strict=True)], limb
 
 
 def _compared(a: Floats, b: Floats) -> tuple[float, float, float]:

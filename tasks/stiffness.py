@@ -6,6 +6,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.pieces import Pieces
 from kinetree.schemas.pose import Pose
 from kinetree.schemas.refit import SecondRefit
 from kinetree.schemas.repair import Repair
@@ -13,7 +14,7 @@ from kinetree.schemas.stiffness import FirstStiffness, SecondStiffness, Stiffnes
 from kinetree.schemas.template import Template
 from kinetree.schemas.twist import Twist
 from kinetree.schemas.untwisting import Untwisting
-from kinetree.tasks.numerics.stiffness import freed, learned
+from kinetree.tasks.numerics.stiffness import freed, learned, loosened
 from kinetree.tasks.pose import graph, pose
 
 S = TypeVar("S", bound=Stiffness)
@@ -32,9 +33,14 @@ def second_stiffness(template: Template, refit: tuple[Untwisting, ...], twist: T
 
 
 @task()
-def third_stiffness(template: Template, refit: tuple[SecondRefit, ...], twist: Twist) -> ThirdStiffness:
-    """Learns again from the second refit (ours)."""
-    return _learned(ThirdStiffness, template, refit, twist)
+def third_stiffness(
+    template: Template, refit: tuple[SecondRefit, ...], twist: Twist, pieces: Pieces
+) -> ThirdStiffness:
+    """Learns again from the second refit, and lets pieces turn against each other more freely (ours)."""
+    found = _learned(ThirdStiffness, template, refit, twist)
+    if not len(template.nodes):
+        return found
+    return ThirdStiffness(stiffness=loosened(graph(template), found.stiffness, pieces.label.astype(np.int64)))
 
 
 def _learned(cls: type[S], template: Template, poses: Iterable[Pose], twist: Twist | None = None) -> S:

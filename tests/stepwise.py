@@ -110,11 +110,11 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     made.twist = twist(made.turns, body, made.pieces, made.reference)
     last = {t: untwisting(body, made.first_refit[t], made.pieces, made.turns[t], made.twist) for t in meshes}
     made.untwisting = last
-    for learn, fit in ((second_stiffness, second_refit), (third_stiffness, third_refit)):
-        stiffness = learn(body, tuple(last.values()), made.twist)
-        last = {t: fit(meshes[t], body, pose, stiffness) for t, pose in last.items()}
-        setattr(made, learn.name, stiffness)
-        setattr(made, fit.name, last)
+    made.second_stiffness = second_stiffness(body, tuple(last.values()), made.twist)
+    made.second_refit = {t: second_refit(meshes[t], body, pose, made.second_stiffness) for t, pose in last.items()}
+    made.third_stiffness = third_stiffness(body, tuple(made.second_refit.values()), made.twist, made.pieces)
+    last = {t: third_refit(meshes[t], body, pose, made.third_stiffness) for t, pose in made.second_refit.items()}
+    made.third_refit = last
     made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
     made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
     made.trust = trust(made.alignment, made.reference)

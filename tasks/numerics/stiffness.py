@@ -17,6 +17,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 YIELD = 0.03  # relative bending at which a tie counts half
+LOOSE = 0.1  # of its stiffness a tie between two pieces keeps in the last pass
 FREED = 0.15  # of its stiffness a tie keeps that leads to a limb which had lost a twist
 
 # the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
@@ -50,3 +51,13 @@ def freed(template: Template, stiffness: Floats, limb: Ints) -> Floats:
     """
     a, b = limb[template.edge[:, 0]], limb[template.edge[:, 1]]
     return np.where(a != b, FREED * stiffness, np.where(a >= 0, 1.0, stiffness))
+
+
+def loosened(template: Template, stiffness: Floats, piece: Ints) -> Floats:
+    """Stiffness with the ties between pieces that moved apart made softer: what bends there was learned half-heartedly.
+
+    stiffness : (edge,) as learned
+    piece     : (node,) number of the piece, see `pieces`
+    returns   : (edge,)
+    """
+    return np.where(piece[template.edge[:, 0]] != piece[template.edge[:, 1]], LOOSE, 1.0) * stiffness

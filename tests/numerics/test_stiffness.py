@@ -6,7 +6,7 @@ from limbs import bent, rotation, tube
 
 from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.stiffness import FREED, PASSES, YIELD, freed, learned
+from kinetree.tasks.numerics.stiffness import FREED, LOOSE, PASSES, YIELD, freed, learned, loosened
 from kinetree.tasks.numerics.template import TemplateSettings, template
 
 ANGLES = (0.2, 0.4, 0.6)
@@ -82,3 +82,12 @@ def test_a_limb_that_turned_is_rigid_and_loose_at_its_ends(body):
     assert (found[(ends == -1).all(axis=1)] == 0.5).all()
     assert (found[ends[:, 0] != ends[:, 1]] == FREED * 0.5).all()
     np.testing.assert_array_equal(freed(body, s, np.full(len(limb), -1)), s)
+
+
+def test_ties_between_two_pieces_are_loosened_and_no_others(body):
+    s = np.full(len(body.edge), 0.5)
+    piece = (body.g[:, 2] > 0).astype(np.int64)
+    apart = piece[body.edge[:, 0]] != piece[body.edge[:, 1]]
+    found = loosened(body, s, piece)
+    assert (found[apart] == LOOSE * 0.5).all()
+    assert (found[~apart] == 0.5).all()

@@ -32,4 +32,4 @@ def test_fixed_connectivity_has_nothing_to_learn() -> None:
     made = walk()
     empty = template(made.reference.model_copy(update={"fixed": True}), TemplateParams())
     assert len(second_stiffness(empty, tuple(made.untwisting.values()), made.twist).stiffness) == 0
-    assert len(third_stiffness(empty, (), made.twist).stiffness) == 0
+    assert len(third_stiffness(empty, (), made.twist, made.pieces).stiffness) == 0
