@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.articulation import turns
 from kinetree.tasks.numerics.structure.guesses import guess
 from kinetree.tasks.numerics.structure.matches import Matches, Rows, followed, rows, shown, sought, unexplained
 from kinetree.tasks.numerics.structure.pose import SEEN
-from kinetree.tasks.numerics.structure.posture import Body, Posture, against_parents, joints, pulled
+from kinetree.tasks.numerics.structure.posture import Body, Posture, against_parents, chained, joints, pulled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -23,7 +23,7 @@ Flags = npt.NDArray[np.bool_]
 
 DOUBT = 0.7  # confidence of a part below which a frame is fitted
 GAIN = 0.03  # share of what was left unexplained that a fit must explain
-STRANGE = np.deg2rad(40.0)  # no part turns farther than this from every turn it was seen in, unless it did already
+STRANGE = np.deg2rad(60.0)  # no part turns farther than this from every turn it was seen in, unless it did already
 SURFACE = 0.7  # what a part is believed that the surface alone shows in full; it says little of turns about a limb's own axis
 
 SIGMA = (0.1, 0.06, 0.036, 0.022, 0.015, 0.012, 0.012, 0.012)  # where a match counts a quarter, shares of the body's size
@@ -84,14 +84,20 @@ def fit(body: Body, start: Posture, target: Target, aligned: Floats, trust: Floa
     best = refined(body, start, target, aligned, trust, expected)
     found = sought(body, best, target)
     turn, seen = against_parents(known.R, body.parents), _seen(known.confidence, body.parents)
-    other = guess(body, best, target, found, turn, seen, frame, known.confidence[frame] < DOUBT)
+    lost = _out_of_sight(body, known.confidence[frame], shown(body, target, found))
+    other = guess(body, best, target, found, turn, seen, frame, lost)
     if other is not None:
         other = refined(body, other, target, aligned, trust, against_parents(other.R, body.parents))
         there = sought(body, other, target)
         if unexplained(body, target, there).mean() < unexplained(body, target, found).mean():
             best, found = other, there
+    strange = _strange(best, start, body.parents, turn, seen)
+    if strange.any():
+        kept = np.where((strange @ body.beyond)[:, None, None], expected, against_parents(best.R, body.parents))
+        best = Posture(chained(kept, body.parents), best.x)
+        found = sought(body, best, target)
     after = float(unexplained(body, target, found).mean())
-    if after > (1.0 - GAIN) * before or _is_strange(best, start, body.parents, turn, seen):
+    if after > (1.0 - GAIN) * before:
         return Fitted(False, start, known.confidence[frame], before, before)
     above = np.maximum(body.parents, 0)
     share = shown(body, target, found)
@@ -174,22 +180,29 @@ def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Floats, firm
             g[j] -= firm[a] * away[a]
 
 
+def _out_of_sight(body: Body, confidence: Floats, share: Floats) -> Flags:
+    """(part,) parts in doubt that the frame does not show where they are, and all that hangs on them; never the root."""
+    first = (confidence < DOUBT) & (share < SEEN)
+    first[0] = False
+    return np.asarray(first @ body.beyond)
+
+
 def _seen(confidence: Floats, parents: Ints) -> Flags:
     """(frame, part) frames whose turning serves others: the part and its parent were seen."""
     seen: Flags = np.minimum(confidence, confidence[:, np.maximum(parents, 0)]) >= SEEN
     return seen
 
 
-def _is_strange(at: Posture, start: Posture, parents: Ints, turn: Floats, seen: Flags) -> bool:
-    """Whether some part turns as it was seen nowhere, and was not so before."""
+def _strange(at: Posture, start: Posture, parents: Ints, turn: Floats, seen: Flags) -> Flags:
+    """(part,) parts that turn as they were seen nowhere, and did not before."""
+    strange = np.zeros(len(parents), np.bool_)
     new, old = (against_parents(p.R, parents) for p in (at, start))
     for a in range(1, len(parents)):
         ways = turn[seen[:, a], a]
         if len(ways):
             far, was = (_angles(ways, p[a]).min() for p in (new, old))
-            if far > max(STRANGE, was):
-                return True
-    return False
+            strange[a] = far > max(STRANGE, was)
+    return strange
 
 
 def _angles(ways: Floats, R: Floats) -> Floats:

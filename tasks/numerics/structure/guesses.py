@@ -15,6 +15,7 @@ Flags = npt.NDArray[np.bool_]
 
 TRIED = 24  # frames from which a limb's turning is tried
 REACH = 0.1  # distance from which on a point explains nothing at all, share of the body's size
+NEAR = 0.03  # as near as this in place and direction the rest of the body explains a point
 FEW = 0.005  # share of a frame that may be left over anywhere
 BETTER = 0.8  # a guess leaves at most this share of what the posture leaves
 
@@ -26,17 +27,19 @@ def guess(
 
     turn, known : (frame, part, 3, 3) against the parents · (frame, part) where each was seen
     frame       : the row that is to be guessed
-    doubted     : (part,)
+    doubted     : (part,) what may be elsewhere, with all that hangs on it
     """
-    over = target.sample[unexplained(body, target, found) >= 1.0]
     piece = limbs(body.parents, doubted)
-    if len(over) < FEW * len(target.sample) or piece.max(initial=-1) < 0:
+    if (unexplained(body, target, found) >= 1.0).mean() < FEW or piece.max(initial=-1) < 0:
         return None
     best, changed = against_parents(at.R, body.parents), False
     for number in range(piece.max() + 1):
         parts = np.flatnonzero(piece == number)
         ways = _ways(turn, known, frame, parts)
-        left = [_left(body, at, target, over, _with(best, parts, way), parts) for way in [best[parts], *ways]]
+        mine = np.isin(body.label[body.asked], np.flatnonzero(body.beyond[parts].any(axis=0)))
+        over = _points(target)[_away(found.x, found.n, target, body.asked[~mine], _points(target)) > NEAR * body.size]
+        tried = [surface(body, Posture(chained(_with(best, parts, way), body.parents), at.x)) for way in [best[parts], *ways]]
+        left = [np.minimum(_away(x, n, target, body.asked[mine], over) / (REACH * body.size), 1.0).sum() for x, n in tried]
         chosen = int(np.argmin(left))
         if left[chosen] < BETTER * left[0]:
             best, changed = _with(best, parts, ways[chosen - 1]), True
@@ -57,12 +60,14 @@ def _with(turn: Floats, parts: Ints, way: Floats) -> Floats:
     return changed
 
 
-def _left(body: Body, at: Posture, target: Target, over: Ints, turn: Floats, parts: Ints) -> float:
-    """How far what is left over is from the limb and all that hangs on it, at most REACH each."""
-    x, n = surface(body, Posture(chained(turn, body.parents), at.x))
-    mine = body.asked[np.isin(body.label[body.asked], np.flatnonzero(body.beyond[parts].any(axis=0)))]
+def _points(target: Target) -> Floats:
+    """(sample, 6) the frame's samples as places and directions."""
+    points: Floats = np.hstack([target.V[target.sample], target.beta * target.N[target.sample]])
+    return points
+
+
+def _away(x: Floats, n: Floats, target: Target, mine: Ints, points: Floats) -> Floats:
+    """(point,) distance to the nearest of some of the body's vertices in place and direction, mesh unit."""
     if not len(mine):
-        return float(len(over))
-    points = np.hstack([target.V[over], target.beta * target.N[over]])
-    away = cKDTree(np.hstack([x[mine], target.beta * n[mine]])).query(points)[0] / (REACH * body.size)
-    return float(np.minimum(away, 1.0).sum())
+        return np.full(len(points), np.inf)
+    return np.asarray(cKDTree(np.hstack([x[mine], target.beta * n[mine]])).query(points)[0])

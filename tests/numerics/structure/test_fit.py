@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from fitting import FRAMES, arms, seen, tip, true, turned
 from limbs import rotation
+from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.correspondence import Target
 from kinetree.tasks.numerics.structure.fit import Fitted, Known, doubtful, fit
-from kinetree.tasks.numerics.structure.posture import Posture, joints
+from kinetree.tasks.numerics.structure.posture import Posture, against_parents, joints, surface
 
 FRAME, ARM = 5, 1
 
@@ -44,6 +46,19 @@ def test_arm_without_any_surface_keeps_its_pose_and_is_not_believed(angle: float
     _, body = arms()
     assert np.linalg.norm(tip(body, found.at, ARM) - tip(body, start, ARM)) < 0.01 * body.size
     assert found.confidence[ARM] <= 0.05
+
+
+def test_part_does_not_turn_as_it_was_seen_nowhere() -> None:
+    known, body = arms(10.0)
+    at = true(known, FRAME)
+    V, _ = surface(body, turned(at, ARM, rotation((0.3, -0.2, 1.0), 1.5)))
+    trust, confidence = np.where(known.label == ARM, 0.05, 1.0), np.ones((FRAMES, 4))
+    confidence[FRAME, ARM] = 0.05
+    target = Target.of(V, known.F, body.size)
+    found = fit(body, at, target, known.x[FRAME], trust, Known(known.R, confidence), FRAME)
+    turn = [against_parents(p.R, body.parents)[ARM] for p in (found.at, at)]
+    assert Rotation.from_matrix(turn[0].T @ turn[1]).magnitude() < np.deg2rad(65.0)
+    assert found.confidence[ARM] < 0.3
 
 
 def test_pose_that_is_right_stays_as_it_was() -> None:
