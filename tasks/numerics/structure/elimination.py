@@ -78,18 +78,14 @@ def eliminated(body: Body, bar: Bar, label: Ints, R: Floats, t: Floats) -> tuple
     alive, stale, refit = np.zeros(parts, np.bool_), np.ones(parts, np.bool_), np.zeros(parts, np.bool_)
     for v in range(len(label)):
         alive[label[v]] = True
-    score = np.full(parts, np.inf)
+    score = np.full(parts, -np.inf)
     while True:
         near = neighbouring(label, parts, body.start, body.ring)
-        _score(body, bar, label, R, t, near, alive, stale, score)
-        worst = -1
-        for p in range(parts):
-            stale[p] = refit[p] = False
-            if alive[p] and score[p] < bar.missed and (worst < 0 or score[p] < score[worst]):
-                worst = p
+        worst = _least_missed(body, bar, label, R, t, near, alive, stale, score)
         if worst < 0:
             return label, R, t
         alive[worst] = False
+        refit[:] = False
         _inherit(body, label, worst, near, R, t, refit)
         label = connected(label, parts, body.start, body.ring)
         fit(body.V, body.x, body.weight, body.area, label, refit, True, MOST, bar.floor, R, t)
@@ -100,44 +96,60 @@ def eliminated(body: Body, bar: Bar, label: Ints, R: Floats, t: Floats) -> tuple
 
 
 @compiled
-def _score(
+def _least_missed(
     body: Body, bar: Bar, label: Ints, R: Floats, t: Floats, near: Ints, alive: Flags, stale: Flags, score: Floats
-) -> None:
-    """Writes by how much every stale part would be missed: infinite without a neighbour."""
+) -> int:
+    """The part that would be missed least, −1 if all pass the bar; writes scores.
+
+    What was missed little before is asked first: with fewer others to explain them parts are rather missed more, so that
+    most scores that went stale need not be found anew (lazy greedy choice, after Minoux 1978).
+    """
     parts = len(near)
     size, rim = np.zeros(parts), rims(body.V, body.F, label, parts)
     member = np.empty(len(label), np.int64)
     for v in range(len(label)):
         size[label[v]] += body.area[v]
-    for p in range(parts):
-        if not alive[p] or not stale[p]:
-            continue
-        other, touches = candidates(near, size, p)
-        if touches == 0:
-            score[p] = np.inf
-            continue
-        count = members(label, p, ENOUGH, member)
-        # of a tube, area / girth² is length / girth, and its two ends are the rim
-        long = _ramp(4.0 * size[p] / max(rim[p], 1e-12) ** 2, bar.short) * _ramp(size[p], bar.small)
-        bone = max(long, _ramp(size[p], bar.large))
-        fine = np.sqrt(size[p] / (size[p] + bar.least))
-        score[p] = fine * missed(
-            body.V,
-            body.N,
-            body.x,
-            body.weight,
-            body.area,
-            member[:count],
-            p,
-            other,
-            touches,
-            R,
-            t,
-            bone,
-            bar.slip,
-            bar.loose,
-            bar.quiet * (1.0 + 2.0 * bar.slip**2) / 3.0,
-        )
+    while True:
+        worst = -1
+        for p in range(parts):
+            if alive[p] and score[p] < bar.missed and (worst < 0 or score[p] < score[worst]):
+                worst = p
+        for p in range(parts):
+            if worst < 0 and alive[p] and stale[p]:
+                worst = p
+        if worst < 0:
+            return -1
+        if not stale[worst]:
+            return worst
+        score[worst] = _score(body, bar, label, R, t, near, size, rim[worst], worst, member)
+        stale[worst] = False
+
+
+@compiled
+def _score(
+    body: Body,
+    bar: Bar,
+    label: Ints,
+    R: Floats,
+    t: Floats,
+    near: Ints,
+    size: Floats,
+    rim: float,
+    part: int,
+    member: Ints,
+) -> float:
+    """By how much a part would be missed: infinite without a neighbour."""
+    other, touches = candidates(near, size, part)
+    if touches == 0:
+        return np.inf
+    count = members(label, part, ENOUGH, member)
+    # of a tube, area / girth² is length / girth, and its two ends are the rim
+    long = _ramp(4.0 * size[part] / max(rim, 1e-12) ** 2, bar.short) * _ramp(size[part], bar.small)
+    bone = max(long, _ramp(size[part], bar.large))
+    fine = np.sqrt(size[part] / (size[part] + bar.least))
+    quiet, asked = bar.quiet * (1.0 + 2.0 * bar.slip**2) / 3.0, member[:count]
+    V, N, x, w, area = body.V, body.N, body.x, body.weight, body.area
+    return fine * missed(V, N, x, w, area, asked, part, other, touches, R, t, bone, bar.slip, bar.loose, quiet)
 
 
 @compiled
