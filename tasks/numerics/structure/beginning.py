@@ -17,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 LEAST = 2  # rings in a run
+NEAR = 0.7
+"""Distance from a leaf, as a share of that from any other, below which what lies in several cones counts in its own."""
 
 
 def cone_runs(
@@ -36,19 +38,37 @@ def cone_runs(
     label = np.full(len(V), -1, np.int64)
     if not len(leaves):
         return label
-    C = cones(geodesic_distance(surface, leaves, exact=0.0), surface.area, leaves, start, ring, count)
-    alone = (C >= 0).sum(axis=0) == 1
+    away = geodesic_distance(surface, leaves, exact=0.0)
+    C = cones(away, surface.area, leaves, start, ring, count)
+    nearest = _whose(away, C)
     total = 0
-    for cone in C:
-        mine = alone & (cone >= 0)
+    for k, cone in enumerate(C):
+        own = np.where(nearest == k, cone, -1)
+        mine = own >= 0
         if not mine.any():
             continue
-        M = moments(V, x, weight, cone, int(cone.max()) + 1)
-        usual = float(np.median(M[:, :, 0].mean(axis=1)))
+        M = moments(V, x, weight, own, int(own.max()) + 1)
+        held = M[:, :, 0].mean(axis=1)
+        usual = float(np.median(held[np.bincount(own[mine], minlength=len(M)) > 0]))
         run = runs(M, len(x) * cut**2 * usual * count / 5, LEAST)
-        label[mine] = total + run[cone[mine]]
+        label[mine] = total + run[own[mine]]
         total += int(run.max()) + 1
     return label
+
+
+def _whose(distance: Floats, cone: Ints) -> Ints:
+    """(vertex,) the cone in which each vertex counts, −1 for none: its only one, or that of a leaf much nearer than all others.
+
+    distance, cone : (leaf, vertex) from each leaf · ring of each vertex, −1 beyond the cone
+    """
+    nearest = np.where(cone >= 0, distance, np.inf).argmin(axis=0)
+    row = np.arange(distance.shape[1])
+    own = distance[nearest, row]
+    others = distance.copy()
+    others[nearest, row] = np.inf
+    held = (cone >= 0).sum(axis=0)
+    clear = (held == 1) | ((held > 1) & (own < NEAR * others.min(axis=0)))
+    return np.where(clear, nearest, -1)
 
 
 def patches(surface: Surface, V: Floats, start: Ints, ring: Ints, count: int) -> Ints:

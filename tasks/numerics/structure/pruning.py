@@ -18,7 +18,7 @@ from kinetree.tasks.numerics.structure.turning import in_between
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-LEAST_DEGREES = 8.0
+LEAST_DEGREES = 6.0
 LEAST_RATIO = 0.8
 """What turning must move a part by, against what its joint drifts by."""
 LEAF_RATIO = 0.5
