@@ -18,7 +18,7 @@ TOGETHER = 6
 class ArticulationParams(Params):
     """What counts as a joint."""
 
-    degrees: float = Field(default=8.0, ge=0, le=180)
+    degrees: float = Field(default=6.0, ge=0, le=180)
     """A joint turns by at least this many degrees between some two frames, or its parts are one."""
     ratio: float = Field(default=0.8, ge=0)
     """How far turning moves a joint's smaller part, against how far the joint drifts; below it the part slides, like cloth."""

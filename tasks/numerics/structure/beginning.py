@@ -33,7 +33,7 @@ def cone_runs(
     start, ring : neighbours of every vertex
     count       : rings in the longest distance from each leaf
     cut         : root mean square residual that makes a tenth of the rings worth a run of their own, mesh unit
-    returns     : (vertex,) run, −1 where there is no cone or there are several
+    returns     : (vertex,) run, −1 where there is no cone, or several and no leaf is much nearer than the others
     """
     label = np.full(len(V), -1, np.int64)
     if not len(leaves):

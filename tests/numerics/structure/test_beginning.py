@@ -29,6 +29,18 @@ def test_runs_of_one_leaf_end_at_the_hinge():
         assert z.min() > -0.4 or z.max() < 0.4
 
 
+def test_both_limbs_are_cut_where_each_one_s_cone_holds_the_whole_body():
+    surface, V, x, weight, (start, ring) = hinge()
+    leaves = np.array([V[:, 2].argmin(), V[:, 2].argmax()])
+    run = cone_runs(surface, V, x, weight * surface.area, leaves, start, ring, 40, 0.05)
+    end = 0.6 * V[:, 2].max()
+    assert (run[np.abs(V[:, 2]) > end] >= 0).all()
+    assert (run[np.abs(V[:, 2]) < 0.05 * end] == -1).all()
+    for k in np.unique(run[run >= 0]):
+        z = V[run == k, 2]
+        assert z.min() > 0 or z.max() < 0
+
+
 def test_without_leaves_there_is_no_run():
     surface, V, x, weight, (start, ring) = hinge()
     assert (cone_runs(surface, V, x, weight, np.zeros(0, np.int64), start, ring, 40, 0.05) == -1).all()

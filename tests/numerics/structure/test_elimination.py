@@ -37,6 +37,13 @@ def test_what_does_not_move_is_one_part():
     assert len(np.unique(eliminated(body, Bar(), label, R, t)[0])) == 1
 
 
+def test_asked_again_nothing_goes():
+    body, label, R, t = hinge((0.3, 0.8, -0.4))
+    for missed in (1e-6, 1e-4, 0.0025):
+        first = eliminated(body, Bar(missed=missed), label, R, t)
+        np.testing.assert_array_equal(eliminated(body, Bar(missed=missed), *first)[0], first[0])
+
+
 def test_a_lower_bar_never_leaves_fewer_parts():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
     counts = [len(np.unique(eliminated(body, Bar(missed=m), label, R, t)[0])) for m in (1e-9, 0.0025, 0.02, 1.0)]
