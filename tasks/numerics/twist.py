@@ -2,7 +2,8 @@
 
 In one frame noise picks a turn, and neighbouring frames have other noise. A twist that tracking lost is none in the
 reference, grows from frame to frame, and fits better all the while, than no turn and than any other: on a round limb,
-whatever turn noise picks, another does as well. Measured, the mean of both: lost forearms 0.057 and more, round limbs 0.035 at most.
+whatever turn noise picks, another does as well. Measured, the mean of both: lost forearms 0.057 and more, round limbs 0.035
+at most.
 """
 
 import numpy as np
