@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.alignment import Alignment
@@ -13,9 +12,9 @@ from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
 from kinetree.tasks.numerics.structure import skeleton as structure
-from kinetree.tasks.numerics.structure.ends import nearest_vertices
 from kinetree.tasks.numerics.structure.fit import doubtful
 from kinetree.tasks.numerics.surface import Surface
+from kinetree.tasks.parts import tips_of, trust_of
 
 
 @task()
@@ -53,16 +52,3 @@ def articulation(
         doubted=np.zeros(len(aligned), np.bool_) if reference.fixed else doubtful(found.confidence),
         **{**found._asdict(), "parents": tuple(found.parents.tolist())},
     )
-
-
-def tips_of(leaves: Leaves, reference: Reference) -> NDArray[np.int64]:
-    """(leaf,) vertices of the reference mesh at the leaves that count in some interval and are seen in its frame."""
-    at = leaves.frames.index(reference.frame)
-    seen = (leaves.rows[:, at] >= 0) & leaves.kept.any(axis=0)
-    return nearest_vertices(reference.vertices, leaves.positions[seen, at])
-
-
-def trust_of(aligned: list[Alignment]) -> NDArray[np.float64] | None:
-    """(frame, vertex) trust; None where everything is believed."""
-    trust = np.stack([a.trust for a in aligned])
-    return None if (trust == 1.0).all() else trust

@@ -3,15 +3,16 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.parts import Parts, PartsParams
 from kinetree.schemas.reference import Reference
-from kinetree.tasks.articulation import tips_of, trust_of
 from kinetree.tasks.numerics.structure import parts as structure
 from kinetree.tasks.numerics.structure.elimination import Bar
+from kinetree.tasks.numerics.structure.ends import nearest_vertices
 
 
 @task()
@@ -34,3 +35,16 @@ def parts(reference: Reference, alignment: Mapping[int, Alignment], leaves: Leav
         translation=found.t,
         residual=found.residual,
     )
+
+
+def tips_of(leaves: Leaves, reference: Reference) -> NDArray[np.int64]:
+    """(leaf,) vertices of the reference mesh at the leaves that count in some interval and are seen in its frame."""
+    at = leaves.frames.index(reference.frame)
+    seen = (leaves.rows[:, at] >= 0) & leaves.kept.any(axis=0)
+    return nearest_vertices(reference.vertices, leaves.positions[seen, at])
+
+
+def trust_of(aligned: list[Alignment]) -> NDArray[np.float64] | None:
+    """(frame, vertex) trust; None where everything is believed."""
+    trust = np.stack([a.trust for a in aligned])
+    return None if (trust == 1.0).all() else trust

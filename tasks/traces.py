@@ -12,11 +12,11 @@ from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.skeleton import Skeleton
 from kinetree.schemas.traces import Traces, TracesParams
-from kinetree.tasks.articulation import tips_of, trust_of
 from kinetree.tasks.numerics import traces as found
 from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
 from kinetree.tasks.numerics.structure.parts import PartsSettings
 from kinetree.tasks.numerics.structure.pose import seen_share
+from kinetree.tasks.parts import tips_of, trust_of
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]

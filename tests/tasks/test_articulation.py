@@ -10,7 +10,8 @@ from kinetree.schemas.leaves import Leaves
 from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
-from kinetree.tasks.articulation import articulation, tips_of
+from kinetree.tasks.articulation import articulation
+from kinetree.tasks.parts import tips_of
 
 FIRST = 10
 
