@@ -8,11 +8,13 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.articulation import Articulation, ArticulationParams
 from kinetree.schemas.leaves import Leaves
+from kinetree.schemas.mesh import Mesh
 from kinetree.schemas.parts import Parts
 from kinetree.schemas.reference import Reference
 from kinetree.schemas.sequence import Sequence
 from kinetree.tasks.numerics.structure import skeleton as structure
 from kinetree.tasks.numerics.structure.fit import doubtful
+from kinetree.tasks.numerics.structure.shown import Seen
 from kinetree.tasks.numerics.surface import Surface
 from kinetree.tasks.parts import tips_of, trust_of
 
@@ -22,6 +24,7 @@ def articulation(
     reference: Reference,
     parts: Parts,
     alignment: Mapping[int, Alignment],
+    mesh: Mapping[int, Mesh],
     leaves: Leaves,
     sequence: Sequence,
     params: ArticulationParams,
@@ -40,6 +43,7 @@ def articulation(
         parts.residual,
         tips_of(leaves, reference),
         trust_of(aligned),
+        None if reference.fixed else _seen(aligned, mesh, tuple(alignment)),
         degrees=params.degrees,
         ratio=params.ratio,
     )
@@ -51,4 +55,13 @@ def articulation(
         faces=F,
         doubted=np.zeros(len(aligned), np.bool_) if reference.fixed else doubtful(found.confidence),
         **{**found._asdict(), "parents": tuple(found.parents.tolist())},
+    )
+
+
+def _seen(aligned: list[Alignment], mesh: Mapping[int, Mesh], frames: tuple[int, ...]) -> Seen:
+    """What the frames know; their meshes are read where they are asked."""
+    return Seen(
+        np.stack([a.trust for a in aligned]),
+        np.stack([a.residual for a in aligned]),
+        lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),
     )

@@ -39,7 +39,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
     )  # fmt: skip
     assert tips_of(leaves, reference).tolist() == list(tips)
     sequence = Sequence(frames=frames, fps=25.0, unit="mm")
-    return articulation(reference, parts, aligned, leaves, sequence, ArticulationParams(**params))
+    return articulation(reference, parts, aligned, {}, leaves, sequence, ArticulationParams(**params))
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

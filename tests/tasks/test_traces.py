@@ -47,7 +47,7 @@ def both(
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
     sequence = Sequence(frames=frames, fps=25.0, unit="mm")
-    found = articulation(reference, parts, aligned, leaves, sequence, ArticulationParams(degrees=degrees))
+    found = articulation(reference, parts, aligned, {}, leaves, sequence, ArticulationParams(degrees=degrees))
     return found, traces(reference, aligned, leaves, parts, found, TracesParams(rings=20))
 
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from kinetree.tasks.numerics.rings import rings
 from kinetree.tasks.numerics.structure.handover import handed_over
 from kinetree.tasks.numerics.structure.hanging import Carried, Hung, Surfaces, against, hung
+from kinetree.tasks.numerics.structure.shown import Seen, unshown
 from kinetree.tasks.numerics.structure.turning import in_between
 
 Floats = npt.NDArray[np.float64]
@@ -42,13 +43,29 @@ class Pruned(NamedTuple):
 
 
 def pruned(
-    body: Surfaces, parts: Carried, leaves: Ints, *, degrees: float = LEAST_DEGREES, ratio: float = LEAST_RATIO
+    body: Surfaces,
+    parts: Carried,
+    leaves: Ints,
+    seen: Seen | None = None,
+    *,
+    degrees: float = LEAST_DEGREES,
+    ratio: float = LEAST_RATIO,
 ) -> Pruned:
-    """Drops parts, the most doubtful first, until none is doubtful or none can be spared.
+    """Drops parts, the most doubtful first, until none is doubtful or none can be spared; then those that no surface shows.
 
     leaves         : (leaf,) vertices at the ends of limbs
+    seen           : the frames' surfaces; None where every vertex was followed
     degrees, ratio : what a joint must turn by, and how many times farther than it drifts
     """
+    start, ring = rings(body.F, len(body.V))
+    left = _spared(body, parts, leaves, degrees, ratio)
+    while seen is not None and (gone := unshown(body, left.parts, left.hung, seen)) >= 0:
+        label = handed_over(body.V, body.x, left.parts.label, gone, left.parts.R, left.parts.t, start, ring)
+        left = _spared(body, left.parts.without(gone, label), leaves, degrees, ratio)
+    return left
+
+
+def _spared(body: Surfaces, parts: Carried, leaves: Ints, degrees: float, ratio: float) -> Pruned:
     start, ring = rings(body.F, len(body.V))
     found = hung(body, parts)
     while True:

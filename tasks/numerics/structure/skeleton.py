@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.structure.joints import rotation_centres
 from kinetree.tasks.numerics.structure.naming import named
 from kinetree.tasks.numerics.structure.pose import SEEN, posed, seen_share
 from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
+from kinetree.tasks.numerics.structure.shown import Seen
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
 from kinetree.tasks.numerics.structure.turning import turning_range
 
@@ -76,6 +77,7 @@ def skeleton(
     residual: Floats,
     leaves: Ints,
     trust: Floats | None = None,
+    surfaces: Seen | None = None,
     *,
     degrees: float = LEAST_DEGREES,
     ratio: float = LEAST_RATIO,
@@ -90,13 +92,15 @@ def skeleton(
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit
     leaves   : (leaf,) vertices at the ends of limbs
     trust    : (frame, vertex) 0 to 1; None believes all
+    surfaces : the frames' surfaces, by which joints are shown; None asks none
     degrees, ratio : what a joint must turn by, and how many times farther than it drifts
     """
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
     F, label = np.array(F, dtype=np.int64), _filled(V, np.array(label, dtype=np.int64))
     label, R, t, residual = _used(label, R, t, residual)
     seen = None if trust is None else seen_share(label, area, trust, len(x), R.shape[1])
-    found = pruned(Surfaces(V, F, x, area), Carried(label, R, t, residual, seen), leaves, degrees=degrees, ratio=ratio)
+    parts = Carried(label, R, t, residual, seen)
+    found = pruned(Surfaces(V, F, x, area), parts, leaves, surfaces, degrees=degrees, ratio=ratio)
     tree = found.hung.tree
     label = np.argsort(tree.order)[found.parts.label]
     tau = np.ones(x.shape[:2]) if trust is None else np.array(trust, dtype=np.float64)
