@@ -16,6 +16,8 @@ from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.schemas.array import Artifact
 
 RUN_JSON = "run.json"
+MESHES = {".ply", ".obj", ".off", ".stl", ".glb", ".gltf"}
+"""Endings that a folder of frames is read by."""
 
 
 def write_config(config: Config) -> None:
@@ -74,8 +76,10 @@ def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
 def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
     """Leaves what one task's artifacts leave at a path of the user's: one file or group is named so, several lie in it.
 
-    raises : as `write_results`; ConfigError where that would overwrite what the sequence is read from
+    raises : as `write_results`; ConfigError where that would overwrite or join what the sequence is read from, or a device
     """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ConfigError(f"{path}: neither a file nor a folder, and would be replaced; name another place with --output")
     done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
@@ -142,8 +146,11 @@ def _refuse_input(targets: list[Path], schedule: Schedule) -> None:
     found = [artifact for given in schedule.given.values() for artifact in given.values()]
     places = {Path(str(getattr(a, name))).resolve() for a in found for name in a.location_fields() if name == "path"}
     for target in targets:
+        beside = sum(place.parent == target.resolve().parent for place in places)
         if target.resolve() in places:
             raise ConfigError(f"{target}: the sequence is read from it; name another place with --output")
+        if beside > 1 and target.suffix.lower() in MESHES:
+            raise ConfigError(f"{target}: the sequence is read from this folder, as all its meshes; name another with --output")
 
 
 def _write(folder: Path, name: str, text: str) -> None:

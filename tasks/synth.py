@@ -91,7 +91,7 @@ def _description(params: SynthParams) -> dict[str, Any]:
         return _read(Path(params.file))
     kind, colon, seed = params.figure.partition(":")
     if kind == "random" and colon:
-        if not seed.isdigit():
+        if not (seed.isascii() and seed.isdigit()):
             raise ConfigError(f"figure {params.figure!r}: write random:SEED with a whole number, e.g. random:7")
         return {"random": int(seed)}
     known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}

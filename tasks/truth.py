@@ -1,6 +1,8 @@
 """The true skeleton of a sequence, read from the user's file before anything is computed."""
 
 import re
+import zipfile
+import zlib
 from functools import lru_cache
 from pathlib import Path
 
@@ -105,8 +107,9 @@ def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, In
     """(frame, vertex, xyz) the true body, (vertex,) the joint each vertex follows most, and the end of its bone or −1."""
     try:
         with np.load(path, allow_pickle=False) as held:
-            V, W, told = held["vertices"], held["weights"], [str(n) for n in held["weight_names"]]
-    except (OSError, ValueError, KeyError) as error:
+            V, W = (np.array(held[key], dtype=np.float64) for key in ("vertices", "weights"))
+            told = [str(n) for n in np.atleast_1d(held["weight_names"])]
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(
             f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one connectivity"
         ) from None
@@ -118,6 +121,8 @@ def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, In
         raise InputError(
             f"{path}: {len(V)} vertices are not {len(motion.frames)} frames of {len(W)}; the truth and the body differ"
         )
+    if V.shape[1:] != (3,) or not np.isfinite(V).all() or not np.isfinite(W).all() or not W.size:
+        raise InputError(f"{path}: vertices must be (frame · vertex, 3), got {V.shape}, and all numbers finite")
     joint, end = np.array([f for f in follows if f], dtype=np.int32)[W.argmax(axis=1)].T
     return V.reshape(len(motion.frames), len(W), 3).astype(np.float32), joint, end
 

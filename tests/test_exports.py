@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import shutil
 from pathlib import Path
 
@@ -270,6 +271,17 @@ def test_own_input_is_never_overwritten(out, scans):
     with pytest.raises(ConfigError, match="the sequence is read from it"):
         export(str(out), "glb", scans / "0003.ply")
     assert (scans / "0003.ply").read_bytes() == before
+    frames = names(scans)
+    with pytest.raises(ConfigError, match="the sequence is read from this folder, as all its meshes"):
+        export(str(out), "glb", scans)
+    assert names(scans) == frames
+
+
+def test_what_is_neither_file_nor_folder_is_never_replaced(out, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ConfigError, match="neither a file nor a folder, and would be replaced"):
+        export(str(out), "glb", tmp_path / "pipe")
+    assert (tmp_path / "pipe").is_fifo()
 
 
 def test_missing_extra_says_what_to_install(out, monkeypatch, tmp_path):

@@ -31,8 +31,9 @@ def test_same_words_are_the_same_recipe_and_other_words_another() -> None:
 def test_figure_that_does_not_exist_is_refused_with_the_nearest() -> None:
     with pytest.raises(ConfigError, match="human"):
         recipe(SynthParams(figure="humn"))
-    with pytest.raises(ConfigError, match="random:SEED"):
-        recipe(SynthParams(figure="random:x"))
+    for seed in ("x", "²", "-1"):
+        with pytest.raises(ConfigError, match="random:SEED"):
+            recipe(SynthParams(figure=f"random:{seed}"))
 
 
 def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:

@@ -95,6 +95,9 @@ def test_weights_of_bones_are_named_by_the_numbers_of_both_joints(file: Path, tm
         ({"vertices": np.zeros((4, 3))}, "not a body: .*weights.*; expected an npz"),
         ({"vertices": np.zeros((4, 3)), "weights": np.ones((4, 1)), "weight_names": ["hip"]}, r"\['hip'\] are none of them"),
         ({"vertices": np.zeros((4, 3)), "weights": np.ones((4, 1)), "weight_names": None}, "4 vertices are not 3 frames of 4"),
+        ({"vertices": np.zeros(12), "weights": np.ones((4, 1)), "weight_names": None}, r"must be \(frame · vertex, 3\)"),
+        ({"vertices": np.full((12, 3), np.nan), "weights": np.ones((4, 1)), "weight_names": None}, "all numbers finite"),
+        ({"vertices": np.array(["a"]), "weights": np.ones((4, 1)), "weight_names": None}, "not a body: could not convert"),
     ],
 )
 def test_body_that_does_not_fit_is_refused(file: Path, tmp_path: Path, held: dict[str, object], message: str) -> None:

@@ -15,6 +15,7 @@ from kinetree.pipeline.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
+LARGEST = 1e50
 END = " end"
 """What is appended to a joint's name to name the end site below it."""
 
@@ -47,7 +48,10 @@ def read_bvh(text: str, name: str) -> Bvh:
     reader = _Reader(text, name)
     reader.expect("HIERARCHY")
     reader.expect("ROOT")
-    reader.joint(-1)
+    try:
+        reader.joint(-1)
+    except RecursionError:
+        reader.refuse("joints within joints without end; no body has a limb of so many")
     if reader.peek() == "ROOT":
         reader.refuse("a second ROOT; one body has one")
     reader.expect("MOTION")
@@ -97,6 +101,9 @@ class _Reader:
         if not np.isfinite(value):
             self.at -= 1
             self.refuse(f"{self.peek()} is no finite number")
+        if abs(value) > LARGEST:
+            self.at -= 1
+            self.refuse(f"{self.peek()[:40]} is beyond {LARGEST:g}; nothing in a body is so large")
         return value
 
     def joint(self, parent: int) -> None:
@@ -127,6 +134,8 @@ class _Reader:
         if frames < 1 or seconds <= 0.0:
             self.refuse(f"{frames} frames of {seconds} seconds; there is no motion in it")
         wanted = sum(map(len, self.channels))
+        if not wanted:
+            self.refuse("no joint has a channel; there is no motion in it")
         left = len(self.words) - self.at
         if left != frames * wanted:
             self.refuse(f"{frames} frames of {wanted} channels are {frames * wanted} numbers, but {left} follow")

@@ -21,6 +21,8 @@ SAMPLED = 200
 """Frames of a long clip between which angles are measured."""
 KINDS: Mapping[str, Kind] = {"root": "joint", "joint": "joint", "tip": "tip", "leaf": "tip"}
 SKELETON = "kinetree.skeleton/1"
+LARGEST = 1e50
+"""Beyond this nothing can be computed with, whatever the unit."""
 METRES = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 """Units of length that are known to be some share of a metre."""
 
@@ -64,6 +66,8 @@ def read_truth(text: str, name: str) -> TrueMotion:
         told = json.loads(text)
     except ValueError as error:
         raise InputError(f"{name}: not JSON: {error}") from None
+    except RecursionError:
+        raise InputError(f"{name}: lists within lists without end; expected a truth.json") from None
     return of_told(told, name)
 
 
@@ -81,7 +85,7 @@ def of_bvh(text: str, name: str) -> TrueMotion:
         turns=tuple(map(float, turns)),
         scored=scored,
         frames=tuple(range(len(clip.X))),
-        X=clip.X,
+        X=_sized(clip.X, name),
         height=None,
         unit=None,
         fps=1.0 / clip.seconds,
@@ -103,6 +107,8 @@ def of_told(told: Any, name: str) -> TrueMotion:
         raise InputError(f"{name}: two joints are called {twice!r}; parents are told by name, so each needs its own")
     parents = _parents(rows, names, name)
     kinds = tuple(_kind(row, name) for row in rows)
+    if "joint" not in kinds:
+        raise InputError(f"{name}: all its joints are tips; a tree has a joint")
     X = _positions(told["positions"], len(rows), name)
     turns = tuple(_number(row.get("turns_deg"), f"{name}: turns_deg of {row['name']}") for row in rows)
     return TrueMotion(
@@ -142,7 +148,7 @@ def _parents(rows: Sequence[Mapping[str, Any]], names: tuple[str, ...], name: st
         told = row.get("parent")
         if told is None:
             found.append(-1)
-        elif isinstance(told, int) and 0 <= told < len(names):
+        elif type(told) is int and 0 <= told < len(names):
             found.append(told)
         elif told in names:
             found.append(names.index(told))
@@ -161,7 +167,7 @@ def _parents(rows: Sequence[Mapping[str, Any]], names: tuple[str, ...], name: st
 
 def _kind(row: Mapping[str, Any], name: str) -> Kind:
     kind = row.get("kind", "joint")
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise InputError(f"{name}: {row['name']} is a {kind!r}; there are {', '.join(KINDS)}")
     return KINDS[kind]
 
@@ -176,13 +182,20 @@ def _positions(told: Any, joints: int, name: str) -> Floats:
     if not np.isfinite(X).all():
         frame, joint, _ = np.argwhere(~np.isfinite(X))[0]
         raise InputError(f"{name}: position of joint {joint} in frame {frame} is not finite; a truth must be known everywhere")
+    return _sized(X, name)
+
+
+def _sized(X: Floats, name: str) -> Floats:
+    """Positions whose squares are numbers."""
+    if np.abs(X).max() > LARGEST:
+        raise InputError(f"{name}: positions go up to {np.abs(X).max():.3g}, beyond {LARGEST:g}; no unit makes a body so large")
     return X
 
 
 def _frames(told: Any, count: int, name: str) -> tuple[int, ...]:
     if told is None:
         return tuple(range(count))
-    if not isinstance(told, list) or len(told) != count or not all(isinstance(n, int) for n in told):
+    if not isinstance(told, list) or len(told) != count or not all(type(n) is int for n in told):
         raise InputError(f"{name}: frames must be {count} whole numbers, one for each frame of positions")
     if any(a >= b for a, b in itertools.pairwise(told)):
         raise InputError(f"{name}: frames must ascend")
@@ -192,15 +205,20 @@ def _frames(told: Any, count: int, name: str) -> tuple[int, ...]:
 def _number(told: Any, what: str) -> float | None:
     if told is None:
         return None
-    if isinstance(told, bool) or not isinstance(told, int | float) or not np.isfinite(told):
-        raise InputError(f"{what} is {told!r}, which is no number")
-    return float(told)
+    try:
+        number = float(told) if isinstance(told, int | float) and not isinstance(told, bool) else np.nan
+    except OverflowError:
+        number = np.inf
+    if not np.isfinite(number):
+        raise InputError(f"{what} is {str(told)[:40]!r}, which is no number" if isinstance(told, str) else
+                         f"{what} is {str(told)[:40]}, which is no number")
+    return number
 
 
 def _positive(told: Any, what: str) -> float | None:
     number = _number(told, what)
-    if number is not None and number <= 0.0:
-        raise InputError(f"{what} is {told}, expected a number above 0")
+    if number is not None and not 1.0 / LARGEST <= number <= LARGEST:
+        raise InputError(f"{what} is {number:g}, expected a number above 0 of a size that occurs")
     return number
 
 

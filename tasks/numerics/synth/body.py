@@ -30,6 +30,7 @@ from kinetree.tasks.numerics.synth.surfacing import spacing_for, surface
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
+MOST_FRAMES = 1_000_000
 _SURFACE, _NOISE, _HOLES, _REST = range(4)
 
 
@@ -225,6 +226,9 @@ def _check(
     for name, value, least in (("frames", frames, 1), ("vertices", vertices, 100), ("holes", holes, 0), ("seed", seed, 0)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise ConfigError(f"{name} is {value!r}, expected a whole number of at least {least}")
+    for name, count, most in (("frames", frames, MOST_FRAMES), ("holes", holes, vertices // 10)):
+        if count > most:
+            raise ConfigError(f"{name} is {count}, expected at most {most}" + (", a tenth of the vertices" * (name == "holes")))
     for name, share in (("noise", noise), ("hole_size", hole_size)):
         if not isinstance(share, int | float) or not 0.0 <= share < 0.5:
             raise ConfigError(f"{name} is {share!r}, expected a share of the height, from 0 to below 0.5")

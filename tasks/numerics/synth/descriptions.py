@@ -75,7 +75,7 @@ def read_joints(where: str, entries: Sequence[Any]) -> tuple[Joint, ...]:
         waiting[name] = row
     for name, row in waiting.items():
         parent = row.get("parent")
-        if parent is not None and parent not in waiting:
+        if parent is not None and (not isinstance(parent, str) or parent not in waiting):
             raise ConfigError(f"{where}, joint {name!r}: parent {parent!r} is no joint{suggestion(parent, waiting)}")
     roots = [name for name, row in waiting.items() if row.get("parent") is None]
     if len(roots) != 1:

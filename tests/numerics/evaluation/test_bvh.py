@@ -77,6 +77,7 @@ def test_rotations_are_against_the_parent_in_the_order_of_the_channels():
         ("ROOT hips", "JOINT hips", "line 2: expected ROOT"),
         ("OFFSET 1 2 3", "OFFSET 1 2", "line 5: expected a number, got 'CHANNELS'"),
         ("OFFSET 1 2 3", "OFFSET 1 2 nan", "line 4: nan is no finite number"),
+        ("OFFSET 1 2 3", "OFFSET 1 2 1e300", "line 4: 1e300 is beyond 1e+50"),
         ("Zrotation Xrotation Yrotation\n  JOINT", "Zrotation Zrotation Yrotation\n  JOINT", "line 5: channel 'Zrotation'"),
         ("Xposition Y", "Xpos Y", "line 5: channel 'Xpos'; expected some of Xposition"),
         ("Frames: 2", "Frames: 3", "line 28: 3 frames of 12 channels are 36 numbers, but 24 follow"),
@@ -98,3 +99,11 @@ def test_broken_file_is_refused_with_its_line(old, new, told):
 def test_file_that_is_cut_off_is_refused(length):
     with pytest.raises(InputError, match=r"arm\.bvh, line"):
         read_bvh(ARM[:length], "arm.bvh")
+
+
+def test_hierarchy_without_channels_or_without_end_is_refused():
+    head = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n"
+    nested = "JOINT b\n{\nOFFSET 0 1 0\n" * 5000
+    for below, told in (("", "no joint has a channel"), (nested, "joints within joints without end")):
+        with pytest.raises(InputError, match=told):
+            read_bvh(f"{head}{below}}}\nMOTION\nFrames: 2000000000\nFrame Time: 0.1\n", "a.bvh")

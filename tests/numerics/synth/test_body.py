@@ -238,6 +238,8 @@ def test_volumes_of_a_clip_share_their_grid():
     ("settings", "words"),
     [
         ({"frames": 0}, "frames is 0, expected a whole number of at least 1"),
+        ({"frames": 10**11}, "frames is 100000000000, expected at most 1000000"),
+        ({"holes": 10**5}, ", a tenth of the vertices"),
         ({"vertices": 7}, "vertices is 7"),
         ({"noise": -0.1}, "noise is -0.1, expected a share"),
         ({"holes": -1}, "holes is -1"),
