@@ -38,7 +38,7 @@ def test_arrays_come_back_as_they_were_and_lie_where_a_browser_can_read_them():
 def test_aligned_mesh_and_joints_are_where_they_were_seen_along_the_views_axes(found):
     skeleton, arrays = spider(), unpacked(found)
     x = skinned(skeleton)
-    axes = view(list(x), None)
+    axes = view(list(x))
     shown = np.array(found.told["low"]) + found.told["scale"] * arrays["positions"].astype(np.float64)
     assert np.abs(shown - x @ axes).max() <= 0.5 * found.told["scale"] * (1 + 1e-9)
     np.testing.assert_allclose(arrays["joints"], skeleton.positions @ axes, atol=1e-5)

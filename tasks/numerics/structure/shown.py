@@ -3,7 +3,8 @@
 An alignment slides, most of all about the axes of thin limbs that are cut differently in every frame, and what slides
 together looks like a part that turns. So two parts are laid on the surface as one rigid piece, by nearest points as far as
 it will go (Besl, McKay 1992), and the smaller of them once more by itself: only if that helps does the surface show a joint.
-Where a part moves much farther than its own triangles are rough, nothing is asked.
+Where a part moves much farther than its own triangles are rough, nothing is asked; and where one does, the others have to be
+hardly better alone than as one piece to go.
 """
 
 from collections.abc import Callable
@@ -26,6 +27,8 @@ CLEAR = 5.0
 """A part that moves so many times farther than its surface is rough moves; rough is noise and the height of its edges."""
 SHOWS = 1.6
 """How many times farther one piece must be off the surface than two, mean of what both kinds of distance say."""
+MOVING = 1.1
+"""The same where another joint moves clearly: then it is likely that this one does, and coarse limbs show little."""
 FEW = 12
 """Vertices with which a piece, which has six freedoms of its own, shows nothing."""
 FRAMES, ASKED, ROUNDS = 6, 250, 8
@@ -54,14 +57,12 @@ def unshown(body: Surfaces, parts: Carried, found: Hung, seen: Seen) -> int:
     """The part whose joint the surface shows least, the smaller one at it; −1 where all joints are shown."""
     rough = _roughness(body)
     mass = np.bincount(parts.label, body.area, parts.R.shape[1])
-    least, worst = SHOWS, -1
-    for k in range(1, len(mass)):
-        pair = (int(found.tree.order[k]), int(found.tree.order[found.tree.parents[k]]))
-        small, large = sorted(pair, key=lambda p: (mass[p], p))
-        score = _shown(body, parts, seen, rough, small, large)
-        if score < least:
-            least, worst = score, small
-    return worst
+    order, parents = found.tree.order, found.tree.parents
+    sides = [(int(order[k]), int(order[parents[k]])) for k in range(1, len(mass))]
+    pairs = [sorted(both, key=lambda p: (mass[p], p)) for both in sides]
+    scores = np.array([_shown(body, parts, seen, rough, small, large) for small, large in pairs])
+    bar = MOVING if np.isinf(scores).any() else SHOWS
+    return pairs[int(scores.argmin())][0] if (scores < bar).any() else -1
 
 
 def _shown(body: Surfaces, parts: Carried, seen: Seen, rough: Floats, small: int, large: int) -> float:
