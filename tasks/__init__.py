@@ -83,6 +83,19 @@ MACROSCOPIC = (
     upright,
 )
 
+RESULTS = (
+    truth,
+    evaluation,  # Sec. 7
+    glb,
+    bvh,
+    skeleton_json,
+    segmentation,
+    tables,
+    ply,
+    rignet,
+    usd,
+)
+
 MESOSCOPIC = (
     *MACROSCOPIC,
     reference,  # Sec. 5.3
@@ -108,16 +121,7 @@ MESOSCOPIC = (
     fit,  # for Sec. 7.3
     skeleton,
     traces,
-    truth,
-    evaluation,  # Sec. 7
-    glb,
-    bvh,
-    skeleton_json,
-    segmentation,
-    tables,
-    ply,
-    rignet,
-    usd,
+    *RESULTS,
     evidence,  # Figs. 7, 11 and 15
     report,
 )
@@ -140,16 +144,7 @@ MESOSCOPIC_2014 = (
     landing,
     landed_alignment,
     landed_projection,
-    truth,
-    evaluation,  # Sec. 7
-    glb,
-    bvh,
-    skeleton_json,
-    segmentation,
-    tables,
-    ply,
-    rignet,
-    usd,
+    *RESULTS,
     letter_evidence,  # Figs. 7, 11, 13 and 15
     report,
 )

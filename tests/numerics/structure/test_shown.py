@@ -6,6 +6,7 @@ from articulated import Known, chain
 from limbs import rotation
 
 from kinetree.tasks.numerics.projection import projected
+from kinetree.tasks.numerics.structure import shown
 from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces, hung
 from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.shown import Seen, unshown
@@ -75,3 +76,20 @@ def test_body_that_only_slid_is_one_part_and_one_that_bends_two() -> None:
     for aligned, there, count in ((slid, true, 1), (chain((1.0,), bent), otherwise(bent), 2)):
         body, parts, seen = looked_at(aligned, there)
         assert pruned(body, parts, tips, seen, ratio=0.0).parts.R.shape[1] == count
+
+
+@pytest.mark.parametrize(("first", "second", "goes"), [(2.0, 1.3, True), (np.inf, 1.3, False), (np.inf, 1.05, True)])
+def test_joint_needs_less_where_another_moves_clearly(
+    first: float, second: float, goes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, parts, seen = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
+    scores = iter((first, second))
+    asked: list[int] = []
+
+    def scored(*told: object) -> float:
+        asked.append(int(str(told[4])))
+        return next(scores)
+
+    monkeypatch.setattr(shown, "_shown", scored)
+    found = unshown(body, parts, hung(body, parts), seen)
+    assert found == (asked[1] if goes else -1)
