@@ -6,8 +6,8 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.draw import Format, draw
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, Target, brief, here, out, pipeline_of, print_json

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.yaml_text import parsed

@@ -15,10 +15,10 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
+from kinetree.errors import ConfigError, InputError, KinetreeError
 from kinetree.pipeline import asking
 from kinetree.pipeline import config as configuration
 from kinetree.pipeline import gc as collection
-from kinetree.pipeline.errors import ConfigError, InputError, KinetreeError
 from kinetree.pipeline.events import JsonLog, Listener
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import (
@@ -35,7 +35,7 @@ from kinetree.pipeline.options import (
     out,
     pipeline_of,
     print_json,
-)  # fmt: skip
+)
 from kinetree.pipeline.plan import Plan
 from kinetree.pipeline.printable import printable
 from kinetree.pipeline.progress import LiveProgress, PlainProgress, clock

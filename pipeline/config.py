@@ -15,8 +15,8 @@ from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.blocks import block, blocks_at, compute_block, expanded, override, path_fields
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params

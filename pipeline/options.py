@@ -8,8 +8,8 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.blocks import SAVED
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 
 Target = Annotated[

@@ -1,23 +1,31 @@
-"""Who may import whom, and that every operation has one stem behind every door."""
+"""Who may import whom, and that every operation has one stem on one shelf behind every door."""
 
 import ast
+import re
 import sys
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-FILES = [*ROOT.glob("pipeline/*.py"), *ROOT.glob("schemas/*.py"), *ROOT.glob("tasks/**/*.py")]
+SHELVES = ("input", "topology", "registration", "structure", "paper_2014", "results")
+"""From left to right, as data flows."""
+FILES = [p for folder in ("errors", "pipeline", "schemas", "tasks") for p in sorted((ROOT / folder).rglob("*.py"))]
+NUMERICS = sorted(ROOT.glob("tasks/numerics/**/*.py"))
+SCHEMAS = sorted(ROOT.glob("schemas/**/*.py"))
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
-OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name != "__init__.py"]
+OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
 ASKING = ("inspect.py", "cli.py")
 """The two that ask for the product's own tasks and commands, inside a function, when they are called."""
-BORDER = "tasks/source.py"
+BORDER = "tasks/input/source.py"
 
 
-def imports(path: Path) -> set[str]:
+@cache
+def imports(path: Path) -> frozenset[str]:
     """Every module an import statement of the file names, `from a import b` as a and a.b."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text())):
@@ -26,21 +34,34 @@ def imports(path: Path) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             found |= {str(node.module)} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return found
+    return frozenset(found)
 
 
 def name(path: Path) -> str:
     return str(path.relative_to(ROOT))
 
 
-def outside(modules: set[str]) -> set[str]:
+def module(path: Path) -> str:
+    return "kinetree." + name(path).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+def outside(modules: Iterable[str]) -> set[str]:
     return {m.split(".")[0] for m in modules} - set(sys.stdlib_module_names) - {"kinetree"}
 
 
-def ours(modules: set[str], *allowed: str) -> set[str]:
+def ours(modules: Iterable[str], *allowed: str) -> set[str]:
     """The kinetree modules among them that lie in none of the allowed packages."""
     mine = {m for m in modules if m.startswith("kinetree.")}
     return {m for m in mine if not any(m == a or m.startswith(a + ".") or a.startswith(m + ".") for a in allowed)}
+
+
+def shelf(module: str) -> str | None:
+    """The shelf of a module of kinetree; None for what lies on none, such as geometry and compiled code."""
+    parts = module.split(".")
+    for folder in (["kinetree", "tasks", "numerics"], ["kinetree", "tasks"], ["kinetree", "schemas"]):
+        if parts[: len(folder)] == folder and len(parts) > len(folder):
+            return parts[len(folder)] if parts[len(folder)] in SHELVES else None
+    return None
 
 
 @pytest.mark.parametrize("path", FILES, ids=name)
@@ -50,26 +71,25 @@ def test_one_file_each_imports_dask_distributed_and_zarr(path: Path) -> None:
             assert library not in outside(imports(path))
 
 
-@pytest.mark.parametrize("path", list(ROOT.glob("tasks/numerics/**/*.py")), ids=name)
+@pytest.mark.parametrize("path", NUMERICS, ids=name)
 def test_numerics_know_numbers_and_nothing_of_the_loom(path: Path) -> None:
     assert outside(imports(path)) <= NUMERIC
-    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.pipeline.errors")
+    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.errors")
 
 
-@pytest.mark.parametrize("path", list(ROOT.glob("schemas/*.py")), ids=name)
+@pytest.mark.parametrize("path", SCHEMAS, ids=name)
 def test_schemas_know_only_schemas(path: Path) -> None:
     assert outside(imports(path)) <= {"numpy", "pydantic", "pydantic_core"}
-    assert not ours(imports(path), "kinetree.schemas", "kinetree.pipeline.errors")
+    assert not ours(imports(path), "kinetree.schemas", "kinetree.errors")
 
 
 @pytest.mark.parametrize("path", OPERATIONS, ids=name)
 def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
     border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.store"] if name(path) == BORDER else []
-    allowed = ["kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.pipeline.errors", *border]
-    assert not ours(imports(path), *allowed)
+    assert not ours(imports(path), "kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.errors", *border)
 
 
-@pytest.mark.parametrize("path", list(ROOT.glob("pipeline/*.py")), ids=name)
+@pytest.mark.parametrize("path", sorted(ROOT.glob("pipeline/*.py")), ids=name)
 def test_the_loom_knows_no_task_and_no_mathematics(path: Path) -> None:
     if path.name not in ASKING:
         assert not {m for m in imports(path) if m.startswith("kinetree.tasks")}
@@ -79,24 +99,51 @@ def test_the_loom_knows_no_task_and_no_mathematics(path: Path) -> None:
     assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"})
 
 
+@pytest.mark.parametrize("path", [p for p in FILES if shelf(module(p)) is not None], ids=name)
+def test_a_shelf_imports_only_from_shelves_to_its_left(path: Path) -> None:
+    mine = SHELVES.index(str(shelf(module(path))))
+    right = {m for m in imports(path) if (other := shelf(m)) is not None and SHELVES.index(other) > mine}
+    assert not right
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("tasks/numerics/geometry/*.py")), ids=name)
+def test_geometry_stands_below_all_shelves(path: Path) -> None:
+    assert not {m for m in imports(path) if shelf(m) is not None}
+
+
 def test_no_module_imports_itself_in_a_ring() -> None:
     graph: nx.DiGraph[str] = nx.DiGraph()
-    modules = {"kinetree." + name(p).removesuffix(".py").removesuffix("/__init__").replace("/", "."): p for p in FILES}
-    for module, path in modules.items():
+    modules = {module(p): p for p in FILES}
+    for here, path in modules.items():
         seen = {m for m in imports(path) if m in modules and not (path.name in ASKING and m.startswith("kinetree.tasks"))}
-        packages = {m for m in seen if modules[m].name == "__init__.py"}
-        graph.add_edges_from((module, m) for m in seen - packages)
+        packages = {m for m in seen if modules[m].name == "__init__.py" and m != "kinetree.errors"}
+        graph.add_edges_from((here, m) for m in seen - packages)
     assert list(nx.simple_cycles(graph)) == []
 
 
 @pytest.mark.parametrize("path", OPERATIONS, ids=name)
-def test_every_operation_has_one_stem_behind_every_door(path: Path) -> None:
-    assert (ROOT / "schemas" / path.name).is_file()
-    assert (ROOT / "tests" / "tasks" / f"test_{path.name}").is_file()
+def test_every_operation_has_one_stem_on_one_shelf_behind_every_door(path: Path) -> None:
+    place = path.parent.name
+    assert (ROOT / "schemas" / place / path.name).is_file()
+    assert (ROOT / "tests" / place / f"test_{path.name}").is_file()
+    numeric = [p for p in NUMERICS if path.stem in (p.stem, p.parent.name)]
+    assert {shelf(module(p)) for p in numeric} <= {place}, f"numerics of {path.stem} stand on another shelf"
 
 
-def test_every_numeric_file_is_tried_by_laws() -> None:
+@pytest.mark.parametrize("path", [p for p in SCHEMAS if p.parent.name in SHELVES and p.name != "__init__.py"], ids=name)
+def test_every_schema_has_its_operation(path: Path) -> None:
+    shared = {"exports", "pose"}  # what several operations leave in one form
+    assert path.stem in shared or (ROOT / "tasks" / path.parent.name / path.name).is_file()
+
+
+@pytest.mark.parametrize("place", SHELVES)
+def test_a_shelf_lists_all_of_its_tasks(place: str) -> None:
+    listed = {m for m in imports(ROOT / "tasks" / place / "__init__.py") if m.startswith(f"kinetree.tasks.{place}.")}
+    here = [p for p in OPERATIONS if p.parent.name == place]
+    assert {module(p) for p in here if re.search(r"^@(task|origin)\(", p.read_text(), re.MULTILINE)} <= listed
+
+
+@pytest.mark.parametrize("path", NUMERICS, ids=name)
+def test_every_numeric_file_is_tried_by_laws(path: Path) -> None:
     tried = {m for test in ROOT.glob("tests/numerics/**/test_*.py") for m in imports(test)}
-    for path in ROOT.glob("tasks/numerics/**/*.py"):
-        stem = "kinetree." + name(path).removesuffix(".py").replace("/", ".")
-        assert path.name == "__init__.py" or stem in tried, f"no law imports {stem}"
+    assert path.name == "__init__.py" or module(path) in tried

@@ -8,13 +8,13 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from kinetree.pipeline.errors import ConfigError, InputError, NodesFailedError
+from kinetree.errors import ConfigError, InputError, NodesFailedError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, out, print_json
 from kinetree.pipeline.printable import printable
-from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
-from kinetree.tasks.plots.drawing import FORMATS, written
-from kinetree.tasks.plots.evaluation import drawn
+from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
+from kinetree.tasks.results.plots.drawing import FORMATS, written
+from kinetree.tasks.results.plots.evaluation import drawn
 
 EXAMPLES = (
     "Examples: kinetree evaluate walk-out walk/truth.json · kinetree evaluate walk-out dance.bvh --set truth.unit=cm"

@@ -7,13 +7,13 @@ from typing import Annotated
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
 from kinetree.pipeline.output import write_elsewhere, write_result
 from kinetree.pipeline.printable import printable
 from kinetree.pipeline.suggest import nearest
-from kinetree.tasks.exports.document import schema
+from kinetree.tasks.results.formats.document import schema
 
 FORMATS = {
     "glb": "glb",

@@ -6,12 +6,12 @@ from typing import Annotated, Any
 import typer
 from pydantic import ValidationError
 
-from kinetree.pipeline.errors import ConfigError, KinetreeError
+from kinetree.errors import ConfigError, KinetreeError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.upright import Upright
-from kinetree.tasks.plots import OF, WHAT, draw
-from kinetree.tasks.plots.drawing import Fetch
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.plots import OF, WHAT, draw
+from kinetree.tasks.results.plots.drawing import Fetch
 
 EXAMPLES = "Examples: kinetree plot walk/ correlation -o correlation.pdf · kinetree plot walk/ mu --frames 0,12,30"
 
@@ -49,11 +49,11 @@ def plot(
 def _axis(up: str | None, fetch: Fetch) -> int:
     if up is None:
         try:
-            return int(fetch("upright").axis)
+            return int(fetch("up_direction").axis)
         except KinetreeError:  # a run that did not come so far
             return 1
     try:
-        return Upright.model_validate({"up": up, "confidence": 1.0}).axis
+        return UpDirection.model_validate({"up": up, "confidence": 1.0}).axis
     except ValidationError:
         raise ConfigError(f"--up {up}: write x, y, z, -x, -y or -z") from None
 

@@ -5,10 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.config import checked
-from kinetree.pipeline.errors import ConfigError
-from kinetree.schemas.synth import ContactParams, DroppedParams, SynthParams
-from kinetree.tasks.synth import figure_names, write_sequence
+from kinetree.schemas.input.synth import ContactParams, DroppedParams, SynthParams
+from kinetree.tasks.input.synth import figure_names, write_sequence
 
 EXAMPLES = (
     "Examples: kinetree synth human -o walk/ · kinetree synth quadruped -o dog/ --frames 60 --vertices 12000"

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.report import Report
+from kinetree.schemas.results.report import Report
 
 EXAMPLES = "Examples: kinetree view walk-out · kinetree view walk-out --print"
 

@@ -9,8 +9,8 @@ import sys
 import pytest
 import yaml
 
+from kinetree.errors import KinetreeError
 from kinetree.pipeline import cli
-from kinetree.pipeline.errors import KinetreeError
 from kinetree.pipeline.inspect import Pipeline
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n{x} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
