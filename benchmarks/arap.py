@@ -51,7 +51,7 @@ TURNS = 15.0
 class Seconds:
     """Processor time by step; of coordinates a frame."""
 
-    geodesic_coordinates: float = 0.0
+    coordinates: float = 0.0
     mapping: float = 0.0
     arap: float = 0.0
     factor: float = 0.0
@@ -66,7 +66,7 @@ class Sequence:
     mesh: dict[int, Mesh]
     geodesics: dict[int, Geodesics]
     tips: dict[int, Extrema]
-    geodesic_coordinates: dict[int, GeodesicCoordinates]
+    coordinates: dict[int, GeodesicCoordinates]
     intervals: Intervals
     leaves: Leaves
 

@@ -50,7 +50,7 @@ class Made:
     alignment: tuple[Arap, ...]
     crossing: CutCorrespondence
     cones: tuple[Cones, ...]
-    cone_consistency: ConeConsistency
+    consistency: ConeConsistency
     limb: dict[tuple[int, int], Limb]
     annuli: dict[tuple[int, int], Annuli]
     integration: Integration

@@ -32,7 +32,7 @@ class Frame:
     mesh: Mesh
     tips: Extrema
     geodesics: Geodesics
-    geodesic_coordinates: GeodesicCoordinates
+    coordinates: GeodesicCoordinates
     place: NDArray[np.int64]
 
 

@@ -1,4 +1,4 @@
-"""StructureFigures of synthetic sequences: a tree of joints, the radii of the limbs between them, and the curves that turn them.
+"""Figures of synthetic sequences: a tree of joints, the radii of the limbs between them, and the curves that turn them.
 
 A figure is data, so that a user can write one; this module checks the words and freezes them. In rest pose:
 
