@@ -89,7 +89,7 @@ def test_limb_cut_off_in_some_frames_is_told_and_doubted_there_alone(tmp_path: P
     lost = {"limb": "elbow_r", "begin": 3, "end": 4}
     pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "dropped": [lost]}})
     assert told["status"] == "done"
-    assert "trust: frames 3–4 are trusted in part: up to" in said(pipeline)
+    assert "frame_confidence: frames 3–4 are trusted in part: up to" in said(pipeline)
     assert far(pipeline, 1) < NEAR
 
 

@@ -29,7 +29,7 @@ def paper_figures(
     bones: Bones,
     skeleton: Skeleton,
     intervals: Intervals,
-    upright: UpDirection,
+    up_direction: UpDirection,
 ) -> StructureFigures:
     """Draws cones and annuli, merge errors, areas and bones with the redundant ones (2014, Figs. 7, 11, 13 and 15)."""
     told: dict[str, Any] = {"cone_consistency": consistency, "integration": integration, "cylinders": cylinders, "bones": bones}
@@ -42,7 +42,7 @@ def paper_figures(
             return annuli[interval * count + cone]
         return by_interval[name] if name in by_interval else told[name]
 
-    home, up = [middle[cylinders.interval].frame], upright.axis
+    home, up = [middle[cylinders.interval].frame], up_direction.axis
     rings = [
         Drawn(
             cones(fetch, home, up),

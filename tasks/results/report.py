@@ -46,7 +46,7 @@ def report(
     intervals: Intervals,
     leaves: Leaves,
     evaluation: Evaluation,
-    upright: UpDirection,
+    up_direction: UpDirection,
     alignment: Mapping[int, Alignment],
     projection: Mapping[int, Projection],
     mesh: Mapping[int, Mesh],
@@ -61,11 +61,11 @@ def report(
         return once[name] if frame is None else framed[name][frame]
 
     limits = Limits(params.frames, params.vertices, params.input_vertices)
-    up = upright.axis
+    up = up_direction.axis
     frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
-        facts=_facts(skeleton, sequence, intervals, upright, alignment),
+        facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
         warnings=heeded(skeleton, intervals, leaves, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
@@ -156,7 +156,7 @@ def _aligned(fetch: Any, frames: list[int], up: int, connectivity: Connectivity)
 
 
 def _facts(
-    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, upright: UpDirection, aligned: Mapping[int, Alignment]
+    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, up_direction: UpDirection, aligned: Mapping[int, Alignment]
 ) -> list[tuple[str, str]]:
     return [
         ("frames", str(len(skeleton.frames))),
@@ -167,5 +167,5 @@ def _facts(
         ("skin off the aligned meshes by", f"{100 * off(skeleton, aligned):.2g} % of the body's diagonal"),
         ("unit", sequence.unit or "not known"),
         ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),
-        ("up", upright.up + (", a guess" if upright.confidence < UNSURE else "")),
+        ("up", up_direction.up + (", a guess" if up_direction.confidence < UNSURE else "")),
     ]

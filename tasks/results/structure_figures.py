@@ -12,14 +12,14 @@ from kinetree.tasks.results.plots.traces import cones, lengths, merging, structu
 
 
 @task()
-def structure_figures(skeleton: Skeleton, traces: Traces, upright: UpDirection) -> StructureFigures:
+def structure_figures(skeleton: Skeleton, traces: Traces, up_direction: UpDirection) -> StructureFigures:
     """Draws cones, merge errors, the graph of parts and bones' lengths (2014, Figs. 7, 11 and 15)."""
     told = {"skeleton": skeleton, "traces": traces}
 
     def fetch(name: str) -> Any:
         return told[name]
 
-    up = upright.axis
+    up = up_direction.axis
     drawn = [
         Drawn(cones(fetch, [], up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False),
         Drawn(
