@@ -171,8 +171,10 @@ class Graph:
                 summary=task.summary,
             )
         for task in self.tasks:
-            for a in sorted(task.arguments, key=lambda a: not a.previous):  # an edge at the own index is drawn last, and stays
-                drawn.add_edge(self.writers[a.artifact].name, task.name, argument=a.name, form=a.form, previous=a.previous)
+            for a in task.arguments:
+                edge = (self.writers[a.artifact].name, task.name)
+                if not (a.previous and drawn.has_edge(*edge)):
+                    drawn.add_edge(*edge, argument=a.name, form=a.form, previous=a.previous)
         return drawn
 
 
