@@ -280,5 +280,5 @@ def test_space_is_a_path_of_dimensions():
 def test_worker_finds_a_task_by_its_name():
     found = load("kinetree.tasks.input.mesh:mesh")
     assert (found.name, found.module) == ("mesh", "kinetree.tasks.input.mesh")
-    with pytest.raises(GraphError, match=r"^kinetree\.tasks\.mesh:clean is not a task$"):
+    with pytest.raises(GraphError, match=r"^kinetree\.tasks\.input\.mesh:clean is not a task$"):
         load("kinetree.tasks.input.mesh:clean")
