@@ -14,7 +14,7 @@ from kinetree.pipeline.options import AsJson, Set, Target, brief, here, out, pip
 from kinetree.pipeline.printable import printable
 from kinetree.pipeline.show import shown
 
-GATHERS = {"one": "", "tuple": " of all", "mapping": " of all", "previous": " before it"}
+GATHERS = {"one": "", "tuple": " of all", "mapping": " of all"}
 
 
 def register(app: typer.Typer) -> None:
@@ -137,7 +137,7 @@ def tasks(as_json: AsJson = False) -> None:
         print_json(rows)
         return
     for row in rows:
-        reads = ", ".join(f"{a['artifact']}{GATHERS[a['form']]}" for a in row["reads"]) or "the files"
+        reads = ", ".join(_read(a) for a in row["reads"]) or "the files"
         per = f" per {row['over']}" if row["over"] else ""
         named = " [dim](only when it is named)[/dim]" if row["on_request"] else ""
         out.print(f"[bold]{row['task']}[/bold]: {reads} → {row['writes']}{per}{named}  [dim]{escape(row['paper'])}[/dim]")
@@ -146,12 +146,20 @@ def tasks(as_json: AsJson = False) -> None:
             out.print(f"    [cyan]{row['task']}.{name}[/cyan] = {escape(str(param['default']))}  {escape(param['what'])}")
 
 
+def _read(argument: dict[str, Any]) -> str:
+    return f"{argument['artifact']}{GATHERS[argument['form']]}{' before it' if argument['previous'] else ''}"
+
+
 def _task_row(task: Any) -> dict[str, Any]:
     fields = task.params.model_fields if task.params else {}
     return {
         "task": task.name,
         "over": "/".join(task.over),
-        "reads": [{"argument": a.name, "artifact": a.artifact.__name__, "form": a.form} for a in task.arguments],
+        "reads": [
+            {"argument": a.name, "artifact": a.artifact.__name__, "form": a.form, "previous": a.previous}
+            for a in task.arguments
+        ],
+        "along": task.traversed,
         "writes": task.returns.__name__,
         "params": {n: {"default": f.default, "what": f.description or ""} for n, f in fields.items()},
         "on_request": task.on_request,

@@ -34,8 +34,8 @@ def _begins(store: Store, label: str, before: dict[str, Any], after: dict[str, A
     then, now = (store.record(told["key"]) if told.get("key") else None for told in (before, after))
     if then is None or now is None:
         return [f"{'not computed' if not after.get('key') else 'its record was removed'} in one of the runs"]
-    told = differences(Work(now.params, now.code, now.inputs), then)
-    own = [str(reason) for reason in told if reason.kind in ("params", "code")]
+    told = differences(Work(now.params, now.code, now.inputs, now.index if now.asks_index else None), then)
+    own = [str(reason) for reason in told if reason.kind in ("params", "code", "index")]
     return own or ([] if told else [f"{label} gave another result from the same inputs"] * (then.artifact != now.artifact))
 
 

@@ -6,6 +6,7 @@ from typing import Any, Literal
 import networkx as nx
 
 Format = Literal["mermaid", "dot", "json"]
+GATHERS = ("tuple", "mapping")
 
 
 def draw(graph: "nx.DiGraph[str]", form: Format) -> str:
@@ -20,8 +21,7 @@ def _mermaid(graph: "nx.DiGraph[str]") -> str:
     lines = ["flowchart TD"]
     lines += [f'    {names[node]}["{_told(node, data)}"]' for node, data in graph.nodes(data=True)]
     for a, b, data in graph.edges(data=True):
-        gathers = data.get("form") in ("tuple", "mapping")
-        lines.append(f"    {names[a]} {'==>' if gathers else '-->'} {names[b]}")
+        lines.append(f"    {names[a]} {_arrow(data)} {names[b]}")
     return "\n".join(lines)
 
 
@@ -29,9 +29,16 @@ def _dot(graph: "nx.DiGraph[str]") -> str:
     lines = ["digraph kinetree {", "    node [shape=box];"]
     lines += [f"    {_quoted(node)} [label={_quoted(_told(node, data))}];" for node, data in graph.nodes(data=True)]
     for a, b, data in graph.edges(data=True):
-        bold = " [style=bold]" if data.get("form") in ("tuple", "mapping") else ""
-        lines.append(f"    {_quoted(a)} -> {_quoted(b)}{bold};")
+        style = "dashed" if data.get("previous") else "bold" if data.get("form") in GATHERS else ""
+        lines.append(f"    {_quoted(a)} -> {_quoted(b)}{f' [style={style}]' if style else ''};")
     return "\n".join([*lines, "}"])
+
+
+def _arrow(data: dict[str, Any]) -> str:
+    """Thick for a gather, dotted for what is read at a previous member."""
+    if data.get("previous"):
+        return "-.->"
+    return "==>" if data.get("form") in GATHERS else "-->"
 
 
 def _plain(graph: "nx.DiGraph[str]") -> dict[str, Any]:

@@ -19,7 +19,7 @@ from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, no
 from kinetree.pipeline.memory import peak_bytes, reset_peak
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
-from kinetree.schemas.array import Artifact
+from kinetree.schemas.array import Artifact, Index
 
 LIBRARIES = ("kinetree", "numpy", "scipy", "numba", "trimesh", "zarr", "dask", "pydantic")
 Status = Literal["ran", "fresh", "failed", "damaged", "refused", "undone"]
@@ -30,7 +30,6 @@ class Ref:
     """One artifact that a step reads: by digest in the store, as an earlier step's result, or carried along."""
 
     label: str
-    number: int | None = None
     artifact: str | None = None
     step: int | None = None
     given: Artifact | None = None
@@ -43,6 +42,8 @@ class Input:
     argument: str
     form: Form
     reads: tuple[Ref, ...]
+    numbers: tuple[int, ...] | None
+    """Member numbers of what is read, where the task sees them."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +117,8 @@ def _compute(bench: _Bench, number: int, step: Step) -> Result:
             f" ({step.code[:12]} planned, {here[:12]} here); install the same kinetree everywhere and restart the workers"
         )
     inputs = [_told(bench, i) for i in step.inputs]
-    identity = [[i.argument, i.form, told["artifacts"], _numbers(i)] for i, told in zip(step.inputs, inputs, strict=True)]
-    key = node_key(task.name, here, step.params, identity)
+    identity = [[i.argument, i.form, told["artifacts"], i.numbers] for i, told in zip(step.inputs, inputs, strict=True)]
+    key = node_key(task.name, here, step.params, identity, _asked_index(task, step))
     if step.key is not None and key != step.key:
         raise StaleWorkerError(f"{step.label}: this worker derives another key ({key[:12]}) than was planned ({step.key[:12]})")
     known = None if step.force else bench.store.record(key)
@@ -132,6 +133,8 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
     values = {i.argument: _value(bench, task, i) for i in step.inputs}
     if task.params is not None:
         values["params"] = task.params.model_validate(step.params)
+    if task.asks_index:
+        values["index"] = _asked_index(task, step)
     artifact = task(**values)
     if type(artifact) is not task.returns:
         raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
@@ -152,6 +155,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         host=socket.gethostname(),
         created=datetime.now(UTC).isoformat(timespec="milliseconds"),
         versions=versions(),
+        asks_index=task.asks_index,
     )
     bench.store.write(record)
     return Result("ran", key, digest, seconds, record)
@@ -173,8 +177,8 @@ def _digest(bench: _Bench, ref: Ref) -> str:
     return bench.results[ref.step].artifact if ref.step is not None else str(ref.artifact)
 
 
-def _numbers(given: Input) -> list[int | None] | None:
-    return [ref.number for ref in given.reads] if given.form == "mapping" else None
+def _asked_index(task: Task[..., Any], step: Step) -> Index | None:
+    return tuple(step.index[dim] for dim in task.over) if task.asks_index else None
 
 
 def _value(bench: _Bench, task: Task[..., Any], given: Input) -> Any:
@@ -182,8 +186,8 @@ def _value(bench: _Bench, task: Task[..., Any], given: Input) -> Any:
     found = [_artifact(bench, cls, ref) for ref in given.reads]
     if given.form == "tuple":
         return tuple(found)
-    if given.form == "mapping":
-        return {ref.number: value for ref, value in zip(given.reads, found, strict=True)}
+    if given.numbers is not None:
+        return dict(zip(given.numbers, found, strict=True))
     return found[0] if found else None
 
 

@@ -41,6 +41,7 @@ class Graph:
         for task in ordered.tasks:
             for argument in task.arguments:
                 ordered.gathered_space(task, argument)
+            _traversal_is_ordered_at_its_index(ordered, task)
         ordered._remember_code()
         return ordered
 
@@ -73,25 +74,48 @@ class Graph:
         return self.by_name[name]
 
     def reads(self, task: AnyTask) -> tuple[AnyTask, ...]:
-        """Tasks that must be known before this one can run or even be laid out, itself left out."""
-        found = [self.writers[a.artifact] for a in task.arguments if a.form != "previous"]
+        """Tasks without which this one cannot run or even be laid out, itself left out."""
+        return tuple(dict.fromkeys((*self.before(task), *self.behind(task))))
+
+    def before(self, task: AnyTask) -> tuple[AnyTask, ...]:
+        """Tasks that come before this one: what it reads at its own index, and what tells the indices and the traversal."""
+        found = [self.writers[a.artifact] for a in task.arguments if not a.previous]
         found += [self.openers[s] for s in self.needed_spaces(task)]
         if task.along is not None:
             found.append(self.writers[task.along])
         return tuple(dict.fromkeys(t for t in found if t is not task))
 
+    def behind(self, task: AnyTask) -> tuple[AnyTask, ...]:
+        """Other tasks that this one reads at the previous member of its traversal; they may read this one in turn."""
+        found = [self.writers[a.artifact] for a in task.arguments if a.previous]
+        return tuple(dict.fromkeys(t for t in found if t is not task))
+
     def needed_spaces(self, task: AnyTask) -> tuple[Space, ...]:
-        """The spaces whose members must be listed for this task: its own with all prefixes, and those it gathers over."""
-        wanted = [task.over] + [
-            self.gathered_space(task, a) for a in task.arguments if a.form in ("tuple", "mapping")
-        ]
+        """The spaces whose members must be listed for this task, with all prefixes: its own, those it gathers over, and
+        those of the tasks it reads at the previous member.
+        """
+        wanted = [task.over, *(self.gathered_space(task, a) for a in task.arguments if a.form != "one")]
+        wanted += [writer.over for writer in self.behind(task)]
         return tuple(dict.fromkeys(s[:depth] for s in wanted for depth in range(1, len(s) + 1)))
 
     def gathered_space(self, task: AnyTask, argument: Argument) -> Space:
         """The space over which an argument is read: frames *of this interval* where such a space is opened, else all."""
         writer = self.writers[argument.artifact]
-        if argument.form == "previous":
-            return task.over
+        found = self._gathered_space(task, argument, writer)
+        if argument.previous and task.traversed not in found:
+            per = f"per {'/'.join(writer.over)}" if writer.over else "once"
+            raise GraphError(
+                f"{task.name} ({task.where}): argument {argument.name} is read at the previous {task.traversed}, but"
+                f" {writer.name} ({writer.where}) writes {argument.artifact.__name__} {per}"
+            )
+        return found
+
+    def numbered(self, task: AnyTask, argument: Argument) -> int:
+        """The position, in the index of what a mapping gathers, of the member number that is its key."""
+        over = self.writers[argument.artifact].over
+        return next(n for n, dim in enumerate(over) if dim not in task.over)
+
+    def _gathered_space(self, task: AnyTask, argument: Argument, writer: AnyTask) -> Space:
         missing = tuple(d for d in writer.over if d not in task.over)
         told = f"{task.name} ({task.where}): argument {argument.name}"
         if argument.form == "one":
@@ -132,7 +156,10 @@ class Graph:
                 code_closure(task.module)
 
     def networkx(self) -> "nx.DiGraph[str]":
-        """Task names as nodes (with over, artifact, params, paper, summary), edges with argument name and form."""
+        """Task names as nodes (with over, artifact, params, paper, summary), edges with argument, form and previous.
+
+        An edge is `previous` where the artifact is read at the previous member alone.
+        """
         drawn: nx.DiGraph[str] = nx.DiGraph()
         for task in self.tasks:
             drawn.add_node(
@@ -145,7 +172,9 @@ class Graph:
             )
         for task in self.tasks:
             for a in task.arguments:
-                drawn.add_edge(self.writers[a.artifact].name, task.name, argument=a.name, form=a.form)
+                edge = (self.writers[a.artifact].name, task.name)
+                if not (a.previous and drawn.has_edge(*edge)):
+                    drawn.add_edge(*edge, argument=a.name, form=a.form, previous=a.previous)
         return drawn
 
 
@@ -163,7 +192,7 @@ def _one_writer_each(tasks: Sequence[AnyTask]) -> None:
 
 def _every_edge_has_a_writer(graph: Graph) -> None:
     for task in graph.tasks:
-        own = next((a.name for a in task.arguments if a.artifact is task.returns and a.form != "previous"), None)
+        own = next((a.name for a in task.arguments if a.artifact is task.returns and not a.previous), None)
         if own is not None or task.along is task.returns:
             what = f"argument {own}" if own else "the traversal it goes along"
             raise CycleError(
@@ -201,11 +230,20 @@ def _every_space_is_opened_once(graph: Graph) -> None:
                 )
 
 
+def _traversal_is_ordered_at_its_index(graph: Graph, task: AnyTask) -> None:
+    if task.along is not None and not set(graph.writers[task.along].over) <= set(task.over):
+        orderer = graph.writers[task.along]
+        raise GraphError(
+            f"{task.name} ({task.where}) goes along {task.along.__name__}, but {orderer.name} ({orderer.where}) writes one per"
+            f" {'/'.join(orderer.over)}"
+        )
+
+
 def _ordered(graph: Graph) -> tuple[AnyTask, ...]:
     """Topological order, ties in the order of declaration."""
     edges: nx.DiGraph[str] = nx.DiGraph()
     edges.add_nodes_from(task.name for task in graph.tasks)
-    edges.add_edges_from((read.name, task.name) for task in graph.tasks for read in graph.reads(task))
+    edges.add_edges_from((read.name, task.name) for task in graph.tasks for read in graph.before(task))
     rank = {task.name: n for n, task in enumerate(graph.tasks)}
     if not nx.is_directed_acyclic_graph(edges):
         ring = [edge[0] for edge in nx.find_cycle(edges)]

@@ -243,7 +243,8 @@ def _expanded(schedule: Schedule) -> "nx.DiGraph[str]":
     for entry in schedule.entries.values():
         for argument, reads in entry.inputs or ():
             for node in reads:
-                nodes.add_edge(schedule.entries[node].label, entry.label, argument=argument.name, form=argument.form)
+                told = {"argument": argument.name, "form": argument.form, "previous": argument.previous}
+                nodes.add_edge(schedule.entries[node].label, entry.label, **told)
     return nodes
 
 

@@ -68,12 +68,16 @@ def combined_digest(cls: type[Artifact], plain: Mapping[str, Any], arrays: Mappi
     return digest(["kinetree.artifact/1", cls.__name__, cls.version, told, dict(arrays)])
 
 
-def node_key(task: str, code: str, params: Mapping[str, Any], inputs: Sequence[Any]) -> str:
+def node_key(
+    task: str, code: str, params: Mapping[str, Any], inputs: Sequence[Any], index: Sequence[int] | None = None
+) -> str:
     """Digest of what a node will compute.
 
     inputs : one [argument name, form, digests] per argument in the order of the signature; digests as `input_identity`
+    index  : the node's index, for a task that asks for it; it is no part of any other key
     """
-    return digest(["kinetree.node/1", task, code, dict(params), list(inputs)])
+    asked = [] if index is None else [["index", *index]]
+    return digest(["kinetree.node/1", task, code, dict(params), list(inputs), *asked])
 
 
 def code_digest(module: str) -> str:

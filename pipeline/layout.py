@@ -48,9 +48,13 @@ class Layout:
 
     def reads(self, task: AnyTask, index: Index, argument: Argument) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
         """The nodes that an argument of a task reads at an index, and those that block saying so."""
+        if argument.previous:
+            before, blocking = self._previous(task, index)
+            return ((), blocking) if before is None else self._reads(task, before, argument)
+        return self._reads(task, index, argument)
+
+    def _reads(self, task: AnyTask, index: Index, argument: Argument) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
         writer = self.graph.writers[argument.artifact]
-        if argument.form == "previous":
-            return self._previous(task, index)
         if argument.form == "one":
             return (Node(writer.name, project(index, task.over, writer.over)),), ()
         space = self.graph.gathered_space(task, argument)
@@ -69,18 +73,20 @@ class Layout:
         members = self.ask(node, lambda value: value.members("/".join(space), prefix))
         return node if members is None else members
 
-    def _previous(self, task: AnyTask, index: Index) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
+    def _previous(self, task: AnyTask, index: Index) -> tuple[Index | None, tuple[Node, ...]]:
+        """The index with the previous member of the traversal, None where that starts; and the nodes that block saying so."""
         assert task.along is not None  # a declaration without it was refused
         orderer = self.graph.writers[task.along]
         node = Node(orderer.name, project(index, task.over, orderer.over))
-        answer = self.ask(node, lambda order: (order.previous(index[-1]),))
+        place = task.over.index(task.traversed)
+        answer = self.ask(node, lambda order: (order.previous(index[place]),))
         if answer is None:
-            return (), (node,)
+            return None, (node,)
         (member,) = answer
         if member is None:
-            return (), ()
-        before = Node(task.name, (*index[:-1], member))
+            return None, ()
+        before = Node(task.name, (*index[:place], member, *index[place + 1 :]))
         if not self.exists(before):
             here, there = label(Node(task.name, index), task.over), label(before, task.over)
             raise GraphError(f"{here}: {task.along.__name__} puts {there} before it")
-        return (before,), ()
+        return before.at, ()

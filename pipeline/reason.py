@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from kinetree.pipeline.store import Record
 
-Kind = Literal["never ran", "params", "code", "input", "artifact", "forced"]
+Kind = Literal["never ran", "params", "code", "index", "input", "artifact", "forced"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,8 @@ class Work:
     code: Mapping[str, str]
     inputs: Sequence[Mapping[str, Any]]
     """Per argument: argument, form, nodes, artifacts."""
+    index: Mapping[str, int] | None = None
+    """Its index by dimension, where the task asks for it."""
 
 
 def never_ran() -> Reason:
@@ -36,8 +38,13 @@ def never_ran() -> Reason:
 
 
 def differences(now: Work, then: Record) -> tuple[Reason, ...]:
-    """What differs between work to do and work that was done: parameters, then code, then inputs."""
-    return (*_params(now.params, then.params), *_code(now.code, then.code), *_inputs(now.inputs, then.inputs))
+    """What differs between work to do and work that was done: parameters, then code, then the index, then inputs."""
+    return (
+        *_params(now.params, then.params),
+        *_code(now.code, then.code),
+        *_index(now.index, then.index if then.asks_index else None),
+        *_inputs(now.inputs, then.inputs),
+    )
 
 
 def _params(now: Mapping[str, Any], then: Mapping[str, Any]) -> tuple[Reason, ...]:
@@ -47,6 +54,11 @@ def _params(now: Mapping[str, Any], then: Mapping[str, Any]) -> tuple[Reason, ..
 
 def _code(now: Mapping[str, str], then: Mapping[str, str]) -> tuple[Reason, ...]:
     return tuple(Reason("code", name) for name in sorted({*now, *then}) if now.get(name) != then.get(name))
+
+
+def _index(now: Mapping[str, int] | None, then: Mapping[str, int] | None) -> tuple[Reason, ...]:
+    before, after = (_ABSENT if index is None else ",".join(f"{d}={i}" for d, i in index.items()) for index in (then, now))
+    return (Reason("index", f"{before} → {after}"),) if now != then else ()
 
 
 def _inputs(now: Sequence[Mapping[str, Any]], then: Sequence[Mapping[str, Any]]) -> tuple[Reason, ...]:

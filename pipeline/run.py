@@ -267,8 +267,8 @@ def _steps(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
             code=schedule.code[entry.node.task],
             params=schedule.params.get(entry.node.task, {}),
             inputs=tuple(
-                Input(argument.name, argument.form, tuple(_ref(schedule, place, node) for node in nodes))
-                for argument, nodes in entry.inputs or ()
+                Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), schedule.numbers(entry, a, nodes))
+                for a, nodes in entry.inputs or ()
             ),
             key=entry.key if entry is parcel[0] else None,
             force=entry.node.task in schedule.force or any(r.kind == "artifact" for r in entry.reasons),
@@ -279,12 +279,11 @@ def _steps(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
 
 def _ref(schedule: Schedule, place: dict[Node, int], node: Node) -> Ref:
     entry = schedule.entries[node]
-    number = node.at[-1] if node.at else None
     if node in place:
-        return Ref(entry.label, number, step=place[node])
+        return Ref(entry.label, step=place[node])
     if entry.task.is_origin:
-        return Ref(entry.label, number, given=schedule.given[node.task][node.at])
-    return Ref(entry.label, number, artifact=entry.artifact)
+        return Ref(entry.label, given=schedule.given[node.task][node.at])
+    return Ref(entry.label, artifact=entry.artifact)
 
 
 def _lost(error: Exception) -> Result:

@@ -9,7 +9,7 @@ import heapq
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from kinetree.errors import DamagedArtifactError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
@@ -88,17 +88,20 @@ class Schedule:
             if task.is_origin:
                 self._accept(task)
                 continue
-            indices, blocking = self._layout.indices(task.over)
-            self.blocked[task.name] = blocking
-            for node in (Node(task.name, index) for index in indices):
-                if node not in self.entries:
-                    self.entries[node] = Entry(node, task, label(node, task.over))
-                    self._unlisted[node] = None
+            for each in (task, *self.graph.behind(task)):  # what is read at a previous member may come later in the graph
+                self._list(each)
             unlisted = [n for n in self._unlisted if n.task == task.name]
             for node in unlisted:
                 self._link(self.entries[node])
             fresh += self._settle_all(n for n in unlisted if n not in self._unlisted and not self.entries[n].waits)
         return fresh
+
+    def _list(self, task: AnyTask) -> None:
+        indices, self.blocked[task.name] = self._layout.indices(task.over)
+        for node in (Node(task.name, index) for index in indices):
+            if node not in self.entries:
+                self.entries[node] = Entry(node, task, label(node, task.over))
+                self._unlisted[node] = None
 
     def ready(self) -> Iterator[Entry]:
         """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next."""
@@ -117,7 +120,8 @@ class Schedule:
                 break
             for node in self._dependents[member.node]:
                 other = self.entries[node]
-                if other.state == "waits" and node not in inside and node.at == entry.node.at:
+                here = node.at == entry.node.at and other.task.over == entry.task.over
+                if here and other.state == "waits" and node not in inside:
                     if node not in self._unlisted and other.waits <= inside:
                         inside.add(node)
                         parcel.append(other)
@@ -193,7 +197,19 @@ class Schedule:
             }
             for argument, nodes in entry.inputs or ()
         ]
-        return Work(self.params.get(entry.node.task, {}), code_closure(entry.task.module), inputs)
+        return Work(self.params.get(entry.node.task, {}), code_closure(entry.task.module), inputs, self.asked_index(entry))
+
+    @staticmethod
+    def asked_index(entry: Entry) -> dict[str, int] | None:
+        """A node's index by dimension where its task asks for it, else None."""
+        return dict(zip(entry.task.over, entry.node.at, strict=True)) if entry.task.asks_index else None
+
+    def numbers(self, entry: Entry, argument: Argument, nodes: Sequence[Node]) -> tuple[int, ...] | None:
+        """The member numbers by which a task sees what it gathers, None where it does not see them."""
+        if argument.form != "mapping":
+            return None
+        place = self.graph.numbered(entry.task, argument)
+        return tuple(node.at[place] for node in nodes)
 
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
@@ -274,9 +290,12 @@ class Schedule:
     def _settle(self, entry: Entry) -> bool:
         """Computes a node's key and asks the store; True where the node is fresh."""
         work = self.work(entry)
-        entry.key = node_key(
-            entry.node.task, self.code[entry.node.task], work.params, key_inputs(entry.inputs or (), work.inputs)
-        )
+        identity = [
+            [a.name, a.form, list(told["artifacts"]), self.numbers(entry, a, nodes)]
+            for (a, nodes), told in zip(entry.inputs or (), work.inputs, strict=True)
+        ]
+        index = entry.node.at if entry.task.asks_index else None
+        entry.key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
         record = self.store.record(entry.key)
         if record is not None and entry.node.task not in self.force and self.store.holds(record):
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
@@ -296,11 +315,3 @@ class Schedule:
         if then == "lost":
             return (Reason("artifact", "its record is missing or damaged"),)
         return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)
-
-
-def key_inputs(inputs: Sequence[tuple[Argument, Sequence[Node]]], told: Sequence[Mapping[str, Any]]) -> list[Any]:
-    """What of its inputs goes into a node's key: artifacts in order, and member numbers where the task can see them."""
-    return [
-        [a.name, a.form, list(t["artifacts"]), [n.at[-1] for n in nodes] if a.form == "mapping" else None]
-        for (a, nodes), t in zip(inputs, told, strict=True)
-    ]

@@ -48,6 +48,8 @@ class Record:
     host: str
     created: str
     versions: dict[str, str] = field(default_factory=dict)
+    asks_index: bool = False
+    """Whether the index is part of the key."""
 
     @property
     def bytes(self) -> int:

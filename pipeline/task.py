@@ -10,8 +10,16 @@ argument's type reads:
     X                    the artifact of the same index (a task over interval/frame that asks for a Mesh gets its frame's)
     tuple[X, ...]        every X below this index, in order
     Mapping[int, X]      the same by member number, for a task to which the numbers matter
-    X | None             only for a task's own return type: its artifact at the previous member of the traversal that the
-                         artifact class given as `along` orders; None where the traversal starts
+
+A task that names an artifact class as `along` goes along the traversal which that artifact orders, and may read at the
+previous member of it: its own artifact, or what other tasks made there. Such edges are no part of the order of tasks, so a
+task may read at the previous member what is made from its own artifact (a pass that learns from the pass before).
+
+    X | None                     X at this index with the previous member in place of this one; None where the traversal starts
+    Previous[tuple[X, ...]]      every X below that index, in order; empty where the traversal starts
+    Previous[Mapping[int, X]]    the same by member number
+
+A task over some fan-out that takes `index: Index` is told which member it is; only then the index is part of its key.
 
 The decorated function stays the plain function it was: tests call it with values.
 """
@@ -23,15 +31,24 @@ import types
 import typing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Generic, Literal, ParamSpec, TypeVar, Union
+from typing import Annotated, Any, Generic, Literal, ParamSpec, TypeVar, Union
 
 from kinetree.errors import GraphError
-from kinetree.schemas.array import Artifact, Params
+from kinetree.schemas.array import Artifact, Index, Params
 
 P = ParamSpec("P")
 R = TypeVar("R")
+T = TypeVar("T")
 Space = tuple[str, ...]
-Form = Literal["one", "tuple", "mapping", "previous"]
+Form = Literal["one", "tuple", "mapping"]
+
+
+class AtPrevious:
+    """Marks an argument that is read at the previous member of the task's traversal."""
+
+
+Previous = Annotated[T, AtPrevious]
+"""Previous[tuple[X, ...]]: every X below the index that has the previous member; empty where the traversal starts."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +58,8 @@ class Argument:
     name: str
     artifact: type[Artifact]
     form: Form
+    previous: bool = False
+    """Whether it is read at the previous member of the traversal, and lacking where that starts."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +77,8 @@ class Task(Generic[P, R]):
     where: str
     on_request: bool = False
     """Whether it runs only when it is named."""
+    asks_index: bool = False
+    """Whether it is told its index, which then is part of its key."""
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """The function itself."""
@@ -68,6 +89,11 @@ class Task(Generic[P, R]):
         reads = ", ".join(a.artifact.__name__ for a in self.arguments) or "the world outside"
         per = f" per {'/'.join(self.over)}" if self.over else ""
         return f"Task({self.name}: {reads} → {self.returns.__name__}{per})"
+
+    @property
+    def traversed(self) -> str:
+        """The dimension whose members the traversal orders; empty without a traversal."""
+        return (self.along.orders or self.over[-1]) if self.along else ""
 
     @property
     def module(self) -> str:
@@ -93,7 +119,7 @@ def task(
     """Declares a function as a task; see the module's docstring for what its signature says.
 
     over       : the fan-out, a path of dimensions; "" runs once
-    along      : the artifact class whose `previous` orders the traversal, for a task that reads its own neighbour
+    along      : the artifact class whose `previous` orders the traversal, for a task that reads at the previous member
     on_request : whether a run leaves it out unless it is named, or something that reads it
     raises     : GraphError, at import, where the signature does not say enough
     """
@@ -134,9 +160,10 @@ def space(path: str) -> Space:
 def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None, *, is_origin: bool) -> Task[P, R]:
     where = f"{inspect.getsourcefile(function)}:{function.__code__.co_firstlineno}"
     place = f"{function.__name__} ({where})"
-    hints = typing.get_type_hints(function)
+    hints = typing.get_type_hints(function, include_extras=True)
     returns = _artifact_of(hints.pop("return", None), place, is_origin=is_origin)
     params: type[Params] | None = None
+    asks_index = False
     arguments: list[Argument] = []
     for name, parameter in inspect.signature(function).parameters.items():
         hint = hints.get(name)
@@ -146,32 +173,62 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
             if not (isinstance(hint, type) and issubclass(hint, Params)):
                 raise GraphError(f"{place}: params must be annotated with a class of Params, got {hint!r}")
             params = hint
+        elif name == "index":
+            if hint != Index:
+                raise GraphError(f"{place}: index must be annotated with Index, got {hint!r}")
+            asks_index = True
         elif not (is_origin and name == "files"):
             arguments.append(_argument(name, hint, returns, place))
-    if is_origin and arguments:
-        raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name}")
+    if is_origin and (arguments or asks_index):
+        raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name if arguments else 'index'}")
     if is_origin and (params is None or "files" not in inspect.signature(function).parameters):
         raise GraphError(f"{place}: an origin takes both params and files, one of them is missing")
-    reads_previous = any(a.form == "previous" for a in arguments)
-    if reads_previous != (along is not None):
-        raise GraphError(f"{place}: a task reads its own previous artifact exactly if it says along which traversal")
-    return Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
+    made = Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
+    _refuse_bad_traversal(made, place)
+    if asks_index and not over:
+        raise GraphError(f"{place}: asks for its index, but runs once and has none; say over what it runs")
+    return replace(made, asks_index=asks_index)
+
+
+def _refuse_bad_traversal(task: Task[..., Any], place: str) -> None:
+    if any(a.previous for a in task.arguments) != (task.along is not None):
+        raise GraphError(f"{place}: a task reads at the previous member exactly if it says along which traversal")
+    if task.along is not None and not task.over:
+        raise GraphError(f"{place}: goes along {task.along.__name__}, but runs once; say over what it runs")
+    if task.along is not None and task.traversed not in task.over:
+        raise GraphError(
+            f"{place}: goes along {task.along.__name__}, which orders {task.along.orders}, but runs over {'/'.join(task.over)}"
+        )
 
 
 def _argument(name: str, hint: Any, returns: type[Artifact], place: str) -> Argument:
     if isinstance(hint, type) and issubclass(hint, Artifact):
         return Argument(name, hint, "one")
     outer, inner = typing.get_origin(hint), typing.get_args(hint)
+    if outer in (Union, types.UnionType) and len(inner) == 2 and type(None) in inner:
+        (other,) = (t for t in inner if t is not type(None))
+        if _is_artifact(other):
+            return Argument(name, other, "one", previous=True)
+    is_previous = outer is Annotated and inner[1:] == (AtPrevious,)
+    gathered = _gathered(inner[0] if is_previous else hint)
+    if gathered is None:
+        raise GraphError(
+            f"{place}: argument {name} must be an Artifact, tuple[Artifact, ...] or Mapping[int, Artifact], or, at the previous"
+            f" member of a traversal, {returns.__name__} | None, Previous[tuple[Artifact, ...]] or"
+            f" Previous[Mapping[int, Artifact]]; got {hint!r}"
+        )
+    artifact, form = gathered
+    return Argument(name, artifact, form, previous=is_previous)
+
+
+def _gathered(hint: Any) -> tuple[type[Artifact], Form] | None:
+    """The artifact class and the form of an argument that gathers many; None for any other."""
+    outer, inner = typing.get_origin(hint), typing.get_args(hint)
     if outer is tuple and len(inner) == 2 and inner[1] is Ellipsis and _is_artifact(inner[0]):
-        return Argument(name, inner[0], "tuple")
+        return inner[0], "tuple"
     if outer is Mapping and inner[0] is int and _is_artifact(inner[1]):
-        return Argument(name, inner[1], "mapping")
-    if outer in (Union, types.UnionType) and set(inner) == {returns, type(None)}:
-        return Argument(name, returns, "previous")
-    raise GraphError(
-        f"{place}: argument {name} must be an Artifact, tuple[Artifact, ...], Mapping[int, Artifact] or, for the task's"
-        f" own artifact, {returns.__name__} | None; got {hint!r}"
-    )
+        return inner[1], "mapping"
+    return None
 
 
 def _artifact_of(hint: Any, place: str, *, is_origin: bool) -> type[Artifact]:

@@ -94,7 +94,8 @@ class Artifact(BaseModel):
     """A stored value: frozen, its arrays declared and read-only, every other field plain JSON.
 
     An artifact whose members other tasks fan out over (the intervals of a sequence, the cones of an interval) names in
-    `opens` the spaces it opens and lists their members in `members`; one that orders a traversal answers `previous`.
+    `opens` the spaces it opens and lists their members in `members`; one that orders a traversal answers `previous` for
+    members of the dimension `orders`, or, where that is empty, of the last dimension of the task that goes along it.
     One that people take away gives `files`, or is left in the output folder as the zarr group it is, named in `left_as`.
     One that also tells of the run that left it is a file named in `page_as`, of the bytes that `page` gives.
     """
@@ -102,6 +103,7 @@ class Artifact(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
     version: ClassVar[int] = 1
     opens: ClassVar[tuple[str, ...]] = ()
+    orders: ClassVar[str] = ""
     left_as: ClassVar[str] = ""
     page_as: ClassVar[str] = ""
     _lazy: dict[str, Loader] = PrivateAttr(default_factory=dict)

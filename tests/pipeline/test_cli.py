@@ -348,7 +348,7 @@ def test_graph_of_the_method_and_of_a_sequence(kinetree, walked, form):
 def test_graph_groups_mapped_nodes(kinetree, walked):
     assert "mesh ×3: 3 fresh" in kinetree("graph", walked)[1]
     drawn = told(kinetree("graph", walked, "--json")[1])
-    assert {"from": "source", "to": "mesh", "argument": "source", "form": "one"} in drawn["edges"]
+    assert {"from": "source", "to": "mesh", "argument": "source", "form": "one", "previous": False} in drawn["edges"]
     assert next(n for n in drawn["nodes"] if n["name"] == "mesh")["states"] == {"fresh": 3}
 
 
@@ -397,9 +397,9 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert "mesh.component_share = 0.05" in printed
     rows = told(kinetree("tasks", "--json")[1])
     mesh = next(r for r in rows if r["task"] == "mesh")
-    assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "paper", "summary"}
+    assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "along", "paper", "summary"}
     assert mesh["params"]["component_share"]["default"] == 0.05
-    assert mesh["reads"] == [{"argument": "source", "artifact": "Source", "form": "one"}]
+    assert mesh["reads"] == [{"argument": "source", "artifact": "Source", "form": "one", "previous": False}]
 
 
 def test_config_is_printed_in_full_and_read_back(kinetree, walked, tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.task import origin, task
+from kinetree.pipeline.task import Previous, origin, task
 from kinetree.schemas.array import Artifact, Params
 from kinetree.tasks import METHODS
 
@@ -72,6 +72,39 @@ def fruit(leaf: tuple[Leaf, ...], branches: Branches) -> Fruit:
 def harvest(fruit: tuple[Fruit, ...]) -> Harvest:
     """Gathers."""
     return Harvest()
+
+
+class Years(Artifact):
+    """Opens years, each with all days, and orders them."""
+
+    opens: ClassVar[tuple[str, ...]] = ("year", "year/day")
+    orders: ClassVar[str] = "year"
+
+
+class Season(Artifact):
+    """One a year."""
+
+
+class Sapling(Artifact):
+    """One a day of a year."""
+
+
+@task()
+def year(seed: Mapping[int, Seed]) -> Years:
+    """Counts."""
+    return Years()
+
+
+@task(over="year", along=Years)
+def season(sapling: Previous[tuple[Sapling, ...]]) -> Season:
+    """Knows the saplings of last year."""
+    return Season()
+
+
+@task(over="year/day", along=Years)
+def sapling(seed: Seed, season: Season, before: "Sapling | None") -> Sapling:
+    """Grows in its season."""
+    return Sapling()
 
 
 ALL = (harvest, fruit, branches, leaf, seed)
@@ -154,6 +187,61 @@ def test_cycle_is_refused_naming_every_place():
     assert f"egg ({egg.where})" in told
     assert f"hen ({hen.where})" in told
     assert told.count("→") == 2
+
+
+def test_ring_that_goes_through_the_previous_member_is_no_cycle():
+    graph = Graph.of((season, sapling, year, seed))
+    assert names(graph) == ["seed", "year", "season", "sapling"]
+    assert graph.before(season) == (year,)
+    assert graph.behind(season) == (sapling,)
+    assert graph.reads(season) == (year, sapling)
+    assert names(graph.until(["season"])) == ["seed", "year", "season", "sapling"]
+
+
+def test_ring_that_the_previous_member_does_not_cut_is_refused():
+    @task(over="year", along=Years)
+    def season(sapling: tuple[Sapling, ...], before: "Season | None") -> Season:
+        """Waits for the saplings of its own year."""
+        return Season()
+
+    told = refusal(CycleError, seed, year, season, sapling)
+    assert told.startswith("tasks wait for each other: ")
+    assert f"season ({season.where})" in told
+    assert f"sapling ({sapling.where})" in told
+
+
+def test_previous_of_what_has_no_such_dimension_is_refused():
+    @task(over="year/day", along=Years)
+    def sapling(seed: Seed | None) -> Sapling:
+        """There is one seed a day, whatever the year."""
+        return Sapling()
+
+    assert refusal(GraphError, seed, year, sapling) == (
+        f"sapling ({sapling.where}): argument seed is read at the previous year, but seed ({seed.where}) writes Seed per day"
+    )
+
+    @task(over="year/day", along=Years)
+    def shoot(years: Years | None) -> Sapling:
+        """There is one list of years."""
+        return Sapling()
+
+    assert refusal(GraphError, seed, year, shoot).endswith(f"but year ({year.where}) writes Years once")
+
+
+def test_traversal_that_is_ordered_at_a_finer_index_is_refused():
+    @task(over="day")
+    def order(seed: Seed) -> Order:
+        """One a day."""
+        return Order()
+
+    @task(over="year", along=Order)
+    def season(before: "Season | None") -> Season:
+        """Which day's?"""
+        return Season()
+
+    assert refusal(GraphError, seed, year, order, season) == (
+        f"season ({season.where}) goes along Order, but order ({order.where}) writes one per day"
+    )
 
 
 @pytest.mark.parametrize("form", [Harvest, tuple[Harvest, ...], Mapping[int, Harvest]], ids=str)
@@ -286,7 +374,7 @@ def test_graph_as_networkx_has_typed_nodes_and_edges():
     assert drawn.nodes["leaf"] == {
         "over": "day", "artifact": "Leaf", "params": None, "paper": "2014, Sec. 2", "summary": "Grows.",
     }  # fmt: skip
-    assert drawn.edges["leaf", "fruit"] == {"argument": "leaf", "form": "tuple"}
+    assert drawn.edges["leaf", "fruit"] == {"argument": "leaf", "form": "tuple", "previous": False}
     assert drawn.edges["seed", "leaf"]["form"] == "one"
 
 

@@ -213,6 +213,10 @@ def test_everything_that_decides_a_result_is_in_a_nodes_key():
         node_key("a", "c", {"p": 1}, [["x", "mapping", ["d"], [1]]]),
         node_key("a", "c", {"p": 1}, [["x", "mapping", ["d"], [2]]]),
         node_key("a", "c", {"p": 1}, []),
+        node_key("a", "c", {"p": 1}, [], [1]),
+        node_key("a", "c", {"p": 1}, [], [1, 2]),
+        node_key("a", "c", {"p": 1}, [["index", 1]]),
+        node_key("a", "c", {"p": 1}, [], []),
     ]
     assert len(set(keys)) == len(keys)
 

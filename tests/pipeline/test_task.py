@@ -1,14 +1,14 @@
 """Laws of a declaration: every form a signature may have, and every refusal at import in words that name the place."""
 
 from collections.abc import Mapping
-from typing import Annotated, Optional
+from typing import Annotated, ClassVar, Optional
 
 import pytest
 
 from kinetree.errors import GraphError
 from kinetree.pipeline.files import Files
-from kinetree.pipeline.task import Argument, load, origin, space, task
-from kinetree.schemas.array import Artifact, Params
+from kinetree.pipeline.task import Argument, Previous, load, origin, space, task
+from kinetree.schemas.array import Artifact, Index, Params
 
 
 class Stone(Artifact):
@@ -27,6 +27,12 @@ class House(Artifact):
 
 class Row(Artifact):
     """An order of houses."""
+
+
+class Streets(Artifact):
+    """An order of streets."""
+
+    orders: ClassVar[str] = "street"
 
 
 class HouseParams(Params):
@@ -83,7 +89,40 @@ def test_own_artifact_at_the_previous_member(form):
         return before or House(weight=1)
 
     grown.__annotations__["before"] = form
-    assert task(over="house", along=Row)(grown).arguments == (Argument("before", House, "previous"),)
+    assert task(over="house", along=Row)(grown).arguments == (Argument("before", House, "one", previous=True),)
+
+
+def test_what_others_made_at_the_previous_member():
+    def grown(one: Stone | None, some: Previous[tuple[Stone, ...]], many: Previous[Mapping[int, Stone]]) -> House:
+        return build(one, *some, *many.values())
+
+    made = task(over="street/house", along=Row)(grown)
+    assert made.arguments == (
+        Argument("one", Stone, "one", previous=True),
+        Argument("some", Stone, "tuple", previous=True),
+        Argument("many", Stone, "mapping", previous=True),
+    )
+    assert made(None, (), {}) == House(weight=1)
+
+
+def test_traversal_goes_over_the_last_dimension_or_the_one_that_its_artifact_orders():
+    def grown(before: House | None) -> House:
+        return before or build()
+
+    assert task(over="street/house", along=Row)(grown).traversed == "house"
+    assert task(over="street/house", along=Streets)(grown).traversed == "street"
+    assert house.traversed == ""
+
+
+def test_index_is_told_to_a_task_that_asks_for_it():
+    @task(over="street/house")
+    def numbered(one: Stone, index: Index) -> House:
+        return House(weight=one.weight * index[1])
+
+    assert numbered.asks_index
+    assert not house.asks_index
+    assert numbered.arguments == (Argument("one", Stone, "one"),)
+    assert numbered(Stone(weight=2), (1, 3)).weight == 6
 
 
 def test_annotations_in_quotes_are_read():
@@ -113,14 +152,16 @@ def refusal(function, **declared):
 
 
 FORMS = (
-    "argument x must be an Artifact, tuple[Artifact, ...], Mapping[int, Artifact] or, for the task's own artifact, House | None"
+    "argument x must be an Artifact, tuple[Artifact, ...] or Mapping[int, Artifact], or, at the previous member of a traversal,"
+    " House | None, Previous[tuple[Artifact, ...]] or Previous[Mapping[int, Artifact]]"
 )
 
 
 @pytest.mark.parametrize(
     "hint",
     [int, "str", None, list[Stone], tuple[Stone], tuple[Stone, Stone], tuple[int, ...], dict[int, Stone], Mapping[str, Stone],
-     Mapping, Stone | None, Stone | House, HouseParams, Artifact | int, type[Stone], Annotated[int, "x"], 3],
+     Mapping, Stone | int | None, int | None, Stone | House, HouseParams, Artifact | int, type[Stone], Annotated[int, "x"],
+     Annotated[tuple[Stone, ...], "x"], Previous[Stone], Previous[Stone | None], Previous[tuple[Stone]], Index, 3],
     ids=repr,
 )  # fmt: skip
 def test_argument_that_is_no_edge_is_refused(hint):
@@ -165,9 +206,36 @@ def test_previous_without_a_traversal_and_a_traversal_without_previous_are_refus
     def alone(one: Stone) -> House:
         return build(one)
 
-    told = "a task reads its own previous artifact exactly if it says along which traversal"
+    def gathered(before: Previous[tuple[House, ...]]) -> House:
+        return build(*before)
+
+    told = "a task reads at the previous member exactly if it says along which traversal"
     assert refusal(grown, over="house") == told
+    assert refusal(gathered, over="house") == told
     assert refusal(alone, over="house", along=Row) == told
+
+
+def test_traversal_of_a_dimension_that_the_task_lacks_is_refused():
+    def grown(before: House | None) -> House:
+        return before or build()
+
+    assert refusal(grown, along=Row) == "goes along Row, but runs once; say over what it runs"
+    assert refusal(grown, over="house", along=Streets) == "goes along Streets, which orders street, but runs over house"
+
+
+def test_index_where_there_is_none_or_of_a_wrong_type_is_refused():
+    def once(index: Index) -> House:
+        return build()
+
+    def worded(index: str) -> House:
+        return build()
+
+    def bare(index) -> House:
+        return build()
+
+    assert refusal(once) == "asks for its index, but runs once and has none; say over what it runs"
+    assert refusal(worded, over="house") == "index must be annotated with Index, got <class 'str'>"
+    assert refusal(bare, over="house") == "index must be annotated with Index, got None"
 
 
 def test_arguments_that_cannot_be_given_by_name_are_refused():
@@ -194,7 +262,11 @@ def test_origin_that_reads_artifacts_or_lacks_an_argument_is_refused():
     def blind(files: Files) -> Stone:
         return Stone()
 
+    def asks(params: HouseParams, files: Files, index: Index) -> Stone:
+        return Stone()
+
     assert refusal(reads, as_origin=True) == "an origin takes params and files alone, got one"
+    assert refusal(asks, as_origin=True) == "an origin takes params and files alone, got index"
     for function in (deaf, blind):
         assert refusal(function, as_origin=True) == "an origin takes both params and files, one of them is missing"
 
@@ -208,5 +280,5 @@ def test_space_is_a_path_of_dimensions():
 def test_worker_finds_a_task_by_its_name():
     found = load("kinetree.tasks.input.mesh:mesh")
     assert (found.name, found.module) == ("mesh", "kinetree.tasks.input.mesh")
-    with pytest.raises(GraphError, match=r"^kinetree\.tasks\.mesh:clean is not a task$"):
+    with pytest.raises(GraphError, match=r"^kinetree\.tasks\.input\.mesh:clean is not a task$"):
         load("kinetree.tasks.input.mesh:clean")

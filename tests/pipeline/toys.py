@@ -1,8 +1,9 @@
 """A toy graph with every kind of edge the loom knows, on frames that are text files with one number each.
 
-`conftest.py` copies this file and `toy_sums.py` into a package with a name of its own, so that a test can edit it. Nothing
-here depends on time: a task that is to fail, wait or die is told so by a file in the folder named in TOYS_FLAGS, such as
-`fail-points-30` for the task `points` on the number 30. Every execution adds a line to the file named in TOYS_LOG.
+`conftest.py` copies this file, `toy_sums.py` and `toy_passes.py` into a package with a name of its own, so that a test can
+edit it. Nothing here depends on time: a task that is to fail, wait or die is told so by a file in the folder named in
+TOYS_FLAGS, such as `fail-points-30` for the task `points` on the number 30. Every execution adds a line to the file named in
+TOYS_LOG.
 """
 
 import os
