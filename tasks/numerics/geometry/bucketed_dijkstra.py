@@ -1,14 +1,12 @@
 """A front that runs over the links of a surface in bands: Dijkstra's order without a heap (2014, Eq. 1: g)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Indices
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import ANYWHERE, BITS, Links
 from kinetree.tasks.numerics.geometry.surface import Surface
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.uint32]
 Topology = Links
 Room = tuple[Floats, Indices, Indices, Indices]
 

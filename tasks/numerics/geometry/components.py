@@ -1,16 +1,13 @@
 """The largest connected piece of a surface: distances run over one piece only."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Longs = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 
 
-def largest_component(V: Floats, F: Ints) -> tuple[Longs, Longs, float]:
+def largest_component(V: Floats, F: Faces) -> tuple[Ints, Ints, float]:
     """The vertices and faces of the piece with the greatest area; pieces are what shared vertices connect.
 
     V, F    : (vertex, xyz) mesh unit · (face, corner)

@@ -1,14 +1,11 @@
 """Nodes spread over a surface at a spacing that varies, and the nearest nodes of every vertex, by geodesic distance."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.bucketed_dijkstra import Topology, propagate, topology, workspace
 from kinetree.tasks.numerics.geometry.surface import Surface
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 _REACH = 5.0  # largest gaps between nodes, or edges of the mesh: a vertex's nine nearest nodes lie within
 
@@ -78,9 +75,7 @@ def _largest_gap(mesh: Topology, rank: Ints, order: Ints, edge: float, node: Int
 
 
 @compiled
-def _nearest(
-    mesh: Topology, rank: Ints, order: Ints, edge: float, node: Ints, reach: float, count: int
-) -> tuple[Ints, Floats]:
+def _nearest(mesh: Topology, rank: Ints, order: Ints, edge: float, node: Ints, reach: float, count: int) -> tuple[Ints, Floats]:
     nearest = np.full((len(order), count), -1, np.int64)
     distance = np.full((len(order), count), np.inf)
     room = workspace(len(order), len(mesh[1]))

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_array
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Floats
 
 
 def smoothed_normals(V: Floats, F: npt.NDArray[np.integer[Any]], rounds: int = 2) -> Floats:

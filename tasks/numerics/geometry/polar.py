@@ -1,11 +1,9 @@
 """The rotation nearest to a 3 × 3 matrix, without a singular value decomposition (for ARAP: Sorkine, Alexa 2007, Eq. 6)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
 
 _STEPS = 60  # Newton's from above: 5 to 10 are usual, more only where two eigenvalues meet
 _EXACT = 1e-15

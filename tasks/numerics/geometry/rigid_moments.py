@@ -5,12 +5,9 @@ patches together, costs the same however many vertices they have.
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 MOMENTS = 17
 """Numbers a set and frame: mass, Σ q, Σ x, Σ (|q|² + |x|²), Σ q xᵀ by rows."""

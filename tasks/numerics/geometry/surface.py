@@ -6,14 +6,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Indices, Ints, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import Links, linked
 from kinetree.tasks.numerics.geometry.visibility import BLIND, NONE
-
-Floats = npt.NDArray[np.float64]
-Lengths = npt.NDArray[np.float32]
-Ints = npt.NDArray[np.int64]
-Indices = npt.NDArray[np.uint32]
 
 
 @dataclass(frozen=True)
@@ -32,7 +28,6 @@ class Surface:
     twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
                   where a one-sided surface closes: faces are turned to agree wherever they can
     length      : (half-edge,) mesh unit
-    bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or not one closed ring of faces
     links       : the straight lines from vertex to vertex along which distance spreads
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
     centre      : (xyz,) the surface's centre of area, mesh unit
@@ -48,7 +43,6 @@ class Surface:
     apex: Indices
     twin: Indices
     length: Lengths
-    bends: npt.NDArray[np.uint8]
     links: Links
     area: Floats
     centre: Floats
@@ -101,7 +95,6 @@ class Surface:
             apex=rings[3],
             twin=rings[4],
             length=rings[5],
-            bends=free | (np.bincount(tail, angle, len(P)) > 2 * np.pi),
             links=Links(*linked(rings, angle, free), np.stack([tail[edges], head[edges]], axis=1).astype(np.uint32), along),
             area=area,
             centre=(area[:, None] * V).sum(axis=0) / max(area.sum(), np.finfo(float).tiny),
@@ -147,7 +140,7 @@ def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
 
 
 @compiled
-def _turned(partner: Ints, tail: Ints) -> npt.NDArray[np.bool_]:
+def _turned(partner: Ints, tail: Ints) -> Flags:
     """(face,) which to turn, so that faces agree with the first of their component, at most one of each two neighbours."""
     turned = np.zeros(len(tail) // 3, np.bool_)
     known, waiting = np.zeros(len(turned), np.bool_), np.empty(len(turned), np.int64)

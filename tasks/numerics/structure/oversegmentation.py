@@ -38,7 +38,7 @@ def cone_runs(
     label = np.full(len(V), -1, np.int64)
     if not len(leaves):
         return label
-    away = geodesic_distance(surface, leaves, exact=0.0)
+    away = geodesic_distance(surface, leaves)
     C = cones(away, surface.area, leaves, start, ring, count)
     nearest = _whose(away, C)
     total = 0

@@ -85,7 +85,7 @@ def traced_cones(
     if not len(rows):
         return found
     surface, at = Surface.of(V[kept], body), number[tips[rows]]
-    distance = geodesic_distance(surface, at, exact=0.0)
+    distance = geodesic_distance(surface, at)
     found.ring[np.ix_(rows, kept)] = cones(distance, surface.area, at, *rings(body, len(kept)), count)
     size = float(np.sqrt(surface.area.sum()))
     q = (V[kept] - surface.centre) / size

@@ -21,7 +21,7 @@ def test_no_two_nodes_are_nearer_than_the_largest_gap_they_leave():
     V, F = tube(around=32, along=64)
     surface = Surface.of(V, F)
     node = covering(surface, np.ones(len(V)), 40)
-    distance = geodesic_distance(surface, node, exact=0.0)
+    distance = geodesic_distance(surface, node)
     between = distance[:, node] + np.diag(np.full(40, np.inf))
     assert between.min() > 0.95 * distance.min(axis=0).max()
 
@@ -40,7 +40,7 @@ def test_the_nearest_nodes_are_those_of_all_distances():
     surface = Surface.of(V, F)
     node = covering(surface, np.ones(len(V)), 60)
     nearest, distance = nearest_nodes(surface, node, 5)
-    every = geodesic_distance(surface, node, exact=0.0)
+    every = geodesic_distance(surface, node)
     np.testing.assert_allclose(distance, np.sort(every, axis=0)[:5].T, atol=1e-9)
     np.testing.assert_allclose(np.take_along_axis(every, nearest.T, axis=0).T, distance, atol=1e-9)
 

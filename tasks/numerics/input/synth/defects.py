@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 # Share of the noise's variance that varies smoothly over the surface, as errors of silhouettes and stereo do.
 _SMOOTH_SHARE = 0.4
