@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.geometry.covering import covering
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.leaf_cones import cones
 from kinetree.tasks.numerics.structure.optimal_runs import runs

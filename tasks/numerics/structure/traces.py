@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, moments, residual
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, moments, residual
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.leaf_cones import cones

@@ -5,7 +5,7 @@ import pytest
 from articulated import chain, swings, three_arms
 from limbs import rotation
 
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.optimal_runs import runs
 from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
