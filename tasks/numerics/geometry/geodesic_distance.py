@@ -11,7 +11,8 @@ import numpy.typing as npt
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.bucketed_dijkstra import Topology, propagate, topology, workspace
+from kinetree.tasks.numerics.geometry.bucketed_dijkstra import propagate, workspace
+from kinetree.tasks.numerics.geometry.geodesic_graph import Links
 from kinetree.tasks.numerics.geometry.surface import Surface
 
 
@@ -24,7 +25,7 @@ def geodesic_distance(surface: Surface, source: npt.ArrayLike, radius: float = n
     returns : (source, vertex) mesh unit; infinite in other components, in vertices without a face, beyond `radius`
     raises  : MeshError if there is no source, or one is not a vertex of the mesh
     """
-    return _fields(topology(surface), checked_sources(surface, source), surface.order, surface.edge, radius)
+    return _fields(surface.links, checked_sources(surface, source), surface.order, surface.edge, radius)
 
 
 def checked_sources(surface: Surface, source: npt.ArrayLike) -> Ints:
@@ -52,7 +53,7 @@ def checked_sources(surface: Surface, source: npt.ArrayLike) -> Ints:
 
 
 @compiled
-def _fields(mesh: Topology, source: Ints, order: Ints, edge: float, radius: float) -> Floats:
+def _fields(mesh: Links, source: Ints, order: Ints, edge: float, radius: float) -> Floats:
     """Distances (source, vertex) in the input's numbering from sources in the surface's own, in one compiled call."""
     vertices = len(order)
     out = np.empty((len(source), vertices))

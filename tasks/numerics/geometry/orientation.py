@@ -4,6 +4,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.normals import area_vectors
 
 _FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
 _PRESSED = 1e-9  # the same for a closed patch
@@ -58,19 +59,6 @@ def half_edges(F: Faces) -> Faces:
 def _numbered(root: Ints) -> Ints:
     """Labels 0, 1, … instead of roots, in the order of the roots."""
     return (np.cumsum(root == np.arange(len(root))) - 1)[root]
-
-
-@compiled
-def area_vectors(X: Floats, F: Faces) -> Floats:
-    """(face, xyz) normals as long as the faces' areas."""
-    N = np.empty((len(F), 3))
-    for f in range(len(F)):
-        a, b, c = F[f]
-        for x in range(3):
-            y, z = (x + 1) % 3, (x + 2) % 3
-            N[f, x] = (X[b, y] - X[a, y]) * (X[c, z] - X[a, z]) - (X[b, z] - X[a, z]) * (X[c, y] - X[a, y])
-            N[f, x] *= 0.5
-    return N
 
 
 @compiled

@@ -39,13 +39,14 @@ def rigid_motion(Q: Floats, X: Floats, weight: Floats | None = None) -> tuple[Fl
     returns : R (…, 3, 3) · t (…, xyz) mesh unit, so that X ≈ Q Rᵀ + t
     """
     if weight is None:
-        share = np.full(Q.shape[:-1], 1.0 / Q.shape[-2])
+        q, x = Q.mean(axis=-2), X.mean(axis=-2)
+        H = (X - x[..., None, :]).swapaxes(-1, -2) @ (Q - q[..., None, :])
     else:
-        share = weight / weight.sum(axis=-1, keepdims=True)
-    q, x = (share[..., None, :] @ Y for Y in (Q, X))
-    H = (share[..., None] * (X - x)).swapaxes(-1, -2) @ (Q - q)
+        share = weight[..., None] / weight.sum(axis=-1)[..., None, None]
+        q, x = (share * Q).sum(axis=-2), (share * X).sum(axis=-2)
+        H = (share * (X - x[..., None, :])).swapaxes(-1, -2) @ (Q - q[..., None, :])
     R = nearest_rotation(H)
-    return R, (x - q @ R.swapaxes(-1, -2))[..., 0, :]
+    return R, x - (R @ q[..., None])[..., 0]
 
 
 @compiled

@@ -9,6 +9,8 @@ import numpy.typing as npt
 from kinetree.tasks.numerics.arrays import Flags, Floats, Indices, Ints, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import Links, linked
+from kinetree.tasks.numerics.geometry.morton_curve import morton_order
+from kinetree.tasks.numerics.geometry.normals import vertex_areas
 from kinetree.tasks.numerics.geometry.visibility import BLIND, NONE
 
 
@@ -56,7 +58,7 @@ class Surface:
         V : (vertex, xyz) finite, mesh unit
         F : (face, corner) three different vertices each; vertices in no face are allowed and reached by nothing
         """
-        order = _along_a_curve(V)
+        order = morton_order(V)
         rank = np.empty_like(order)
         rank[order] = np.arange(len(order))
         corners: Ints = rank[F].reshape(-1, 3)
@@ -70,9 +72,8 @@ class Surface:
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
         inside = kind > 0
-        doubled_area = np.linalg.norm(np.cross(P[head[::3]] - P[tail[::3]], P[apex[::3]] - P[tail[::3]]), axis=1)
         area = np.zeros(len(P))
-        area[order] = np.bincount(tail, np.repeat(doubled_area / 6, 3), len(P))
+        area[order] = vertex_areas(P, corners)
         free = np.zeros(len(P), np.uint8)
         free[tail[twin >= BLIND]] = free[head[twin >= BLIND]] = 1
         free[np.bincount(np.repeat(np.arange(len(P)), np.diff(ring_start)), ~inside, len(P)) > 1] = 1
@@ -105,16 +106,6 @@ class Surface:
 
 def _before(edge: Ints) -> Ints:
     return np.where(edge % 3 == 0, edge + 2, edge - 1)
-
-
-def _along_a_curve(V: Floats) -> Ints:
-    """Vertices sorted along a Morton curve of 1,024 cells a side."""
-    low = V.min(axis=0) if len(V) else np.zeros(3)
-    extent = max(float(np.ptp(V)), np.finfo(float).tiny) if len(V) else 1.0
-    cell = np.minimum((V - low) / extent * 1024, 1023).astype(np.int64)
-    for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
-        cell = (cell | cell << shift) & mask
-    return np.argsort(cell @ np.array([1, 2, 4]), kind="stable")
 
 
 def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:

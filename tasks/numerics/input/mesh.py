@@ -14,7 +14,8 @@ from scipy.spatial import cKDTree
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints, Labels
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.orientation import area_vectors, half_edges, lexicographic, oriented, winding
+from kinetree.tasks.numerics.geometry.normals import area_vectors, face_areas
+from kinetree.tasks.numerics.geometry.orientation import half_edges, lexicographic, oriented, winding
 
 _NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
 _INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
@@ -103,7 +104,7 @@ def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 
     first = welded(X, merge)
     G = first[F]
     whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
-    area = np.linalg.norm(area_vectors(X, G[whole]), axis=1)
+    area = face_areas(X, G[whole])
     distinct, folded = _distinct(G[whole], area, component_share, len(V))
     origin, area = whole[distinct], area[distinct]
     G = G[origin]

@@ -110,12 +110,6 @@ def _cut(M: Floats, count: int, cut: float) -> tuple[Ints, Floats]:
     return run, np.asarray(np.where(known, error, np.nan), np.float64)
 
 
-def vertex_areas(V: Floats, F: npt.NDArray[np.integer[Any]]) -> Floats:
-    """(vertex,) a third of the faces around, mesh unit²."""
-    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    return np.asarray(np.bincount(F.ravel(), np.repeat(np.linalg.norm(n, axis=1) / 6, 3), len(V)), np.float64)
-
-
 def most(ring: Ints, label: Ints, area: Floats, count: int) -> Ints:
     """(cone, ring) the label that most of a ring's area has, −1 where a ring is empty.
 
