@@ -17,6 +17,7 @@ import networkx as nx
 
 from kinetree.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline import config as configuration
+from kinetree.pipeline import views
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
 from kinetree.pipeline.events import Account, Listener, Watch
@@ -192,7 +193,7 @@ class Pipeline:
         """What the results that stand for the whole sequence have to say, as (node, sentence)."""
         schedule = self.schedule()
         whole = [e for e in schedule.entries.values() if not e.task.over and e.artifact is not None and not e.task.is_origin]
-        return [(e.label, text) for e in whole for text in schedule.value(e.node).remarks()]
+        return [(e.label, text) for e in whole for text in views.remarks(schedule.value(e.node))]
 
     def runs(self) -> RunsTold:
         """Every run on record in this store, oldest first."""

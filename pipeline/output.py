@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
+from kinetree.pipeline import views
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.place import Folder
@@ -50,20 +51,22 @@ def write_results(folder: Path, schedule: Schedule) -> list[str]:
 def write_pages(folder: Path, schedule: Schedule, run: Mapping[str, Any]) -> None:
     """Leaves the files that also tell of the run itself; raises as `write_results`."""
     for entry in schedule.entries.values():
-        if entry.state in DONE and entry.task.returns.page_as:
+        name = views.page_name(entry.task.returns)
+        if entry.state in DONE and name:
             with _damage_discarded(schedule, entry):
-                data = schedule.value(entry.node).page(run)
-            Folder(folder, "output folder", beside="").put(entry.task.returns.page_as, data)
+                data = views.page(schedule.value(entry.node), run)
+            Folder(folder, "output folder", beside="").put(name, data)
 
 
 def pages(schedule: Schedule) -> list[str]:
     """The names of the files that `write_pages` leaves."""
-    return [e.task.returns.page_as for e in schedule.entries.values() if e.state in DONE and e.task.returns.page_as]
+    done = [views.page_name(e.task.returns) for e in schedule.entries.values() if e.state in DONE]
+    return [name for name in done if name]
 
 
 def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
     """Leaves the files and the group of one node that is done; see `write_results`."""
-    place, name = Folder(folder, "output folder", beside=""), entry.task.returns.left_as
+    place, name = Folder(folder, "output folder", beside=""), views.group_name(entry.task.returns)
     files = _files(schedule, entry)
     for path, data in files.items():
         if place.size(path) != len(data) or place.get(path) != data:
@@ -83,7 +86,7 @@ def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
     done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
-    if any(e.task.returns.left_as for e in done):
+    if any(views.group_name(e.task.returns) for e in done):
         _refuse_input([path], schedule)
         _put_group(beside, path.name, schedule, done[0])
         return [path]
@@ -100,12 +103,12 @@ def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
 
 def leaves(cls: type[Artifact]) -> bool:
     """Whether artifacts of this class leave anything in an output folder."""
-    return bool(cls.left_as) or cls.files is not Artifact.files
+    return bool(views.group_name(cls)) or views.leaves_files(cls)
 
 
 def _files(schedule: Schedule, entry: Entry) -> Mapping[str, bytes]:
     with _damage_discarded(schedule, entry):
-        return schedule.value(entry.node).files(entry.node.at)
+        return views.files(schedule.value(entry.node), entry.node.at)
 
 
 def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinetree.pipeline import views
 from kinetree.pipeline.inspect import Pipeline, found
 from kinetree.pipeline.plan import Plan
 from kinetree.pipeline.store import Record
@@ -26,7 +27,7 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
     return {
         **told,
         "artifact": entry.artifact,
-        "told": list(artifact.told()),
+        "told": list(views.text(artifact)),
         "values": artifact.plain(),
         "arrays": {name: statistics(array) for name, array in artifact.arrays().items()},
         "made": _provenance(entry.record) if entry.record else None,

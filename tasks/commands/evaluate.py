@@ -15,6 +15,7 @@ from kinetree.pipeline.printable import printable
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.tasks.results.plots.drawing import FORMATS, written
 from kinetree.tasks.results.plots.evaluation import drawn
+from kinetree.tasks.views.results import evaluation_files, evaluation_remarks
 
 EXAMPLES = (
     "Examples: kinetree evaluate walk-out walk/truth.json · kinetree evaluate walk-out dance.bvh --set truth.unit=cm"
@@ -54,7 +55,7 @@ def evaluate(
     if plot is not None:
         written(drawn(told), plot)
     if as_json:
-        print_json(json.loads(told.files(())["evaluation.json"]))
+        print_json(json.loads(evaluation_files(told, ())["evaluation.json"]))
         return
     _print(told)
     if plot is not None:
@@ -88,7 +89,7 @@ def _print(told: Evaluation) -> None:
         if row.scored or row.kind == "tip" or row.found is not None:
             table.add_row(*(escape(printable(cell)) for cell in _cells(row)))
     out.print(table)
-    for line in told.remarks():
+    for line in evaluation_remarks(told):
         out.print(printable(line), markup=False)
     if told.spurious:
         out.print(printable(f"spurious: {', '.join(told.spurious)}"), markup=False)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from kinetree.errors import ConfigError
+from kinetree.pipeline import views
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
 from kinetree.pipeline.output import write_elsewhere, write_result
@@ -79,7 +80,7 @@ def _written(pipeline: Pipeline, task: str, output: Path | None) -> tuple[list[P
     """Where the files are, and what there is to say of them."""
     schedule = pipeline.computed(task)
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
-    remarks = list(dict.fromkeys(text for entry in done for text in schedule.value(entry.node).remarks()))
+    remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
     if output is not None:
         return write_elsewhere(output, schedule, task), remarks
     folder = pipeline.config.output

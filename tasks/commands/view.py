@@ -10,6 +10,7 @@ import typer
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.views import page_name
 from kinetree.schemas.results.report import Report
 
 EXAMPLES = "Examples: kinetree view walk-out · kinetree view walk-out --print"
@@ -25,7 +26,7 @@ def view(
     only_print: Annotated[bool, typer.Option("--print", help="Print the path and open nothing.")] = False,
 ) -> None:
     """Open the report of a run in a browser, or print its path where there is none."""
-    path = Pipeline.of(run).config.output / Report.page_as
+    path = Pipeline.of(run).config.output / page_name(Report)
     if not path.is_file():
         raise ConfigError(f"{path} is not there: the run has not come as far as its report; kinetree run {run}")
     if only_print or not _screen() or not _opened(path):
