@@ -6,6 +6,7 @@ import json
 import os
 import secrets
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -77,6 +78,7 @@ class Toys:
     output: Path
     main: str = "toys"
     """The module of the package that has the graph."""
+    started: "list[subprocess.Popen[str]]" = field(default_factory=list)
 
     @property
     def module(self) -> ModuleType:
@@ -148,12 +150,29 @@ class Toys:
         path.write_text(json.dumps(self.config(**blocks)))
         return path
 
-    def start(self, *arguments: str, **options: Any) -> "subprocess.Popen[str]":
-        """The command kinetree on the toy graph, in a process of its own, in a group of its own."""
+    def start(self, *arguments: str, deaf: bool = False, **options: Any) -> "subprocess.Popen[str]":
+        """The command kinetree on the toy graph, in a process of its own, in a group of its own.
+
+        deaf : it ignores SIGINT from its start, as what nohup or a shell's background starts; else it does not, even where
+               this very test run was started so: what a process handles is at its default in the program it executes
+        """
         command = [sys.executable, "-m", self.name, *arguments]
-        return subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, **options
-        )
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN if deaf else signal.default_int_handler)
+        try:
+            process = subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, **options
+            )
+        finally:
+            signal.signal(signal.SIGINT, before)
+        self.started.append(process)
+        return process
+
+    def end(self) -> None:
+        """Ends what a failing test left running, with every process it started itself."""
+        for process in self.started:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate()
 
     def command(self, *arguments: str) -> "subprocess.CompletedProcess[str]":
         """The command kinetree on the toy graph, to its end."""
@@ -196,5 +215,6 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     monkeypatch.setenv("TOYS_FLAGS", str(found.flags))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     yield found
+    found.end()
     with contextlib.suppress(ImportError):
         found.forget()
