@@ -1,19 +1,30 @@
 """Who may import whom, and that every operation has one stem behind every door."""
 
 import ast
+import re
 import sys
 from pathlib import Path
 
 import networkx as nx
 import pytest
 
+from kinetree.tasks import METHODS
+
 ROOT = Path(__file__).resolve().parent.parent
 FILES = [*ROOT.glob("pipeline/*.py"), *ROOT.glob("schemas/*.py"), *ROOT.glob("tasks/**/*.py")]
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
-OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name != "__init__.py"]
-ASKING = ("inspect.py", "cli.py")
-"""The two that ask for the product's own tasks and commands, inside a function, when they are called."""
+TABLES = ("__init__.py", "methods.py", "application.py")
+"""Files of the tasks that hold no operation: what there is and how it is offered."""
+OPERATIONS = [p for p in ROOT.glob("tasks/*.py") if p.name not in TABLES]
+PRODUCT = re.compile(
+    r"\b(mesh|meshes|skeletons?|joints?|bones?|body|bodies|limbs?|scans?|vertex|vertices|geodesics?|kinematic|silhouettes?"
+    r"|kinetree\.(tasks|configs|schemas\.(?!array|dims))|\.(ply|obj|off|stl|gltf|glb|bvh|npz))\b",
+    re.IGNORECASE,
+)
+"""Words that only the product says."""
+OURS = {"kinetree.tasks", "kinetree.schemas"}
+"""Packages that the loom names in one place: their definitions are what a code digest is made of (key.py)."""
 BORDER = "tasks/source.py"
 
 
@@ -70,20 +81,36 @@ def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path
 
 
 @pytest.mark.parametrize("path", list(ROOT.glob("pipeline/*.py")), ids=name)
-def test_the_loom_knows_no_task_and_no_mathematics(path: Path) -> None:
-    if path.name not in ASKING:
-        assert not {m for m in imports(path) if m.startswith("kinetree.tasks")}
+def test_the_loom_imports_no_product_and_no_mathematics(path: Path) -> None:
+    assert not {m for m in imports(path) if m.startswith(("kinetree.tasks", "kinetree.configs"))}
     assert not {m for m in imports(path) if m.startswith("kinetree.schemas.")} - {
         m for m in imports(path) if m.startswith(("kinetree.schemas.array", "kinetree.schemas.dims"))
     }
     assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"})
 
 
+def texts(path: Path) -> list[str]:
+    """Every string of the code, parts of f-strings too, without docstrings."""
+    tree = ast.parse(path.read_text())
+    bare = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    strings = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    return [str(node.value) for node in strings if node not in bare]
+
+
+@pytest.mark.parametrize("path", list(ROOT.glob("pipeline/*.py")), ids=name)
+def test_the_loom_says_no_word_of_the_product(path: Path) -> None:
+    operations = {task.name for graph in METHODS.values() for task in graph.tasks} | set(METHODS)
+    said = set(texts(path)) - (OURS if path.name == "key.py" else set())
+    assert not {text for text in said if PRODUCT.search(text)}
+    assert not said & operations
+    assert not {text for text in said if re.search(rf"\b({'|'.join(operations)})\.[a-z_]+=", text)}
+
+
 def test_no_module_imports_itself_in_a_ring() -> None:
     graph: nx.DiGraph[str] = nx.DiGraph()
     modules = {"kinetree." + name(p).removesuffix(".py").removesuffix("/__init__").replace("/", "."): p for p in FILES}
     for module, path in modules.items():
-        seen = {m for m in imports(path) if m in modules and not (path.name in ASKING and m.startswith("kinetree.tasks"))}
+        seen = {m for m in imports(path) if m in modules}
         packages = {m for m in seen if modules[m].name == "__init__.py"}
         graph.add_edges_from((module, m) for m in seen - packages)
     assert list(nx.simple_cycles(graph)) == []

@@ -23,12 +23,16 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.key import forget_code
 
 HERE = Path(__file__).parent
-MAIN = """from kinetree.pipeline import cli, inspect
-from .toys import GRAPH
-inspect._methods = lambda: {"mesoscopic": GRAPH}
+MAIN = """from kinetree.pipeline.application import Application, Section, built_in
+from kinetree.pipeline.cli import main
+COMMANDS = tuple(map(built_in, ("run", "plan", "show", "why", "graph", "tasks", "runs", "diff", "config", "gc")))
+def methods():
+    from .toys import GRAPH
+    return {"toy": GRAPH}
 if __name__ == "__main__":
-    cli.main()
+    main(Application("toy", "Adds numbers.", methods, sections=(Section("All", COMMANDS),)))
 """
+"""Another product on the loom: it has nothing of kinetree's."""
 
 
 @dataclass
@@ -119,7 +123,7 @@ class Toys:
 
     def pipeline(self, **blocks: Any) -> Pipeline:
         """The toy graph over the frames."""
-        return Pipeline.of(self.config(**blocks), methods={"mesoscopic": self.module.GRAPH})
+        return Pipeline.of(self.config(**blocks), methods={"toy": self.module.GRAPH})
 
     def run(self, client: Any = None, *, until: tuple[str, ...] = (), force: tuple[str, ...] = (), **blocks: Any) -> Run:
         """Runs in this process and keeps what was heard."""

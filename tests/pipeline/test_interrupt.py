@@ -43,7 +43,7 @@ def test_an_interrupted_run_says_so_and_the_next_goes_on(toys, tmp_path, blow, e
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
     toys.until(lambda: not living(process.pid), "no process is left behind")
-    assert err.strip() == "kinetree: interrupted; what is finished is kept, run again to go on"
+    assert err.strip() == "toy: interrupted; what is finished is kept, run again to go on"
     told = json.loads((toys.output / "run.json").read_text())
     assert told["status"] == "interrupted"
     assert told["tasks"]["points"]["ran"] == 6
@@ -73,5 +73,5 @@ def test_a_run_that_was_started_deaf_to_ctrl_c_stays_so_and_obeys_sigterm(toys, 
     os.kill(process.pid, signal.SIGTERM)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert err.strip() == "kinetree: interrupted; what is finished is kept, run again to go on"
+    assert err.strip() == "toy: interrupted; what is finished is kept, run again to go on"
     toys.until(lambda: not living(process.pid), "no process is left behind")
