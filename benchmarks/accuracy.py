@@ -33,15 +33,15 @@ from typing import Any
 import numpy as np
 import yaml
 
-from kinetree.pipeline.errors import KinetreeError
+from kinetree.errors import KinetreeError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.evaluation import Evaluation, EvaluationParams, Summary
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.source import Source
-from kinetree.schemas.truth import Truth, TruthParams
-from kinetree.tasks.evaluation import evaluation
-from kinetree.tasks.truth import synthetic, truth
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.results.evaluation import Evaluation, EvaluationParams, Summary
+from kinetree.schemas.results.truth import Truth, TruthParams
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.truth import synthetic, truth
 
 MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look")}
 HEADS = (

@@ -24,25 +24,25 @@ import numpy.typing as npt
 import trimesh
 from turning import Truth, twisted
 
-from kinetree.schemas.synth import ContactParams, SynthParams
-from kinetree.tasks.numerics.correlation import dimensionless
-from kinetree.tasks.numerics.correspondence import Target
-from kinetree.tasks.numerics.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.leaves import leaves, stems
-from kinetree.tasks.numerics.mesh import Cleaned, clean
-from kinetree.tasks.numerics.mu import farthest_bases, mu
-from kinetree.tasks.numerics.pieces import pieces
-from kinetree.tasks.numerics.projection import projected
-from kinetree.tasks.numerics.reference import profile, reference
-from kinetree.tasks.numerics.repair import Tracked, repaired, tracked
-from kinetree.tasks.numerics.stiffness import PASSES, freed, learned, loosened
-from kinetree.tasks.numerics.surface import Surface
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.numerics.template import Template, template
-from kinetree.tasks.numerics.tracking import follow
-from kinetree.tasks.numerics.trust import residuals, trusted
-from kinetree.tasks.synth import body as posed
-from kinetree.tasks.synth import recipe
+from kinetree.schemas.input.synth import ContactParams, SynthParams
+from kinetree.tasks.input.synth import body as posed
+from kinetree.tasks.input.synth import recipe
+from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.input.mesh import Cleaned, clean
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph, deformation_graph
+from kinetree.tasks.numerics.registration.frame_confidence import residuals, trusted
+from kinetree.tasks.numerics.registration.reference import profile, reference
+from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
+from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
+from kinetree.tasks.numerics.registration.tracking import Tracked, repaired, tracked
+from kinetree.tasks.numerics.topology.correlation import dimensionless
+from kinetree.tasks.numerics.topology.extrema import extrema, stems
+from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
+from kinetree.tasks.numerics.topology.leaves import follow
 
 Floats = npt.NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def chosen(meshes: list[Cleaned]) -> int:
         surface = Surface.of(mesh.V, mesh.F)
         bases = farthest_bases(surface, 60)
         integral = mu(bases.distance, bases.weight)
-        found = leaves(integral, mesh.F)
+        found = extrema(integral, mesh.F)
         poses.append(profile(integral, surface.area))
         own.append(stems(mesh.V, mesh.F, integral, surface.area, found))
         value.append(dimensionless(integral, surface.area)[found.vertex])
@@ -101,7 +101,7 @@ def chosen(meshes: list[Cleaned]) -> int:
     return reference(count, [m.euler for m in meshes], area, np.stack(poses), limbs).frame
 
 
-def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:
+def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tracked]:
     """Tracked outwards from the reference in both directions."""
     out = [Tracked(at_rest(body), 0.0, 0)] * len(targets)
     for step in (1, -1):
@@ -113,9 +113,9 @@ def chain(body: Template, targets: list[Target], start: int) -> list[Tracked]:
     return out
 
 
-def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[Template, list[int], list[Pose], Floats, float]:
+def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationGraph, list[int], list[Pose], Floats, float]:
     """All passes: the template, the frames kept, their poses, uncovered shares, and seconds a frame."""
-    body = template(meshes[start].V, meshes[start].F)
+    body = deformation_graph(meshes[start].V, meshes[start].F)
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
     begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]
@@ -130,13 +130,13 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[Template, li
         s = loosened(body, s, piece) if number == len(PASSES) - 1 else s
         poses = [fit(body, pose, targets[t], settings, s).pose for t, pose in zip(kept, poses, strict=True)]
         if not number:
-            piece = pieces(body, poses)
+            piece = rigid_clusters(body, poses)
             poses, limb = twisted(body, piece, poses, [targets[t] for t in kept], kept.index(start))
     seconds = first + (time.process_time() - begun) / len(kept)
     return body, kept, poses, np.array([found[t].uncovered for t in kept]), seconds
 
 
-def peer(meshes: list[Cleaned], body: Template, start: int, seconds: float) -> None:
+def peer(meshes: list[Cleaned], body: DeformationGraph, start: int, seconds: float) -> None:
     """One frame by trimesh's nricp_amberg, in the same run."""
     source = trimesh.Trimesh(body.V, body.F, process=False)
     mesh = meshes[start + 1]
@@ -147,7 +147,9 @@ def peer(meshes: list[Cleaned], body: Template, start: int, seconds: float) -> N
     print(f"    nricp_amberg: {spent:.1f} s for one frame, residual {error:.3f} %: {spent / seconds:.0f} times as long")
 
 
-def plotted(folder: Path, name: str, body: Template, shapes: list[Floats], meshes: list[Cleaned], kept: list[int]) -> None:
+def plotted(
+    folder: Path, name: str, body: DeformationGraph, shapes: list[Floats], meshes: list[Cleaned], kept: list[int]
+) -> None:
     """Aligned (red) over input (grey) for six frames, three views."""
     import matplotlib
 

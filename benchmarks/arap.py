@@ -26,21 +26,21 @@ import numpy.typing as npt
 from turning import Truth
 
 from kinetree.pipeline import Pipeline
-from kinetree.schemas.arap import Arap
-from kinetree.schemas.connectivity import Connectivity
-from kinetree.schemas.coordinates import Coordinates, CoordinatesParams
-from kinetree.schemas.geodesics import Geodesics
-from kinetree.schemas.intervals import Intervals
-from kinetree.schemas.leaves import Leaves
-from kinetree.schemas.matching import Matching, MatchingParams
-from kinetree.schemas.mesh import Mesh
-from kinetree.schemas.middle import Middle
-from kinetree.schemas.tips import Tips
-from kinetree.tasks.coordinates import coordinates
-from kinetree.tasks.crossing import crossing
-from kinetree.tasks.matching import matching
-from kinetree.tasks.middle import middle
-from kinetree.tasks.numerics.mesoscopic.arap import Factorised, soft_weights
+from kinetree.schemas.input.connectivity import Connectivity
+from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.paper_2014.arap import Arap
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_mapping import GeodesicMapping, GeodesicMappingParams
+from kinetree.schemas.paper_2014.interval_reference import IntervalReference
+from kinetree.schemas.topology.extrema import Extrema
+from kinetree.schemas.topology.geodesics import Geodesics
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.paper_2014.arap import Factorised, soft_weights
+from kinetree.tasks.paper_2014.cut_correspondence import cut_correspondence
+from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
+from kinetree.tasks.paper_2014.geodesic_mapping import geodesic_mapping
+from kinetree.tasks.paper_2014.interval_reference import interval_reference
 
 Floats = npt.NDArray[np.float64]
 CHANGING = Connectivity(fixed=False, first_change=1, vertices=0, faces=0)
@@ -65,8 +65,8 @@ class Sequence:
 
     mesh: dict[int, Mesh]
     geodesics: dict[int, Geodesics]
-    tips: dict[int, Tips]
-    coordinates: dict[int, Coordinates]
+    tips: dict[int, Extrema]
+    coordinates: dict[int, GeodesicCoordinates]
     intervals: Intervals
     leaves: Leaves
 
@@ -80,36 +80,38 @@ class Sequence:
 
         cuts: Any = pipeline.artifact("intervals")
         found: Any = pipeline.artifact("leaves")
-        mesh, tip = every("mesh", cuts.frames), every("tips", cuts.frames)
-        coordinates(mesh[cuts.frames[0]], tip[cuts.frames[0]], CoordinatesParams())
+        mesh, tip = every("mesh", cuts.frames), every("extrema", cuts.frames)
+        geodesic_coordinates(mesh[cuts.frames[0]], tip[cuts.frames[0]], GeodesicCoordinatesParams())
         begun = time.process_time()
-        X = {t: coordinates(mesh[t], tip[t], CoordinatesParams()) for t in mesh}
+        X = {t: geodesic_coordinates(mesh[t], tip[t], GeodesicCoordinatesParams()) for t in mesh}
         spent.coordinates = (time.process_time() - begun) / len(mesh)
         return cls(mesh, every("geodesics", cuts.frames), tip, X, cuts, found)
 
-    def middles(self) -> list[Middle]:
+    def middles(self) -> list[IntervalReference]:
         """The reference of every interval."""
         out = []
         for begin, end in zip(self.intervals.begin, self.intervals.end, strict=True):
             mine = self.intervals.frames[int(begin) : int(end) + 1]
             gathered = ({t: values[t] for t in mine} for values in (self.mesh, self.geodesics, self.coordinates))
-            out.append(middle(*gathered, self.intervals, self.leaves))
+            out.append(interval_reference(*gathered, self.intervals, self.leaves))
         return out
 
 
-def mapped(here: Sequence, start: Middle, order: str, spent: Seconds) -> dict[int, Matching]:
+def mapped(here: Sequence, start: IntervalReference, order: str, spent: Seconds) -> dict[int, GeodesicMapping]:
     """The geodesic mapping of an interval, outwards from its middle."""
-    params, found = MatchingParams.model_validate({"order": order}), dict[int, Matching]()
+    params, found = GeodesicMappingParams.model_validate({"order": order}), dict[int, GeodesicMapping]()
     begun = time.process_time()
     for t in sorted(start.frames, key=lambda t: abs(start.frames.index(t) - start.frames.index(start.frame))):
         before = start.previous(t)
         last = None if before is None else found[before]
-        found[t] = matching(start, here.coordinates[t], here.tips[t], CHANGING, last, params)
+        found[t] = geodesic_mapping(start, here.coordinates[t], here.tips[t], CHANGING, last, params)
     spent.mapping += time.process_time() - begun
     return dict(sorted(found.items()))
 
 
-def deformed(here: Sequence, start: Middle, images: dict[int, Matching], length: float, steps: int, spent: Seconds) -> Floats:
+def deformed(
+    here: Sequence, start: IntervalReference, images: dict[int, GeodesicMapping], length: float, steps: int, spent: Seconds
+) -> Floats:
     """(frame, vertex, xyz) ARAP in the given frames with one factorisation."""
     V, F = np.array(start.vertices), start.faces.astype(np.int64)
     soft, out = soft_weights(np.array(start.area), length * start.size), []
@@ -126,7 +128,7 @@ def deformed(here: Sequence, start: Middle, images: dict[int, Matching], length:
     return np.stack(out)
 
 
-def wanted(here: Sequence, match: Matching, t: int) -> Floats:
+def wanted(here: Sequence, match: GeodesicMapping, t: int) -> Floats:
     """(vertex, xyz) where the mapping wants every vertex of the reference."""
     return np.asarray(here.mesh[t].vertices[match.image])
 
@@ -180,9 +182,9 @@ def _alignment(x: Floats) -> Arap:
     return Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, moved=9.0)
 
 
-def _cuts(here: Sequence, starts: list[Middle], truths: list[Truth], alignments: list[Arap]) -> None:
+def _cuts(here: Sequence, starts: list[IntervalReference], truths: list[Truth], alignments: list[Arap]) -> None:
     """How far the vertices to which the crossing leads are from where they should be."""
-    across = crossing(tuple(starts), tuple(alignments), here.tips, here.leaves)
+    across = cut_correspondence(tuple(starts), tuple(alignments), here.tips, here.leaves)
     for i, (a, b) in enumerate(pairwise(starts)):
         image = across.backward[across.rows(i + 1)]
         led = image >= 0

@@ -11,8 +11,8 @@ import numpy.typing as npt
 import yaml
 from scipy.spatial import cKDTree
 
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.numerics.synth.figures import named
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import named
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -20,9 +20,9 @@ import numpy.typing as npt
 import trimesh
 from numba import njit
 
-from kinetree.tasks.numerics.geodesics import geodesic_distance
-from kinetree.tasks.numerics.mu import farthest_bases, mu, mu_from_every_vertex
-from kinetree.tasks.numerics.surface import Surface
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu, mu_from_every_vertex
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 import shapes

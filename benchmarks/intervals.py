@@ -20,15 +20,22 @@ import numpy.typing as npt
 from contacts import CASES, TOLERANCE, Truth, generated, recorded
 from scipy.optimize import linear_sum_assignment
 
-from kinetree.tasks.numerics.components import largest_component
-from kinetree.tasks.numerics.correlation import Normalisation, Summary, correlations, dimensionless, histograms, summary
-from kinetree.tasks.numerics.intervals import Cue, Intervals, fixed_intervals, intervals, stacked
-from kinetree.tasks.numerics.leaves import leaves, stems
-from kinetree.tasks.numerics.mesh import clean
-from kinetree.tasks.numerics.mu import farthest_bases, mu
-from kinetree.tasks.numerics.persistence import loop_counts, loop_spans, superlevel_peaks
-from kinetree.tasks.numerics.surface import Surface
-from kinetree.tasks.numerics.tracking import follow
+from kinetree.tasks.numerics.geometry.components import largest_component
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.input.mesh import clean
+from kinetree.tasks.numerics.topology.correlation import (
+    Normalisation,
+    Summary,
+    correlations,
+    dimensionless,
+    histograms,
+    summary,
+)
+from kinetree.tasks.numerics.topology.extrema import extrema, stems
+from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
+from kinetree.tasks.numerics.topology.intervals import Cue, Intervals, fixed_intervals, intervals, stacked
+from kinetree.tasks.numerics.topology.leaves import follow
+from kinetree.tasks.numerics.topology.persistence import loop_counts, loop_spans, superlevel_peaks
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -59,7 +66,7 @@ def measured(V: Floats, F: Ints, bases: int) -> Frame:
     found = farthest_bases(surface, bases)
     integral = mu(found.distance, found.weight)
     span = float(np.ptp(integral))
-    tips = leaves(integral, faces)
+    tips = extrema(integral, faces)
     x = dimensionless(integral, surface.area)
     return Frame(
         x=summary(x, surface.area),

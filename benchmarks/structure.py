@@ -29,18 +29,18 @@ import numpy as np
 import numpy.typing as npt
 from accuracy import MOTIONS, varied
 
-from kinetree.tasks.numerics.components import largest_component
-from kinetree.tasks.numerics.evaluation.matching import errors, matching
-from kinetree.tasks.numerics.leaves import leaves
-from kinetree.tasks.numerics.mu import farthest_bases, mu
-from kinetree.tasks.numerics.structure.hanging import Carried, Hung, Surfaces, hung
-from kinetree.tasks.numerics.structure.parts import parts
+from kinetree.tasks.numerics.geometry.components import largest_component
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import Figure
+from kinetree.tasks.numerics.input.synth.trees import random_tree
+from kinetree.tasks.numerics.results.evaluation.matching import errors, matching
+from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
+from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
-from kinetree.tasks.numerics.structure.skeleton import skeleton
-from kinetree.tasks.numerics.surface import Surface
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.numerics.synth.figures import Figure
-from kinetree.tasks.numerics.synth.trees import random_tree
+from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
+from kinetree.tasks.numerics.topology.extrema import extrema
+from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -145,7 +145,7 @@ def score(case: Case, X: Floats) -> Score:
     return Score(int(hit.sum()), int(scored.sum()), float(error), len(found.spurious), missed)
 
 
-def carried(held: Carried, tree: Hung) -> Floats:
+def carried(held: Carried, tree: PartTree) -> Floats:
     """(frame, joint, xyz) the joints of a tree as the parts above them carry them."""
     order, rows = tree.tree.order, tree.tree.border[1:]
     above = order[tree.tree.parents[1:]]
@@ -156,20 +156,20 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     """Joints after every stage, and seconds a frame of the parts and of all that follows."""
     kept, faces, _ = largest_component(case.V, case.F.astype(np.int32))
     bases = farthest_bases(Surface.of(case.V[kept], faces), 100)
-    tips = kept[leaves(mu(bases.distance, bases.weight), faces).vertex]
+    tips = kept[extrema(mu(bases.distance, bases.weight), faces).vertex]
     area = Surface.of(case.V, case.F).area
     begun = time.process_time()
     trust = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
-    found = parts(case.V, case.F, case.x, trust, leaves=tips)
+    found = rigid_parts(case.V, case.F, case.x, trust, leaves=tips)
     parted = time.process_time()
-    made = skeleton(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
+    made = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
     done = time.process_time()
     body, held = Surfaces(case.V, case.F, case.x, area), Carried(found.label, found.R, found.t, found.residual)
     kept_parts = pruned(body, held, tips)
     turning = np.array([kind == "joint" for kind in made.kinds])
     joints = {
-        "hung": carried(held, hung(body, held)),
-        "pruned": carried(kept_parts.parts, kept_parts.hung),
+        "hung": carried(held, part_tree(body, held)),
+        "pruned": carried(kept_parts.parts, kept_parts.part_tree),
         "fitted": made.positions[:, turning],
     }
     return joints, (parted - begun) / len(case.x), (done - parted) / len(case.x)
@@ -187,7 +187,7 @@ def peer(case: Case, bones: int) -> tuple[Floats, float]:
     moved = np.asarray(solved.transforms)[:, used]
     held = Carried(label.astype(np.int64), moved[..., :3, :3].copy(), moved[..., :3, 3].copy(), np.zeros(moved.shape[:2]))
     body = Surfaces(case.V, case.F, case.x, Surface.of(case.V, case.F).area)
-    return carried(held, hung(body, held)), seconds
+    return carried(held, part_tree(body, held)), seconds
 
 
 def told(name: str, stage: str, s: Score, seconds: str) -> str:

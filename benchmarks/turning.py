@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.correspondence import Target
-from kinetree.tasks.numerics.deformation import Pose
-from kinetree.tasks.numerics.projection import projected
-from kinetree.tasks.numerics.template import Template
-from kinetree.tasks.numerics.turns import limbs, turns, untwisted
-from kinetree.tasks.numerics.twist import choices
+from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import Pose
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.roll_candidates import limbs, roll_candidates, untwisted
+from kinetree.tasks.numerics.registration.roll_path import choices
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -56,7 +56,7 @@ class Truth:
         part, W, joints = _parts([str(n) for n in body["weight_names"]], W, told["joints"])
         return cls(x, part, np.where(W.max(axis=1) > CLEAR, W.argmax(axis=1), -1), joints, float(told["height"]))
 
-    def turns(self, y: Floats, reference: int) -> list[Turn]:
+    def roll_candidates(self, y: Floats, reference: int) -> list[Turn]:
         """Each scored joint's turning in y (frame, vertex, xyz) against the truth."""
         mine, true = self._rotations(y, reference), self._rotations(self.x, reference)
         out = []
@@ -80,9 +80,11 @@ class Truth:
         return out
 
 
-def twisted(body: Template, piece: Ints, poses: list[Pose], targets: list[Target], start: int) -> tuple[list[Pose], Ints]:
+def twisted(
+    body: DeformationGraph, piece: Ints, poses: list[Pose], targets: list[Target], start: int
+) -> tuple[list[Pose], Ints]:
     """Poses in which limbs have their twist back, and (node,) the limb of those that turned."""
-    tried = [turns(body, pose, target, piece) for pose, target in zip(poses, targets, strict=True)]
+    tried = [roll_candidates(body, pose, target, piece) for pose, target in zip(poses, targets, strict=True)]
     turn = choices(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
     limb = np.full(len(body.node), -1)
     for k, one in enumerate(limbs(body, piece)):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 
 if TYPE_CHECKING:
     from kinetree.pipeline.graph import Graph

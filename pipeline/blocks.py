@@ -7,7 +7,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.yaml_text import parsed

@@ -25,8 +25,8 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from kinetree.errors import ConfigError, InputError, KinetreeError
 from kinetree.pipeline.application import Application, Command, Shortcut
-from kinetree.pipeline.errors import ConfigError, InputError, KinetreeError
 from kinetree.pipeline.printable import printable, quoted
 
 EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 130 interrupted"

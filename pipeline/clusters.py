@@ -9,7 +9,7 @@ from typing import Any
 
 from distributed import Client, LocalCluster, WorkerPlugin
 
-from kinetree.pipeline.errors import ClusterError
+from kinetree.errors import ClusterError
 
 CONNECT_SECONDS = 10
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.options import AsJson, Force, Output, Set, StoreAt, Target, Until, err, out, pipeline_of, print_json
 from kinetree.pipeline.printable import printable
 

@@ -15,9 +15,9 @@ from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
 from kinetree.pipeline.blocks import Reading, block, blocks_at, compute_block, expanded, override
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 

@@ -14,7 +14,7 @@ from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Literal
 
-from kinetree.pipeline.errors import DamagedArtifactError, StaleWorkerError, StoreError
+from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
 from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
 from kinetree.pipeline.memory import peak_bytes, reset_peak
 from kinetree.pipeline.store import Record, Store

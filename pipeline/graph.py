@@ -12,7 +12,7 @@ from typing import Any
 
 import networkx as nx
 
-from kinetree.pipeline.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
+from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
 from kinetree.pipeline.key import code_closure
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space

@@ -15,11 +15,11 @@ from typing import Any
 
 import networkx as nx
 
+from kinetree.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline import config as configuration
 from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
-from kinetree.pipeline.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from kinetree.pipeline.errors import GraphError
+from kinetree.errors import GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.node import Node, label, project
 from kinetree.pipeline.task import Argument, Space

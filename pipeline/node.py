@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import Space
 from kinetree.schemas.array import Index

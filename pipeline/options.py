@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application, current
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.printable import quoted
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import Any
 
 import yaml
 
+from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
-from kinetree.pipeline.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline.place import Folder
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.schemas.array import Artifact

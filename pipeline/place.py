@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Protocol
 
-from kinetree.pipeline.errors import StoreError, StoreFullError
+from kinetree.errors import StoreError, StoreFullError
 
 
 class Place(Protocol):

@@ -6,8 +6,8 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.application import current
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.options import (
     AsJson,
     Force,

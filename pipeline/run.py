@@ -18,8 +18,8 @@ from typing import Any, Protocol
 
 from dask.local import SynchronousExecutor
 
+from kinetree.errors import ClusterError, DamagedArtifactError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.config import Compute
-from kinetree.pipeline.errors import ClusterError, DamagedArtifactError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.events import Watch
 from kinetree.pipeline.execute import Input, Ref, Result, Step, execute, forget_reads
 from kinetree.pipeline.node import Node

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from kinetree.pipeline.errors import DamagedArtifactError, GraphError
+from kinetree.errors import DamagedArtifactError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
 from kinetree.pipeline.layout import Given, Layout, T

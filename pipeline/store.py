@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.pipeline.errors import DamagedArtifactError, StoreError, UnknownNodeError
+from kinetree.errors import DamagedArtifactError, StoreError, UnknownNodeError
 from kinetree.pipeline.key import array_digest, combined_digest
 from kinetree.pipeline.place import Folder, Place
 from kinetree.schemas.array import Array, Artifact, Loader

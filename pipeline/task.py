@@ -25,7 +25,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Literal, ParamSpec, TypeVar, Union
 
-from kinetree.pipeline.errors import GraphError
+from kinetree.errors import GraphError
 from kinetree.schemas.array import Artifact, Params
 
 P = ParamSpec("P")

@@ -5,7 +5,7 @@ from typing import Any
 
 import yaml
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 
 _INT = "tag:yaml.org,2002:int"
 _FLOAT = "tag:yaml.org,2002:float"

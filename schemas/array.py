@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, PrivateAttr, TypeAdapter, model_validator
 from pydantic_core import core_schema
 
-from kinetree.pipeline.errors import ArtifactError
+from kinetree.errors import ArtifactError
 from kinetree.schemas.dims import Dim
 
 Floats = NDArray[np.float64]

@@ -9,20 +9,20 @@ from rigs import skinned, spider
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import task
-from kinetree.schemas.alignment import Alignment
 from kinetree.schemas.array import Params
-from kinetree.schemas.projection import Projection
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.source import Source
-from kinetree.tasks.bvh import bvh
-from kinetree.tasks.glb import glb
-from kinetree.tasks.ply import ply
-from kinetree.tasks.rignet import rignet
-from kinetree.tasks.segmentation import segmentation
-from kinetree.tasks.skeleton_json import skeleton_json
-from kinetree.tasks.source import source, surface
-from kinetree.tasks.tables import tables
-from kinetree.tasks.usd import usd
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.source import source, surface
+from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.ply import ply
+from kinetree.tasks.results.rignet import rignet
+from kinetree.tasks.results.segmentation import segmentation
+from kinetree.tasks.results.skeleton_json import skeleton_json
+from kinetree.tasks.results.tables import tables
+from kinetree.tasks.results.usd import usd
 
 
 class SkeletonParams(Params):

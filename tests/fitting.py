@@ -6,9 +6,9 @@ import trimesh
 from articulated import Known, swings, three_arms
 from limbs import rotation
 
-from kinetree.schemas.articulation import Articulation
-from kinetree.tasks.numerics.correspondence import Target
-from kinetree.tasks.numerics.structure.posture import Body, Posture, surface
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, surface
 
 Floats = npt.NDArray[np.float64]
 FRAMES = 16
@@ -51,7 +51,7 @@ def tip(body: Body, at: Posture, part: int) -> Floats:
     return middle
 
 
-def articulation(known: Known, doubted: tuple[int, ...] = SPOILT) -> Articulation:
+def articulation(known: Known, doubted: tuple[int, ...] = SPOILT) -> KinematicTree:
     """Root, three arms and the end of the first, whose pose is off in some frames."""
     R, confidence = known.R[:, [0, 1, 1, 2, 3]].copy(), np.ones((FRAMES, 5))
     for t in doubted:
@@ -63,7 +63,7 @@ def articulation(known: Known, doubted: tuple[int, ...] = SPOILT) -> Articulatio
     for j in range(1, 5):
         X[:, j] = X[:, parents[j]] + np.einsum("txy,y->tx", R[:, parents[j]], rest[j] - rest[parents[j]])
     own = np.array([0, 1, 3, 4])[known.label]
-    return Articulation(
+    return KinematicTree(
         frames=tuple(range(FIRST, FIRST + FRAMES)), fps=None, unit=None, names=("root", "a", "a_end", "b", "c"),
         parents=parents, kinds=("root", "joint", "leaf", "joint", "joint"), positions=X, rotation=R, confidence=confidence,
         rest=rest, degrees=np.zeros(5), drift=np.zeros(5), support=np.zeros(5, int), vertices=known.V, faces=known.F, label=own,

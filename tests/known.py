@@ -4,14 +4,14 @@ import json
 
 import numpy as np
 
-from kinetree.schemas.mesh import Cleaning, Mesh
-from kinetree.schemas.projection import Projection
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.source import Source
-from kinetree.schemas.synth import SynthParams
-from kinetree.tasks.numerics.evaluation.tree_edit import contracted, kept_ancestors
-from kinetree.tasks.synth import body, recipe
-from kinetree.tasks.truth import synthetic
+from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted, kept_ancestors
+from kinetree.tasks.results.truth import synthetic
 
 
 def generated(figure: str = "human", frames: int = 6, vertices: int = 600) -> str:

@@ -6,14 +6,14 @@ from known import generated, observed, perfect
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import task
-from kinetree.schemas.mesh import Mesh
-from kinetree.schemas.projection import Projection
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.source import Source
-from kinetree.tasks.evaluation import evaluation
-from kinetree.tasks.mesh import mesh
-from kinetree.tasks.source import source
-from kinetree.tasks.truth import truth
+from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.mesh import mesh
+from kinetree.tasks.input.source import source
+from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.truth import truth
 
 
 @task()

@@ -10,31 +10,31 @@ from functools import cache
 import numpy as np
 from articulated import Known, swings, three_arms
 
-from kinetree.schemas.annuli import Annuli, AnnuliParams
-from kinetree.schemas.arap import Arap
 from kinetree.schemas.array import Floats
-from kinetree.schemas.bones import Bones
-from kinetree.schemas.cones import Cones, ConesParams
-from kinetree.schemas.consistency import Consistency, ConsistencyParams
-from kinetree.schemas.crossing import Crossing
-from kinetree.schemas.cylinders import Cylinders
-from kinetree.schemas.geodesics import Geodesics
-from kinetree.schemas.integration import Integration
-from kinetree.schemas.kinematic_structure import KinematicStructureParams
-from kinetree.schemas.limb import Limb
-from kinetree.schemas.middle import Middle
-from kinetree.schemas.sequence import Sequence
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.tasks.annuli import annuli
-from kinetree.tasks.bones import bones
-from kinetree.tasks.cones import cones
-from kinetree.tasks.consistency import consistency
-from kinetree.tasks.cylinders import cylinders
-from kinetree.tasks.integration import integration
-from kinetree.tasks.kinematic_structure import kinematic_structure
-from kinetree.tasks.limb import limb
-from kinetree.tasks.numerics.geodesics import geodesic_distance
-from kinetree.tasks.numerics.surface import Surface
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.paper_2014.annuli import Annuli, AnnuliParams
+from kinetree.schemas.paper_2014.arap import Arap
+from kinetree.schemas.paper_2014.bones import Bones
+from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency, ConeConsistencyParams
+from kinetree.schemas.paper_2014.cones import Cones, ConesParams
+from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
+from kinetree.schemas.paper_2014.cylinders import Cylinders
+from kinetree.schemas.paper_2014.integration import Integration
+from kinetree.schemas.paper_2014.interval_reference import IntervalReference
+from kinetree.schemas.paper_2014.kinematic_structure import KinematicStructureParams
+from kinetree.schemas.paper_2014.limb import Limb
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.geodesics import Geodesics
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.paper_2014.annuli import annuli
+from kinetree.tasks.paper_2014.bones import bones
+from kinetree.tasks.paper_2014.cone_consistency import cone_consistency
+from kinetree.tasks.paper_2014.cones import cones
+from kinetree.tasks.paper_2014.cylinders import cylinders
+from kinetree.tasks.paper_2014.integration import integration
+from kinetree.tasks.paper_2014.kinematic_structure import kinematic_structure
+from kinetree.tasks.paper_2014.limb import limb
 
 SPANS = (range(12), range(12, 20))
 SEEN = ((0, 1, 2), (0, 2))
@@ -46,11 +46,11 @@ class Made:
     """What every step gave."""
 
     body: Known
-    middle: tuple[Middle, ...]
+    middle: tuple[IntervalReference, ...]
     alignment: tuple[Arap, ...]
-    crossing: Crossing
+    crossing: CutCorrespondence
     cones: tuple[Cones, ...]
-    consistency: Consistency
+    consistency: ConeConsistency
     limb: dict[tuple[int, int], Limb]
     annuli: dict[tuple[int, int], Annuli]
     integration: Integration
@@ -65,22 +65,22 @@ def tips(body: Known) -> np.ndarray:
     return (body.V @ np.stack([np.cos(angle), np.sin(angle), 0 * angle])).argmax(axis=0)
 
 
-def interval(body: Known, span: range, arms: tuple[int, ...], distance: Floats) -> Middle:
+def interval(body: Known, span: range, arms: tuple[int, ...], distance: Floats) -> IntervalReference:
     """One interval, its reference amid it."""
     frame = span[len(span) // 2]
     tip = tips(body)[list(arms)]
-    return Middle(
+    return IntervalReference(
         frames=tuple(span), frame=frame, vertices=body.x[frame], faces=body.F, area=body.area,
         size=float(np.sqrt(body.area.sum())), leaf=np.array(arms), tip=tip, distance=distance[list(arms)],
         trail=body.x[list(span)][:, tip].transpose(1, 0, 2),
     )  # fmt: skip
 
 
-def passed(body: Known, middle: tuple[Middle, ...]) -> Crossing:
+def passed(body: Known, middle: tuple[IntervalReference, ...]) -> CutCorrespondence:
     """Every vertex stays what it is; the leaves of the first and the last arm are each other's nearest."""
     count = len(body.V)
     every, none, near = np.arange(count), np.full(count, -1), np.zeros(count)
-    return Crossing(
+    return CutCorrespondence(
         first=np.array([0, count]), leaves=np.array([len(m.leaf) for m in middle]), onward=np.append(every, none),
         onward_distance=np.append(near, near + np.nan), backward=np.append(none, every),
         backward_distance=np.append(near + np.nan, near), cut=np.zeros(2, int), before=np.array([0, 2]),
@@ -107,7 +107,7 @@ def made(*, still: bool = False) -> Made:
     alignment, crossing = followed(body, 1.0 if still else 9.0), passed(body, middle)
     mu = Geodesics(mu=distance.sum(axis=0), area=body.area, bases=np.zeros(0, int), share=1.0)
     grown = tuple(cones(m, dict.fromkeys(m.frames, mu), ConesParams()) for m in middle)
-    whole = consistency(middle, grown, crossing, ConsistencyParams())
+    whole = cone_consistency(middle, grown, crossing, ConeConsistencyParams())
     limbs: dict[tuple[int, int], Limb] = {}
     clusters: dict[tuple[int, int], Annuli] = {}
     for i, m in enumerate(middle):

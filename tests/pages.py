@@ -7,23 +7,23 @@ import numpy.typing as npt
 from rigs import skinned, spider
 from traced import traces_of
 
-from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.connectivity import Connectivity
-from kinetree.schemas.correlation import Correlation
-from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
-from kinetree.schemas.geodesics import Geodesics
-from kinetree.schemas.intervals import Intervals
-from kinetree.schemas.leaves import Leaves
-from kinetree.schemas.mesh import Cleaning, Mesh
-from kinetree.schemas.projection import Projection
-from kinetree.schemas.sequence import Sequence
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.upright import Upright
-from kinetree.tasks.evidence import evidence
-from kinetree.tasks.page.document import Page, Section, document, table
-from kinetree.tasks.page.scene import Limits, Scene, scene
+from kinetree.schemas.input.connectivity import Connectivity
+from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.correlation import Correlation
+from kinetree.schemas.topology.geodesics import Geodesics
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.schemas.topology.leaves import Leaves
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.page.document import Page, Section, document, table
+from kinetree.tasks.results.page.scene import Limits, Scene, scene
+from kinetree.tasks.results.structure_figures import structure_figures
 
-UP = Upright(up="y", confidence=1.0)
+UP = UpDirection(up="y", confidence=1.0)
 
 
 def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
@@ -45,8 +45,8 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
-        "evidence": evidence(skeleton, traces_of(skeleton), UP),
-        "upright": UP,
+        "evidence": structure_figures(skeleton, traces_of(skeleton), UP),
+        "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
         "correlation": Correlation(histograms=np.full((len(frames), 4), 0.25), correlation=np.linspace(0.9, 1.0, steps)),

@@ -5,10 +5,10 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.numerics.synth.figures import Figure
-from kinetree.tasks.numerics.synth.motion import turning_angles
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import Figure
+from kinetree.tasks.numerics.input.synth.motion import turning_angles
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from shapes import flat_grid, folded
 
-from kinetree.schemas.alignment import Alignment
-from kinetree.schemas.connectivity import Connectivity
-from kinetree.schemas.coordinates import Coordinates, CoordinatesParams
-from kinetree.schemas.geodesics import Geodesics
-from kinetree.schemas.intervals import Intervals
-from kinetree.schemas.leaves import Leaves
-from kinetree.schemas.mesh import Cleaning, Mesh
-from kinetree.schemas.tips import Tips
-from kinetree.tasks.coordinates import coordinates
+from kinetree.schemas.input.connectivity import Connectivity
+from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.topology.extrema import Extrema
+from kinetree.schemas.topology.geodesics import Geodesics
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
 
 SHEET, FACES = flat_grid(14, 9)
 CORNERS = np.array([0, 8, 13 * 9])
@@ -30,9 +30,9 @@ class Frame:
     """One frame, and where among its vertices each of the sheet's is."""
 
     mesh: Mesh
-    tips: Tips
+    tips: Extrema
     geodesics: Geodesics
-    coordinates: Coordinates
+    coordinates: GeodesicCoordinates
     place: NDArray[np.int64]
 
 
@@ -47,14 +47,14 @@ def frame(number: int, *, hidden: tuple[int, ...] = (), bend: float = 0.15, anew
     seen = np.array([n for n in np.roll([0, 1, 2], number) if n not in hidden], np.int64)
     tip = place[CORNERS[seen]]
     X = V[CORNERS[seen]]
-    tips = Tips(
+    tips = Extrema(
         vertices=tip, persistence=np.full(len(tip), 0.5), stems=np.stack([0 * X, X], axis=1),
         normals=np.tile([0.0, 0.0, 1.0], (len(tip), 1)), value=np.full(len(tip), 0.7), peaks=np.full(len(tip), 0.5),
         loops=np.zeros(0), size=10.0, centre=(0.0, 0.0, 0.0), euler=1, components=1,
     )  # fmt: skip
     area = np.full(len(V), 13 * 8 / len(V))
     geodesics = Geodesics(mu=np.ones(len(V)), area=area, bases=np.zeros(0, np.int64), share=1.0)
-    return Frame(mesh, tips, geodesics, coordinates(mesh, tips, CoordinatesParams()), place)
+    return Frame(mesh, tips, geodesics, geodesic_coordinates(mesh, tips, GeodesicCoordinatesParams()), place)
 
 
 def followed(frames: dict[int, Frame], *ends: int) -> tuple[Intervals, Leaves]:

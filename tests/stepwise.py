@@ -7,37 +7,37 @@ from typing import Any
 
 import numpy as np
 
-from kinetree.schemas.distribution import DistributionParams
-from kinetree.schemas.geodesics import GeodesicsParams
-from kinetree.schemas.intervals import Intervals
-from kinetree.schemas.leaves import LeavesParams
-from kinetree.schemas.mesh import Cleaning, Mesh
-from kinetree.schemas.synth import SynthParams
-from kinetree.schemas.template import TemplateParams
-from kinetree.schemas.tips import TipsParams
-from kinetree.schemas.turns import Turns
-from kinetree.tasks.alignment import alignment
-from kinetree.tasks.connectivity import connectivity
-from kinetree.tasks.distribution import distribution
-from kinetree.tasks.geodesics import geodesics
-from kinetree.tasks.leaves import leaves
-from kinetree.tasks.numerics.mesh import clean
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.pieces import pieces
-from kinetree.tasks.projection import projection
-from kinetree.tasks.reference import reference
-from kinetree.tasks.refit import first_refit, second_refit, third_refit
-from kinetree.tasks.repair import repair
-from kinetree.tasks.stiffness import first_stiffness, second_stiffness, third_stiffness
-from kinetree.tasks.suspects import suspects
-from kinetree.tasks.synth import body, recipe
-from kinetree.tasks.template import template
-from kinetree.tasks.tips import tips
-from kinetree.tasks.tracking import tracking
-from kinetree.tasks.trust import trust
-from kinetree.tasks.turns import turns
-from kinetree.tasks.twist import twist
-from kinetree.tasks.untwisting import untwisting
+from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
+from kinetree.schemas.registration.roll_candidates import RollCandidates
+from kinetree.schemas.topology.extrema import ExtremaParams
+from kinetree.schemas.topology.geodesics import GeodesicsParams
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.schemas.topology.leaves import LeavesParams
+from kinetree.schemas.topology.mu_histogram import MuHistogramParams
+from kinetree.tasks.input.connectivity import connectivity
+from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.mesh import clean
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.registration.alignment import alignment
+from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.frame_confidence import frame_confidence
+from kinetree.tasks.registration.projection import projection
+from kinetree.tasks.registration.recovery import recovery
+from kinetree.tasks.registration.reference import reference
+from kinetree.tasks.registration.refit import first_refit, second_refit, third_refit
+from kinetree.tasks.registration.rigid_clusters import rigid_clusters
+from kinetree.tasks.registration.roll_candidates import roll_candidates
+from kinetree.tasks.registration.roll_correction import roll_correction
+from kinetree.tasks.registration.roll_path import roll_path
+from kinetree.tasks.registration.stiffness import first_stiffness, second_stiffness, third_stiffness
+from kinetree.tasks.registration.tracking import tracking
+from kinetree.tasks.registration.tracking_failures import tracking_failures
+from kinetree.tasks.topology.extrema import extrema
+from kinetree.tasks.topology.geodesics import geodesics
+from kinetree.tasks.topology.leaves import leaves
+from kinetree.tasks.topology.mu_histogram import mu_histogram
 
 
 def cleaned(V: np.ndarray, F: np.ndarray) -> Mesh:
@@ -84,10 +84,10 @@ def uncut(count: int) -> Intervals:
 def referred(meshes: dict[int, Mesh]) -> Any:
     """The reference of a sequence."""
     mu = {t: geodesics(m, GeodesicsParams(bases=40)) for t, m in meshes.items()}
-    seen = {t: tips(meshes[t], g, TipsParams()) for t, g in mu.items()}
+    seen = {t: extrema(meshes[t], g, ExtremaParams()) for t, g in mu.items()}
     return reference(
         mesh=meshes,
-        distribution={t: distribution(g, DistributionParams()) for t, g in mu.items()},
+        distribution={t: mu_histogram(g, MuHistogramParams()) for t, g in mu.items()},
         tips=seen,
         leaves=leaves(seen, uncut(len(seen)), LeavesParams()),
         connectivity=connectivity(meshes),
@@ -97,18 +97,18 @@ def referred(meshes: dict[int, Mesh]) -> Any:
 def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping."""
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
-    made.template = template(made.reference, TemplateParams(nodes=nodes))
+    made.template = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
     both = {"mesh": meshes, "template": made.template}
     made.tracking = along(tracking, made.reference, list(meshes), **both)
-    made.suspects = suspects(made.tracking, made.reference)
-    made.repair = along(repair, made.suspects, list(meshes), tracking=made.tracking, suspects=made.suspects, **both)
+    made.suspects = tracking_failures(made.tracking, made.reference)
+    made.repair = along(recovery, made.suspects, list(meshes), tracking=made.tracking, suspects=made.suspects, **both)
     body = made.template
     made.first_stiffness = first_stiffness(body, tuple(made.repair.values()))
     made.first_refit = {t: first_refit(meshes[t], body, pose, made.first_stiffness) for t, pose in made.repair.items()}
-    made.pieces = pieces(body, tuple(made.first_refit.values()))
-    made.turns = {t: turns(meshes[t], body, pose, made.pieces) for t, pose in made.first_refit.items()}
-    made.twist = twist(made.turns, body, made.pieces, made.reference)
-    last = {t: untwisting(body, made.first_refit[t], made.pieces, made.turns[t], made.twist) for t in meshes}
+    made.pieces = rigid_clusters(body, tuple(made.first_refit.values()))
+    made.turns = {t: roll_candidates(meshes[t], body, pose, made.pieces) for t, pose in made.first_refit.items()}
+    made.twist = roll_path(made.turns, body, made.pieces, made.reference)
+    last = {t: roll_correction(body, made.first_refit[t], made.pieces, made.turns[t], made.twist) for t in meshes}
     made.untwisting = last
     made.second_stiffness = second_stiffness(body, tuple(last.values()), made.twist)
     made.second_refit = {t: second_refit(meshes[t], body, pose, made.second_stiffness) for t, pose in last.items()}
@@ -117,7 +117,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     made.third_refit = last
     made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
     made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
-    made.trust = trust(made.alignment, made.reference)
+    made.trust = frame_confidence(made.alignment, made.reference)
     return made
 
 
@@ -127,7 +127,7 @@ def walk() -> SimpleNamespace:
     return aligned(generated())
 
 
-def lost(limb: int) -> dict[int, Turns]:
+def lost(limb: int) -> dict[int, RollCandidates]:
     """The turns of `walk` as frames would tell them if one limb fitted a quarter of a turn further, but in the reference."""
     made, out = walk(), {}
     for t, told in made.turns.items():

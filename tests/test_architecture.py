@@ -64,19 +64,19 @@ def test_one_file_each_imports_dask_distributed_and_zarr(path: Path) -> None:
 @pytest.mark.parametrize("path", list(ROOT.glob("tasks/numerics/**/*.py")), ids=name)
 def test_numerics_know_numbers_and_nothing_of_the_loom(path: Path) -> None:
     assert outside(imports(path)) <= NUMERIC
-    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.pipeline.errors")
+    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.errors")
 
 
 @pytest.mark.parametrize("path", list(ROOT.glob("schemas/*.py")), ids=name)
 def test_schemas_know_only_schemas(path: Path) -> None:
     assert outside(imports(path)) <= {"numpy", "pydantic", "pydantic_core"}
-    assert not ours(imports(path), "kinetree.schemas", "kinetree.pipeline.errors")
+    assert not ours(imports(path), "kinetree.schemas", "kinetree.errors")
 
 
 @pytest.mark.parametrize("path", OPERATIONS, ids=name)
 def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
     border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.store"] if name(path) == BORDER else []
-    allowed = ["kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.pipeline.errors", *border]
+    allowed = ["kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.errors", *border]
     assert not ours(imports(path), *allowed)
 
 

@@ -9,9 +9,9 @@ import pytest
 import trimesh
 
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.numerics.synth.figures import Figure
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import Figure
 
 Frames = Iterable[tuple[np.ndarray, np.ndarray]]
 LIMB = (("hip", "trunk", 2, [1.2, 1.0]), ("knee", "hip", 6, [1.0, 0.9]), ("tip", "knee", 10, [0.9, 0.6]))
@@ -23,9 +23,9 @@ def found(folder: Path, frames: Frames) -> tuple[Skeleton, str]:
     for t, (V, F) in enumerate(frames):
         trimesh.Trimesh(V, F, process=False).export(folder / "scans" / f"frame_{t}.ply")
     told = {"source": {"input": str(folder / "scans")}, "output": str(folder / "out"), "compute": {"executor": "sync"},
-            "geodesics": {"bases": 40}, "template": {"nodes": 150}}  # fmt: skip
+            "geodesics": {"bases": 40}, "deformation_graph": {"nodes": 150}}  # fmt: skip
     pipeline = Pipeline.of(told)
-    run = pipeline.run(until=["skeleton", "trust"])
+    run = pipeline.run(until=["skeleton", "frame_confidence"])
     assert run["failures"] == []
     made: Any = pipeline.artifact("skeleton")
     assert np.isfinite(made.positions).all()

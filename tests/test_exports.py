@@ -14,9 +14,7 @@ import zarr
 from exporting import GRAPH, order, write_frames
 from rigs import spider
 
-from kinetree.pipeline import application
-from kinetree.pipeline.cli import command_line
-from kinetree.pipeline.errors import (
+from kinetree.errors import (
     ConfigError,
     DamagedArtifactError,
     InputError,
@@ -25,6 +23,8 @@ from kinetree.pipeline.errors import (
     StoreFullError,
     UnknownNodeError,
 )
+from kinetree.pipeline import application
+from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import write_elsewhere
 from kinetree.tasks.application import APPLICATION
@@ -299,7 +299,7 @@ def test_failed_export_names_node_and_cause(out, monkeypatch, tmp_path):
     def broken(skeleton):
         raise ValueError("no ink")
 
-    monkeypatch.setattr("kinetree.tasks.exports.rignet._mesh", broken)
+    monkeypatch.setattr("kinetree.tasks.results.formats.rignet._mesh", broken)
     with pytest.raises(NodesFailedError, match="rignet: ValueError: no ink"):
         export(str(out), "rignet", tmp_path / "x")
 

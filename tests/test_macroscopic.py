@@ -8,9 +8,9 @@ import pytest
 import trimesh
 
 from kinetree.pipeline import Pipeline
-from kinetree.schemas.synth import SynthParams
-from kinetree.tasks.numerics.synth.body import Body
-from kinetree.tasks.synth import body, recipe
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.synth.body import Body
 
 STEP_ONE = ("sequence", "connectivity", "leaves")
 BALL = trimesh.creation.icosphere(subdivisions=2)

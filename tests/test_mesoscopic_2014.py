@@ -9,8 +9,8 @@ import pytest
 import trimesh
 
 from kinetree.pipeline import Pipeline
-from kinetree.tasks.plots.mesoscopic import cones as drawn_cones
-from kinetree.tasks.plots.mesoscopic import lengths, merging, structure
+from kinetree.tasks.results.plots.mesoscopic import cones as drawn_cones
+from kinetree.tasks.results.plots.mesoscopic import lengths, merging, structure
 
 TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
 HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
@@ -35,7 +35,7 @@ def test_human_whose_hand_touches_the_hip_becomes_one_tree_with_a_pose_in_every_
     assert found.kinds.count("leaf") == 5
     assert found.kinds.count("joint") >= 8
     assert np.isfinite(found.positions).all()
-    whole: Any = human.artifact("consistency")
+    whole: Any = human.artifact("cone_consistency")
     assert (whole.leaf < 0).any(), "the hand on the hip has no leaf"
     told: Any = human.artifact("evaluation")
     assert sum(joint.found is not None for joint in told.joints) >= 3

@@ -7,11 +7,11 @@ import numpy as np
 import trimesh
 
 from kinetree.pipeline import Pipeline
-from kinetree.schemas.synth import SynthParams
-from kinetree.tasks.synth import body, recipe
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.tasks.input.synth import body, recipe
 
-STEP_TWO = ("projection", "trust")
-COARSE = {"geodesics": {"bases": 40}, "template": {"nodes": 120}}
+STEP_TWO = ("projection", "frame_confidence")
+COARSE = {"geodesics": {"bases": 40}, "deformation_graph": {"nodes": 120}}
 NEAR = 0.01  # of the body's size: twice what a surface of so few vertices leaves
 HUMAN = {"figure": "human", "frames": 5, "vertices": 1200}
 
@@ -52,7 +52,7 @@ def test_alignment_is_the_same_bit_for_bit_for_any_number_of_workers(tmp_path: P
     assert told["status"] == "done"
     assert max(far(alone, t) for t in range(5)) < NEAR
     several, _ = ran(tmp_path / "several", "threads", 4, source={"synth": HUMAN})
-    for task in ("tracking", "repair", "third_stiffness", "alignment", "projection", "trust"):
+    for task in ("tracking", "recovery", "third_stiffness", "alignment", "projection", "frame_confidence"):
         assert digests(alone, task) == digests(several, task), task
 
 
@@ -62,7 +62,7 @@ def test_fixed_connectivity_is_aligned_already(tmp_path: Path) -> None:
     for t in range(3):
         here, mesh = pipeline.artifact("alignment", frame=t), pipeline.artifact("mesh", frame=t)
         assert np.array_equal(here.vertices, mesh.vertices)  # type: ignore[attr-defined]
-    assert pipeline.artifact("template").nodes.size == 0  # type: ignore[attr-defined]
+    assert pipeline.artifact("deformation_graph").nodes.size == 0  # type: ignore[attr-defined]
     assert len(set(digests(pipeline, "third_refit"))) <= 2, "nothing is fitted, so there is next to nothing to store"
 
 
@@ -89,7 +89,7 @@ def test_limb_cut_off_in_some_frames_is_told_and_doubted_there_alone(tmp_path: P
     lost = {"limb": "elbow_r", "begin": 3, "end": 4}
     pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "dropped": [lost]}})
     assert told["status"] == "done"
-    assert "trust: frames 3–4 are trusted in part: up to" in said(pipeline)
+    assert "frame_confidence: frames 3–4 are trusted in part: up to" in said(pipeline)
     assert far(pipeline, 1) < NEAR
 
 
@@ -101,7 +101,7 @@ def test_teleport_is_not_trusted_and_the_frames_around_it_are(tmp_path: Path) ->
     source = changed(tmp_path, "teleport", 4, teleported)
     pipeline, told = ran(tmp_path / "out", source=source)
     assert told["status"] == "done"
-    trust = pipeline.artifact("trust")
+    trust = pipeline.artifact("frame_confidence")
     assert trust.trusted.tolist() == [True, True, True, True, False]  # type: ignore[attr-defined]
     assert pipeline.artifact("alignment", frame=4).trust.mean() < 0.3  # type: ignore[attr-defined]
     assert "frame 4 is not trusted" in said(pipeline)

@@ -8,25 +8,25 @@ import trimesh
 
 from kinetree.pipeline import Pipeline
 from kinetree.pipeline.graph import Graph
-from kinetree.tasks.arap import arap
-from kinetree.tasks.connectivity import connectivity
-from kinetree.tasks.coordinates import coordinates
-from kinetree.tasks.correlation import correlation
-from kinetree.tasks.crossing import crossing
-from kinetree.tasks.distribution import distribution
-from kinetree.tasks.geodesics import geodesics
-from kinetree.tasks.intervals import intervals
-from kinetree.tasks.leaves import leaves
-from kinetree.tasks.matching import matching
-from kinetree.tasks.mesh import mesh
-from kinetree.tasks.middle import middle
-from kinetree.tasks.sequence import sequence
-from kinetree.tasks.source import source
-from kinetree.tasks.tips import tips
+from kinetree.tasks.input.connectivity import connectivity
+from kinetree.tasks.input.mesh import mesh
+from kinetree.tasks.input.sequence import sequence
+from kinetree.tasks.input.source import source
+from kinetree.tasks.paper_2014.arap import arap
+from kinetree.tasks.paper_2014.cut_correspondence import cut_correspondence
+from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
+from kinetree.tasks.paper_2014.geodesic_mapping import geodesic_mapping
+from kinetree.tasks.paper_2014.interval_reference import interval_reference
+from kinetree.tasks.topology.correlation import correlation
+from kinetree.tasks.topology.extrema import extrema
+from kinetree.tasks.topology.geodesics import geodesics
+from kinetree.tasks.topology.intervals import intervals
+from kinetree.tasks.topology.leaves import leaves
+from kinetree.tasks.topology.mu_histogram import mu_histogram
 
 STEPS = Graph.of(
-    (source, sequence, mesh, connectivity, geodesics, distribution, correlation, tips, intervals, leaves, coordinates, middle,
-     matching, arap, crossing)
+    (source, sequence, mesh, connectivity, geodesics, mu_histogram, correlation, extrema, intervals, leaves,
+     geodesic_coordinates, interval_reference, geodesic_mapping, arap, cut_correspondence)
 )  # fmt: skip
 TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
 HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
@@ -57,16 +57,16 @@ def test_each_interval_has_one_mesh_that_follows_the_body_whoever_computes_it(tm
     cuts = artifact(pipeline, "intervals")
     assert len(cuts.begin) == 3
     for i in range(3):
-        reference = artifact(pipeline, "middle", interval=i)
+        reference = artifact(pipeline, "interval_reference", interval=i)
         assert len(reference.leaf) == (5, 4, 5)[i]
         for t in reference.frames:
             here = artifact(pipeline, "arap", interval=i, frame=t)
             assert len(here.vertices) == len(reference.vertices)
             assert here.residual.mean() < 0.03 * reference.size
             assert here == artifact(other, "arap", interval=i, frame=t)
-    across = artifact(pipeline, "crossing")
+    across = artifact(pipeline, "cut_correspondence")
     assert across.surplus(0, ahead=True), "the hand on the hip has no leaf behind the cut"
-    assert across == artifact(other, "crossing")
+    assert across == artifact(other, "cut_correspondence")
     assert pipeline.run()["tasks"]["arap"]["ran"] == 0
 
 
@@ -74,7 +74,7 @@ def test_ball_without_leaves_is_followed_by_nothing_and_the_run_says_so(tmp_path
     balls = [trimesh.creation.icosphere(subdivisions=2).apply_scale(1 + 0.1 * t) for t in range(2)]
     balls[1].faces = np.roll(balls[1].faces, 7, axis=0)
     pipeline = ran(tmp_path, source=written(tmp_path, *balls), geodesics={"bases": 20})
-    assert (artifact(pipeline, "matching", interval=0, frame=1).image == -1).all()
+    assert (artifact(pipeline, "geodesic_mapping", interval=0, frame=1).image == -1).all()
     assert artifact(pipeline, "arap", interval=0, frame=1).uncovered > 0.9
     assert any("interval 0 has no leaf" in text for _, text in pipeline.remarks())
 

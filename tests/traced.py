@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from kinetree.schemas.skeleton import Skeleton
-from kinetree.schemas.traces import Traces
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.structure.traces import Traces
 
 RINGS = 6
 

@@ -8,12 +8,12 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from kinetree.pipeline.errors import ConfigError, InputError, NodesFailedError
+from kinetree.errors import ConfigError, InputError, NodesFailedError
 from kinetree.pipeline.options import AsJson, Set, out, pipeline_of, print_json
 from kinetree.pipeline.printable import printable
 
 if TYPE_CHECKING:
-    from kinetree.schemas.evaluation import Evaluation, JointScore, Summary
+    from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 
 
 def evaluate(
@@ -38,8 +38,8 @@ def evaluate(
     Says how far every joint is from the true one, which joints are missing and which are spurious. Frames are compared by
     their numbers in the source. Nothing but the comparison is computed.
     """
-    from kinetree.tasks.plots.drawing import FORMATS, written
-    from kinetree.tasks.plots.evaluation import drawn
+    from kinetree.tasks.results.plots.drawing import FORMATS, written
+    from kinetree.tasks.results.plots.evaluation import drawn
 
     if plot is not None and plot.suffix.lower() not in FORMATS:
         raise ConfigError(f"--plot {plot}: pictures end in {', '.join(FORMATS)}")
@@ -56,7 +56,7 @@ def evaluate(
 
 def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list[str] | None = None) -> "Evaluation":
     """The comparison of a run with a truth; raises InputError where they are not of the same sequence."""
-    from kinetree.schemas.evaluation import Evaluation
+    from kinetree.schemas.results.evaluation import Evaluation
 
     given = {"truth.file": truth, "truth.body": body}
     changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in given.items() if path is not None]

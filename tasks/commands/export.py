@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
 from kinetree.pipeline.printable import printable
 from kinetree.pipeline.suggest import nearest
@@ -84,7 +84,7 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list
 
 
 def _write_schema(output: Path | None) -> None:
-    from kinetree.tasks.exports.document import schema
+    from kinetree.tasks.results.formats.document import schema
 
     text = json.dumps(schema(), indent=2) + "\n"
     if output is None:

@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError, KinetreeError
+from kinetree.errors import ConfigError, KinetreeError
 from kinetree.pipeline.options import pipeline_of
 
 if TYPE_CHECKING:
-    from kinetree.tasks.plots.drawing import Fetch
+    from kinetree.tasks.results.plots.drawing import Fetch
 
 
 WHAT = (
     "alignment", "angles", "cones", "confidence", "correlation", "errors", "lengths", "merging", "mu", "skeleton",
     "structure", "tree",
 )  # fmt: skip
-"""What can be drawn; `kinetree.tasks.plots` draws it."""
+"""What can be drawn; `kinetree.tasks.results.plots` draws it."""
 
 
 def plot(
@@ -31,8 +31,8 @@ def plot(
     ] = None,
 ) -> None:
     """Draw a result of a run: curves, surfaces, the tree, errors."""
-    from kinetree.schemas.skeleton import Skeleton
-    from kinetree.tasks.plots import OF, draw
+    from kinetree.schemas.structure.skeleton import Skeleton
+    from kinetree.tasks.results.plots import OF, draw
 
     pipeline = pipeline_of(run)
     schedule = pipeline.schedule()
@@ -50,7 +50,7 @@ def plot(
 def _axis(up: str | None, fetch: "Fetch") -> int:
     from pydantic import ValidationError
 
-    from kinetree.schemas.upright import Upright
+    from kinetree.schemas.topology.up_direction import UpDirection
 
     if up is None:
         try:
@@ -58,7 +58,7 @@ def _axis(up: str | None, fetch: "Fetch") -> int:
         except KinetreeError:  # a run that did not come so far
             return 1
     try:
-        return Upright.model_validate({"up": up, "confidence": 1.0}).axis
+        return UpDirection.model_validate({"up": up, "confidence": 1.0}).axis
     except ValidationError:
         raise ConfigError(f"--up {up}: write x, y, z, -x, -y or -z") from None
 

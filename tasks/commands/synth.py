@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 
 if TYPE_CHECKING:
-    from kinetree.schemas.synth import ContactParams, DroppedParams, SynthParams
+    from kinetree.schemas.input.synth import ContactParams, DroppedParams, SynthParams
 
 
 def synth(
@@ -40,7 +40,7 @@ def synth(
 
     Files: frame_0000.ply, frame_0001.ply, …, and truth.json.
     """
-    from kinetree.tasks.synth import write_sequence
+    from kinetree.tasks.input.synth import write_sequence
 
     params = _params(
         figure,
@@ -62,7 +62,7 @@ def synth(
 
 def _params(figure: str, **options: Any) -> "SynthParams":
     from kinetree.pipeline.config import checked
-    from kinetree.schemas.synth import SynthParams
+    from kinetree.schemas.input.synth import SynthParams
 
     own = figure.endswith((".yaml", ".yml"))
     named = {"figure": "" if own else figure, "file": str(Path(figure).absolute()) if own else ""}
@@ -70,7 +70,7 @@ def _params(figure: str, **options: Any) -> "SynthParams":
 
 
 def _contact(text: str) -> "ContactParams":
-    from kinetree.schemas.synth import ContactParams
+    from kinetree.schemas.input.synth import ContactParams
 
     parts = text.split(":")
     if len(parts) != 4 or not all(p.strip().isdigit() for p in parts[2:]):
@@ -79,7 +79,7 @@ def _contact(text: str) -> "ContactParams":
 
 
 def _dropped(text: str) -> "DroppedParams":
-    from kinetree.schemas.synth import DroppedParams
+    from kinetree.schemas.input.synth import DroppedParams
 
     parts = text.split(":")
     if len(parts) != 3 or not all(p.strip().isdigit() for p in parts[1:]):

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from kinetree.pipeline.errors import ConfigError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.options import pipeline_of
 
 
@@ -20,7 +20,7 @@ def view(
 
     Where there is no screen, print its path.
     """
-    from kinetree.schemas.report import Report
+    from kinetree.schemas.results.report import Report
 
     path = pipeline_of(run).config.output / Report.page_as
     if not path.is_file():

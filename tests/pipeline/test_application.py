@@ -10,10 +10,10 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline import application
 from kinetree.pipeline.application import Application, Command, Section, Shortcut, built_in, current
 from kinetree.pipeline.cli import command_line
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.tasks.application import APPLICATION
 

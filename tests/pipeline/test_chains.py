@@ -2,7 +2,7 @@
 
 import pytest
 
-from kinetree.pipeline.errors import GraphError
+from kinetree.errors import GraphError
 from kinetree.pipeline.run import Launcher, run
 
 CHAIN = '''"""Frames without files, linked in a row."""

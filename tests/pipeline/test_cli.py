@@ -10,8 +10,8 @@ import sys
 import pytest
 import yaml
 
+from kinetree.errors import KinetreeError
 from kinetree.pipeline import cli
-from kinetree.pipeline.errors import KinetreeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.tasks.application import APPLICATION, main
 

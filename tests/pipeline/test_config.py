@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.blocks import Reading
 from kinetree.pipeline.config import Compute, load, with_compute
-from kinetree.pipeline.errors import ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import as_yaml
 from kinetree.pipeline.yaml_text import parsed
@@ -325,7 +325,7 @@ def test_saved_configuration_is_read_back_from_the_output_folder(tmp_path):
 
 
 def test_compute_output_and_store_are_never_in_a_key(tmp_path):
-    from kinetree.schemas.source import Source
+    from kinetree.schemas.input.source import Source
 
     keys = set()
     for number, compute in enumerate([{}, {"workers": 3, "executor": "sync", "memory": "1GB"}, {"scheduler": "tcp://x:1"}]):

@@ -5,7 +5,7 @@ import json
 import pytest
 from distributed import Client, LocalCluster
 
-from kinetree.pipeline.errors import StaleWorkerError
+from kinetree.errors import StaleWorkerError
 from kinetree.pipeline.execute import execute
 from kinetree.pipeline.run import _steps
 
@@ -127,8 +127,8 @@ def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
 
 
 def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):
+    from kinetree.errors import ClusterError
     from kinetree.pipeline import clusters
-    from kinetree.pipeline.errors import ClusterError
 
     monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.2)
     with pytest.raises(ClusterError, match="nobody answers there"):

@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from kinetree.pipeline.errors import DamagedArtifactError
+from kinetree.errors import DamagedArtifactError
 from kinetree.pipeline.store import Store, artifact_path
 
 TERMINAL = {"finish", "fresh", "failed", "skipped"}

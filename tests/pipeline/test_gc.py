@@ -5,7 +5,7 @@ import signal
 
 import pytest
 
-from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.gc import collect
 from kinetree.pipeline.store import Store
 

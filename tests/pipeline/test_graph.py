@@ -6,7 +6,7 @@ from typing import ClassVar
 import networkx as nx
 import pytest
 
-from kinetree.pipeline.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
+from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import origin, task

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.look import RunList
 
 

@@ -25,7 +25,7 @@ from kinetree.pipeline.key import (
 )
 from kinetree.schemas.array import Array, Artifact, Floats, Ints, Location
 from kinetree.schemas.dims import VERTEX, XYZ
-from kinetree.schemas.source import Source
+from kinetree.schemas.input.source import Source
 
 
 class Cloud(Artifact):
@@ -151,11 +151,13 @@ def test_keys_that_are_no_texts_are_refused():
 
 
 def test_digests_are_the_same_in_another_process_with_another_hash_seed():
-    code = "from kinetree.pipeline.key import *; print(digest({'b': 1.5, 'a': [1]}), code_digest('kinetree.schemas.mesh'))"
+    code = (
+        "from kinetree.pipeline.key import *; print(digest({'b': 1.5, 'a': [1]}), code_digest('kinetree.schemas.input.mesh'))"
+    )
     seed = "1" if sys.flags.hash_randomization else "2"
     env = {"PYTHONHASHSEED": seed}
     told = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True)
-    assert told.stdout == f"{digest({'a': [1], 'b': 1.5})} {code_digest('kinetree.schemas.mesh')}\n"
+    assert told.stdout == f"{digest({'a': [1], 'b': 1.5})} {code_digest('kinetree.schemas.input.mesh')}\n"
 
 
 # ── arrays and artifacts ────────────────────────────────────────────────────────────────────────────────────────────
@@ -365,7 +367,7 @@ def test_code_outside_the_counted_packages_is_no_part(package):
 
 
 def test_tasks_of_kinetree_reach_their_numerics_and_schemas_and_never_the_loom():
-    closure = code_closure("kinetree.tasks.mesh")
+    closure = code_closure("kinetree.tasks.input.mesh")
     assert {f"kinetree.{m}" for m in ("tasks.mesh", "tasks.numerics.mesh", "schemas.mesh", "schemas.array")} <= set(closure)
     assert not [m for m in closure if m.startswith("kinetree.pipeline")]
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinetree.pipeline.errors import UnknownNodeError
+from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.node import Node, label, parse, project
 from kinetree.tasks import METHODS
 

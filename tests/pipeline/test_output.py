@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.config import load
-from kinetree.pipeline.errors import StoreError, StoreFullError
 from kinetree.pipeline.output import write_config, write_run_json
 from kinetree.tasks.application import APPLICATION
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kinetree.pipeline.errors import StoreError, StoreFullError
+from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.place import Folder
 
 bound = pytest.mark.skipif(os.geteuid() == 0, reason="permissions do not bind root")

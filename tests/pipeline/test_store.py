@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 import zarr
 
+from kinetree.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline import store as stores
-from kinetree.pipeline.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline.key import artifact_digest
 from kinetree.pipeline.store import FORMAT, MARKER, Record, Store, artifact_path, group_arrays
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints

@@ -5,7 +5,7 @@ from typing import Annotated, Optional
 
 import pytest
 
-from kinetree.pipeline.errors import GraphError
+from kinetree.errors import GraphError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.task import Argument, load, origin, space, task
 from kinetree.schemas.array import Artifact, Params
@@ -206,7 +206,7 @@ def test_space_is_a_path_of_dimensions():
 
 
 def test_worker_finds_a_task_by_its_name():
-    found = load("kinetree.tasks.mesh:mesh")
-    assert (found.name, found.module) == ("mesh", "kinetree.tasks.mesh")
+    found = load("kinetree.tasks.input.mesh:mesh")
+    assert (found.name, found.module) == ("mesh", "kinetree.tasks.input.mesh")
     with pytest.raises(GraphError, match=r"^kinetree\.tasks\.mesh:clean is not a task$"):
-        load("kinetree.tasks.mesh:clean")
+        load("kinetree.tasks.input.mesh:clean")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from pydantic import ValidationError
 
-from kinetree.pipeline.errors import ArtifactError
+from kinetree.errors import ArtifactError
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints, Location, Params, PathLike
 from kinetree.schemas.dims import CORNER, FACE, VERTEX, XYZ
 

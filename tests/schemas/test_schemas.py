@@ -13,8 +13,8 @@ from kinetree.schemas.array import Artifact, Params
 from kinetree.schemas.dims import Dim
 from kinetree.tasks import METHODS
 
-STEMS = sorted(p.stem for p in Path(dims.__file__).parent.glob("*.py") if p.stem not in ("__init__", "array", "dims"))
-MODULES = [importlib.import_module(f"kinetree.schemas.{stem}") for stem in STEMS]
+FILES = sorted(p for p in Path(dims.__file__).parent.glob("*/*.py") if p.stem != "__init__")
+MODULES = [importlib.import_module(f"kinetree.schemas.{p.parent.name}.{p.stem}") for p in FILES]
 MODELS = sorted(
     {m for module in MODULES for m in vars(module).values() if isinstance(m, type) and issubclass(m, BaseModel)}
     - {Artifact, Params},
@@ -76,17 +76,17 @@ def test_every_other_field_is_plain_json(model):
 def test_task_artifact_and_params_share_one_stem(name):
     task = TASKS[name]
     artifact = task.returns.__name__
-    stem = task.module.removeprefix("kinetree.tasks.")
+    place, _, stem = task.module.removeprefix("kinetree.tasks.").partition(".")
     assert name == stem or name.endswith(f"_{stem}"), "a later pass of an operation is named first_refit, second_refit, …"
     default = METHODS["mesoscopic"]
     if name not in default.by_name and task.returns in default.writers:  # another method's way to the same artifact
-        assert task.returns.__module__ == f"kinetree.schemas.{default.writers[task.returns].name}"
+        assert task.returns.__module__.endswith(f".{default.writers[task.returns].name}")
     else:
         assert artifact.lower() == name.replace("_", "")
-        assert task.returns.__module__ == f"kinetree.schemas.{stem}"
+        assert task.returns.__module__ == f"kinetree.schemas.{place}.{stem}"
     if task.params is not None:
         assert task.params.__name__.lower() == f"{name.replace('_', '')}params"
-        assert task.params.__module__ == f"kinetree.schemas.{stem}"
+        assert task.params.__module__ == f"kinetree.schemas.{place}.{stem}"
 
 
 @pytest.mark.parametrize("model", ARTIFACTS, ids=named)

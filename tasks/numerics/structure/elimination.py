@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.fitting import fit, members, squared
-from kinetree.tasks.numerics.structure.labelling import connected, neighbouring
-from kinetree.tasks.numerics.structure.missing import candidates, missed
+from kinetree.tasks.numerics.structure.part_labels import connected, neighbouring
+from kinetree.tasks.numerics.structure.part_motion import fit, members, squared
+from kinetree.tasks.numerics.structure.removal_cost import candidates, removal_cost
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -53,7 +53,7 @@ class Bar(NamedTuple):
     floor  : least mean squared residual that tells clearly rigid vertices from others
     """
 
-    missed: float = 0.0025
+    removal_cost: float = 0.0025
     noise: float = 2.5
     slip: float = 0.3
     short: float = 0.2
@@ -112,7 +112,7 @@ def _least_missed(
     while True:
         worst = -1
         for p in range(parts):
-            if alive[p] and score[p] < bar.missed and (worst < 0 or score[p] < score[worst]):
+            if alive[p] and score[p] < bar.removal_cost and (worst < 0 or score[p] < score[worst]):
                 worst = p
         for p in range(parts):
             if worst < 0 and alive[p] and stale[p]:
@@ -149,7 +149,7 @@ def _score(
     fine = np.sqrt(size[part] / (size[part] + bar.least))
     quiet, asked = bar.quiet * (1.0 + 2.0 * bar.slip**2) / 3.0, member[:count]
     V, N, x, w, area = body.V, body.N, body.x, body.weight, body.area
-    return fine * missed(V, N, x, w, area, asked, part, other, touches, R, t, bone, bar.slip, bar.loose, quiet)
+    return fine * removal_cost(V, N, x, w, area, asked, part, other, touches, R, t, bone, bar.slip, bar.loose, quiet)
 
 
 @compiled

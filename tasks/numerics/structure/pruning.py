@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.rings import rings
-from kinetree.tasks.numerics.structure.handover import handed_over
-from kinetree.tasks.numerics.structure.hanging import Carried, Hung, Surfaces, against, hung
-from kinetree.tasks.numerics.structure.shown import Seen, unshown
-from kinetree.tasks.numerics.structure.turning import in_between
+from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
+from kinetree.tasks.numerics.structure.joint_rotations import in_between
+from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, against, part_tree
+from kinetree.tasks.numerics.structure.vertex_reassignment import handed_over
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -39,7 +39,7 @@ class Pruned(NamedTuple):
     """The parts that are left, and the tree they hang in."""
 
     parts: Carried
-    hung: Hung
+    part_tree: PartTree
 
 
 def pruned(
@@ -59,7 +59,7 @@ def pruned(
     """
     start, ring = rings(body.F, len(body.V))
     left = _spared(body, parts, leaves, degrees, ratio)
-    while seen is not None and (gone := unshown(body, left.parts, left.hung, seen)) >= 0:
+    while seen is not None and (gone := least_evident_joint(body, left.parts, left.part_tree, seen)) >= 0:
         label = handed_over(body.V, body.x, left.parts.label, gone, left.parts.R, left.parts.t, start, ring)
         left = _spared(body, left.parts.without(gone, label), leaves, degrees, ratio)
     return left
@@ -67,12 +67,12 @@ def pruned(
 
 def _spared(body: Surfaces, parts: Carried, leaves: Ints, degrees: float, ratio: float) -> Pruned:
     start, ring = rings(body.F, len(body.V))
-    found = hung(body, parts)
+    found = part_tree(body, parts)
     while True:
         for gone in _doubtful(body, parts, found, leaves, degrees, ratio):
             label = handed_over(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring)
             fewer = parts.without(gone, label)
-            without = hung(body, fewer)
+            without = part_tree(body, fewer)
             if without.ratio.min() >= WORSE * found.ratio.min():
                 parts, found = fewer, without
                 break
@@ -80,7 +80,7 @@ def _spared(body: Surfaces, parts: Carried, leaves: Ints, degrees: float, ratio:
             return Pruned(parts, found)
 
 
-def _doubtful(body: Surfaces, parts: Carried, found: Hung, leaves: Ints, degrees: float, ratio: float) -> list[int]:
+def _doubtful(body: Surfaces, parts: Carried, found: PartTree, leaves: Ints, degrees: float, ratio: float) -> list[int]:
     """Parts that may be none, the most doubtful first: flesh, then what turns too little, then what drifts too much."""
     tree, mass = found.tree, np.bincount(parts.label, body.area, parts.R.shape[1])
     has_leaf = np.isin(np.arange(len(mass)), parts.label[leaves])
@@ -99,7 +99,7 @@ def _doubtful(body: Surfaces, parts: Carried, found: Hung, leaves: Ints, degrees
     return list(dict.fromkeys(part for doubt, part in sorted(doubts) if doubt < 1.0))
 
 
-def _bears(found: Hung, part: int, k: int) -> bool:
+def _bears(found: PartTree, part: int, k: int) -> bool:
     """Whether a part has a clear joint other than the k-th."""
     tree = found.tree
     place = int(np.flatnonzero(tree.order == part)[0])
@@ -108,7 +108,7 @@ def _bears(found: Hung, part: int, k: int) -> bool:
     return bool((found.ratio[others] >= CLEAR_RATIO).any())
 
 
-def _flesh(R: Floats, found: Hung, k: int) -> float:
+def _flesh(R: Floats, found: PartTree, k: int) -> float:
     """Below 1, and the lower the clearer, where the part at the k-th place is a ring of flesh between two neighbours."""
     tree = found.tree
     children = np.flatnonzero(tree.parents == k)
@@ -118,7 +118,7 @@ def _flesh(R: Floats, found: Hung, k: int) -> float:
     return min((_ring(R, found, k, *pair) for pair in ends), default=np.inf)
 
 
-def _ring(R: Floats, found: Hung, k: int, one: int, other: int) -> float:
+def _ring(R: Floats, found: PartTree, k: int, one: int, other: int) -> float:
     """The same, asked of two of its joints: how near they are, if it turns by a share of what both turn by."""
     tree = found.tree
     rows = tree.border[[one, other]]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.rings import rings
+from kinetree.tasks.numerics.geometry.neighbours import rings
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -3,9 +3,9 @@
 import numpy as np
 from limbs import bent, tube
 
-from kinetree.tasks.numerics.rings import rings
+from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated, rims
-from kinetree.tasks.numerics.structure.fitting import fit
+from kinetree.tasks.numerics.structure.part_motion import fit
 
 
 def hinge(angles, bands=10):
@@ -40,13 +40,13 @@ def test_what_does_not_move_is_one_part():
 def test_asked_again_nothing_goes():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
     for missed in (1e-6, 1e-4, 0.0025):
-        first = eliminated(body, Bar(missed=missed), label, R, t)
-        np.testing.assert_array_equal(eliminated(body, Bar(missed=missed), *first)[0], first[0])
+        first = eliminated(body, Bar(removal_cost=missed), label, R, t)
+        np.testing.assert_array_equal(eliminated(body, Bar(removal_cost=missed), *first)[0], first[0])
 
 
 def test_a_lower_bar_never_leaves_fewer_parts():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    counts = [len(np.unique(eliminated(body, Bar(missed=m), label, R, t)[0])) for m in (1e-9, 0.0025, 0.02, 1.0)]
+    counts = [len(np.unique(eliminated(body, Bar(removal_cost=m), label, R, t)[0])) for m in (1e-9, 0.0025, 0.02, 1.0)]
     assert counts == sorted(counts, reverse=True)
     assert counts[-1] == 1
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from articulated import Known, chain, moved, swings, three_arms
 
-from kinetree.tasks.numerics.structure.hanging import Carried, Surfaces
+from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
 from kinetree.tasks.numerics.structure.pruning import Pruned, pruned
 
 
@@ -27,7 +27,7 @@ def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
     body = chain((-0.4, 0.4), turn)
     found = of(body)
     assert found.parts.R.shape[1] == 2
-    assert found.hung.joints.rest[found.hung.tree.border[1]][2] == pytest.approx(0, abs=0.2)
+    assert found.part_tree.joints.rest[found.part_tree.tree.border[1]][2] == pytest.approx(0, abs=0.2)
 
 
 def test_parts_that_do_not_turn_are_one() -> None:

@@ -1,0 +1,56 @@
+"""The reference mesh as a deformation graph: what every frame is fitted with (for 2014, Sec. 5.2)."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.dims import BLOCK, CORNER, END, FACE, INFLUENCE, NEIGHBOUR, NODE, PAIRING, SAMPLE, TIE, VERTEX, XYZ
+
+
+class DeformationGraphParams(Params):
+    """How finely the reference is covered with nodes."""
+
+    nodes: int = Field(default=900, ge=10, le=100_000)
+    """Nodes, at most one for every two vertices."""
+    finest: float = Field(default=0.4, gt=0, le=1)
+    """Spacing of nodes where the body is thinnest, share of the spacing where it is thick."""
+    thick: float = Field(default=0.08, gt=0)
+    """Thickness from which on the spacing no longer grows, share of the root of the area."""
+    strut: float = Field(default=0.15, ge=0)
+    """Nodes on opposite sides are tied through the body up to this thickness, share of the root of the area."""
+    samples: int = Field(default=8, ge=1)
+    """Vertices per node that stand for the surface in a fit."""
+
+
+class DeformationGraph(Artifact):
+    """The rest shape and its deformation graph; empty for fixed connectivity, where there is nothing to fit."""
+
+    vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
+    """Position of every vertex at rest."""
+    faces: Annotated[Ints, Array("int32", FACE, CORNER)]
+    """Faces of the reference mesh."""
+    normals: Annotated[Floats, Array("float64", VERTEX, XYZ)]
+    """Outward unit normals, smoothed."""
+    nodes: Annotated[Ints, Array("int32", NODE)]
+    """The vertex each node lies on, ascending."""
+    bound: Annotated[Ints, Array("int32", VERTEX, INFLUENCE)]
+    """The nodes each vertex follows, ascending along each row."""
+    weight: Annotated[Floats, Array("float64", VERTEX, INFLUENCE)]
+    """How far it follows each, not negative, summing to 1."""
+    ties: Annotated[Ints, Array("int32", TIE, END)]
+    """Nodes that are tied, the smaller first."""
+    samples: Annotated[Ints, Array("int32", SAMPLE)]
+    """Vertices that stand for the surface in a fit, ascending."""
+    size: float
+    """Root of the area, length."""
+    degree: Annotated[Ints, Array("int32", VERTEX)]
+    """Neighbours of every vertex over edges."""
+    ring: Annotated[Ints, Array("int32", NEIGHBOUR)]
+    """They themselves, vertex by vertex."""
+    blocks: Annotated[Ints, Array("int32", BLOCK, END)]
+    """Pairs of nodes that a fit couples."""
+    block_of_vertex: Annotated[Ints, Array("int32", VERTEX, PAIRING)]
+    """The block of every pair of nodes a vertex follows."""
+    block_of_tie: Annotated[Ints, Array("int32", TIE)]
+    """The block of every tie."""

@@ -1,0 +1,7 @@
+"""Numbers as people who measure take them: CSV files."""
+
+from kinetree.schemas.results.exports import Exported
+
+
+class Tables(Exported):
+    """positions.csv, confidence.csv, angles.csv and bones.csv."""

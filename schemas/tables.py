@@ -1,7 +1,0 @@
-"""Numbers as people who measure take them: CSV files."""
-
-from kinetree.schemas.exports import Exported
-
-
-class Tables(Exported):
-    """positions.csv, confidence.csv, angles.csv and bones.csv."""

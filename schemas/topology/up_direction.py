@@ -1,0 +1,39 @@
+"""Which way is up: files do not say it, and pictures need it."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from kinetree.schemas.array import Artifact, Params
+
+UNSURE = 0.3
+"""Below this confidence the way up is a guess worth a word."""
+
+
+class UpDirectionParams(Params):
+    """What the user knows."""
+
+    up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(default=None)
+    """Direction of the coordinates that points up, e.g. z or -y; None finds it. No result but pictures depends on it."""
+
+
+class UpDirection(Artifact):
+    """The direction of the coordinates that points up in pictures."""
+
+    up: Literal["x", "y", "z", "-x", "-y", "-z"]
+    """The axis, with a minus where it points down."""
+    confidence: float
+    """By what share no other direction fits as well, 0 to 1; 1 where the user says it."""
+
+    @property
+    def axis(self) -> int:
+        """0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions."""
+        at = "xyz".index(self.up[-1])
+        return ~at if self.up.startswith("-") else at
+
+    def remarks(self) -> tuple[str, ...]:
+        """Said where it is hardly more than a guess."""
+        if self.confidence >= UNSURE:
+            return ()
+        guess = f"pictures have {self.up} up, which is a guess (confidence {self.confidence:.1f})"
+        return (f"{guess}; --set up_direction.up=… says it",)

@@ -1,0 +1,38 @@
+"""One frame's surface, loaded and cleaned."""
+
+import math
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.mesh import Cleaning, Mesh, MeshParams
+from kinetree.schemas.input.source import Source
+from kinetree.tasks.input.source import name, surface
+from kinetree.tasks.numerics.input.mesh import Cleaned, clean
+
+
+@task(over="frame")
+def mesh(source: Source, params: MeshParams) -> Mesh:
+    """Loads one frame and cleans it: welded, oriented, without debris, with the way back to the file (2014, Sec. 3)."""
+    V, F = surface(source)
+    cleaned = clean(V, F, merge=params.merge, component_share=params.component_share, name=name(source))
+    return Mesh(vertices=cleaned.V, faces=cleaned.F, vertex_of_input=cleaned.vertex_map, cleaning=_told(cleaned))
+
+
+def _told(cleaned: Cleaned) -> Cleaning:
+    return Cleaning(
+        merged=cleaned.merged,
+        unreferenced=cleaned.unreferenced,
+        degenerate=cleaned.degenerate,
+        duplicate=cleaned.duplicate,
+        needles=cleaned.needles,
+        flipped=cleaned.flipped,
+        components=len(cleaned.kept),
+        components_kept=int(cleaned.kept.sum()),
+        share_kept=float(cleaned.shares[cleaned.kept].sum()),
+        nested=cleaned.nested,
+        boundary_edges=cleaned.boundary_edges,
+        non_manifold_edges=cleaned.non_manifold_edges,
+        disagreeing_edges=cleaned.disagreeing_edges,
+        euler=cleaned.euler,
+        area=cleaned.area,
+        volume=None if math.isnan(cleaned.volume) else cleaned.volume,
+    )

@@ -1,0 +1,24 @@
+"""The sequence as a whole: which frames, how fast, in what unit."""
+
+from collections.abc import Mapping
+
+from kinetree.errors import SourceError
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence, SequenceParams
+from kinetree.schemas.input.source import Source
+
+
+@task()
+def sequence(source: Mapping[int, Source], params: SequenceParams) -> Sequence:
+    """Gathers frame numbers, rate and unit; what the user says goes before what the files state (2014, Sec. 3)."""
+    rates = sorted({s.fps for s in source.values() if s.fps is not None})
+    units = sorted({s.unit for s in source.values() if s.unit is not None})
+    if params.fps is None and len(rates) > 1:
+        raise SourceError(f"the files state different frame rates ({rates}); say which with sequence.fps")
+    if params.unit is None and len(units) > 1:
+        raise SourceError(f"the files state different units ({units}); say which with sequence.unit")
+    return Sequence(
+        frames=tuple(source),
+        fps=params.fps if params.fps is not None else next(iter(rates), None),
+        unit=params.unit if params.unit is not None else next(iter(units), None),
+    )

@@ -1,0 +1,111 @@
+"""Synthetic sequences with a true skeleton, generated frame by frame where a captured one would be read."""
+
+import importlib.resources
+import json
+import os
+import shutil
+from dataclasses import fields
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+import yaml
+
+from kinetree.errors import ConfigError
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import Figure, named
+from kinetree.tasks.numerics.input.synth.trees import random_tree
+
+FIGURES = importlib.resources.files("kinetree.configs") / "figures"
+
+
+def recipe(params: SynthParams) -> str:
+    """All that decides the sequence, as JSON with the figure written out: equal recipes, equal bytes, on any machine.
+
+    raises : ConfigError where the figure, the motion or a limb is not known
+    """
+    told = params.model_dump(mode="json", exclude={"figure", "file"})
+    written = json.dumps({"figure": _description(params), **told}, sort_keys=True)
+    body(written)
+    return written
+
+
+@lru_cache(maxsize=4)
+def body(written: str) -> Body:
+    """The body that a recipe describes, posed in every frame and not surfaced yet."""
+    options: dict[str, Any] = json.loads(written)
+    figure = options.pop("figure")
+    made = random_tree(figure["random"]) if "random" in figure else Figure.of(figure)
+    return Body.of(made, **options)
+
+
+def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, cameras: int = 0) -> None:
+    """Writes a sequence as a person would have it: one PLY a frame, and truth.json beside them.
+
+    volumes : also volume_0000.npz …: signed distance on a grid, negative inside, with origin and voxel
+    cameras : also silhouettes_0000.npz …, from a ring of so many cameras, and cameras.npz with their 3×4 matrices
+    raises  : ConfigError where the figure is not known or the folder holds something already
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ConfigError(f"{folder}: not an empty folder; name a new one, so that no frame of another sequence stays in it")
+    made = body(recipe(params))
+    beside = folder.absolute().with_name(f".{folder.name}.{os.getpid()}")
+    try:
+        beside.mkdir(parents=True)
+        _write_frames(made, beside, volumes, cameras)
+        (beside / "truth.json").write_text(json.dumps(made.truth()))
+        if folder.is_dir():
+            folder.rmdir()
+        beside.rename(folder)
+    except OSError as error:
+        raise ConfigError(f"{folder}: cannot be written: {error.strerror}") from error
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def _write_frames(made: Body, folder: Path, volumes: bool, cameras: int) -> None:
+    ring = made.cameras(cameras) if cameras else None
+    if ring is not None:
+        np.savez_compressed(folder / "cameras.npz", **{f.name: getattr(ring, f.name) for f in fields(ring)})
+    for t in range(len(made.X)):
+        V, F = made.frame(t)
+        ply = trimesh.Trimesh(V, F, process=False).export(file_type="ply", vertex_normal=False)
+        (folder / f"frame_{t:04d}.ply").write_bytes(ply)
+        if volumes:
+            np.savez_compressed(folder / f"volume_{t:04d}.npz", **made.volume(t)._asdict())
+        if ring is not None:
+            np.savez_compressed(folder / f"silhouettes_{t:04d}.npz", silhouettes=made.silhouettes(t, ring))
+
+
+def figure_names() -> list[str]:
+    """The figures that ship with kinetree."""
+    return sorted(f.name.removesuffix(".yaml") for f in FIGURES.iterdir() if f.name.endswith(".yaml"))
+
+
+def _description(params: SynthParams) -> dict[str, Any]:
+    """The figure as data."""
+    if params.file:
+        return _read(Path(params.file))
+    kind, colon, seed = params.figure.partition(":")
+    if kind == "random" and colon:
+        if not (seed.isascii() and seed.isdigit()):
+            raise ConfigError(f"figure {params.figure!r}: write random:SEED with a whole number, e.g. random:7")
+        return {"random": int(seed)}
+    known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}
+    named(params.figure, known)
+    return known[params.figure]
+
+
+def _read(path: Any) -> dict[str, Any]:
+    try:
+        told = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except yaml.YAMLError as error:
+        raise ConfigError(f"{path}: not valid YAML: {error}") from None
+    if not isinstance(told, dict):
+        raise ConfigError(f"{path}: expected a figure with its joints, got {type(told).__name__}")
+    return told

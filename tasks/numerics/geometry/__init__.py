@@ -1,0 +1,1 @@
+"""The ground under all shelves: meshes, distances over surfaces, normals, nearest points, rigid motions."""

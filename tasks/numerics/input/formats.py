@@ -1,0 +1,197 @@
+"""Mesh files of the five formats that are read, and what is refused of them.
+
+A file is input from outside: every count it claims is held against its size before memory is taken, nothing outside it
+is opened, and whatever cannot be a mesh is refused with its name and the reason.
+"""
+
+import json
+import re
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from trimesh.exchange.gltf import load_glb
+from trimesh.exchange.ply import load_ply
+from trimesh.geometry import triangulate_quads
+
+from kinetree.errors import MeshError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+_MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
+_ENCODED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization"}
+
+
+def read_mesh(path: Path | str) -> tuple[Floats, Ints]:
+    """One mesh, its vertices exactly those of the file and in the file's order.
+
+    STL has three vertices a face; the meshes of a GLB follow each other, placed as its scene says; polygons become
+    triangles as trimesh does it. Textures, materials and other files named in the file are not opened.
+
+    returns : V (vertex, xyz) in the file's unit · F (face, corner)
+    raises  : MeshError if it cannot be read, has no faces, or its indices or coordinates are no mesh's
+    """
+    path = Path(path)
+    read = _READERS.get(path.suffix.lower())
+    if read is None:
+        raise MeshError(f"{path}: {path.suffix or 'no suffix'} is not read; {' '.join(suffixes())} are")
+    if not path.is_file():
+        raise MeshError(f"{path}: {'not a file' if path.exists() else 'there is no such file'}")
+    try:
+        raw = path.read_bytes()
+        if not raw:
+            raise MeshError("the file is empty")
+        V, F = read(raw)
+        V = np.asarray(V, dtype=np.float64).reshape(len(V), 3)
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from None
+    except Exception as error:
+        kind = path.suffix[1:].upper()
+        reason = f"{type(error).__name__}: {error}"
+        raise MeshError(f"{path}: cannot be read as {kind} ({reason}); the file is damaged or cut short") from error
+    return checked(V, F, str(path), first_index=int(path.suffix.lower() == ".obj"))
+
+
+def checked(V: Any, F: Any, name: str, first_index: int = 0) -> tuple[Floats, Ints]:
+    """The mesh as contiguous float64 and int32, if it is one.
+
+    V, F        : (vertex, xyz) · (face, corner), numbers of any kind
+    name        : what messages call the mesh
+    first_index : what its format calls the first vertex, so that messages show the file's own numbers
+    raises      : MeshError if either is empty, an index has no vertex, or a coordinate is not finite
+    """
+    V, F = np.ascontiguousarray(V, dtype=np.float64), np.asarray(F)
+    if not len(V):
+        raise MeshError(f"{name}: no vertices; the file is damaged or holds no mesh")
+    if not len(F):
+        raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
+    wrong = (F < 0) | (len(V) <= F)
+    if wrong.any():
+        face, corner = np.argwhere(wrong)[0]
+        remedy = "the file is damaged" + ("" if first_index else " or its indices start at 1")
+        raise MeshError(
+            f"{name}: vertex {corner} of face {face} is {int(F[face, corner]) + first_index}, "
+            f"but the mesh has {len(V)} vertices; {remedy}"
+        )
+    lost = ~np.isfinite(V).all(axis=1)
+    if lost.any():
+        at = int(np.flatnonzero(lost)[0])
+        raise MeshError(f"{name}: {lost.sum()} of {len(V)} vertices are NaN or infinite, the first is vertex {at}, {V[at]}")
+    return V, np.ascontiguousarray(F, dtype=np.int32)
+
+
+def suffixes() -> tuple[str, ...]:
+    """The endings of the files that are read."""
+    return tuple(_READERS)
+
+
+def _triangles(polygons: Any) -> NDArray[np.int64]:
+    """(face, corner)"""
+    return np.asarray(triangulate_quads(polygons), dtype=np.int64).reshape(-1, 3)
+
+
+def _ply(raw: bytes) -> tuple[Any, Any]:
+    header, end, body = raw.partition(b"end_header")
+    if not raw.startswith(b"ply") or not end:
+        raise MeshError("no PLY header from 'ply' to 'end_header'; the file is damaged or something else")
+    claimed = {key.decode(): int(n) for key, n in re.findall(rb"^\s*element\s+(\w+)\s+(-?\d+)", header, re.MULTILINE)}
+    for key, n in claimed.items():
+        if not 0 <= n <= len(body):
+            raise MeshError(f"its header claims {n} × {key} in {len(body)} bytes; the file is damaged or cut short")
+    try:
+        mesh = load_ply(BytesIO(raw), skip_materials=True, fix_texture=False)
+    except ValueError as error:
+        raise MeshError(
+            f"cannot be read as PLY ({error}); the file is damaged or cut short, or is binary and mixes triangles with "
+            "larger polygons: triangulate it when exporting, or save it as ASCII"
+        ) from error
+    V, F = mesh.get("vertices", ()), _triangles(mesh.get("faces", ()))
+    for key, held in (("vertex", len(V)), ("face", len(F))):
+        if held < claimed.get(key, 0):
+            raise MeshError(f"its header claims {claimed[key]} × {key}, only {held} are whole; the file is cut short")
+    return V, F
+
+
+def _obj(raw: bytes) -> tuple[Any, Any]:
+    vertices: list[list[str]] = []
+    polygons: list[list[int]] = []
+    text = raw.decode("utf-8", "replace").replace("\\\r\n", " ").replace("\\\n", " ")
+    for line in text.splitlines():
+        if line.startswith(("v ", "v\t")):
+            vertices.append(line.split()[1:4])
+        elif line.startswith(("f ", "f\t")):
+            corners = [int(word.partition("/")[0]) for word in line.split()[1:]]
+            # a negative index counts back from the vertices read so far
+            polygons.append([i + len(vertices) if i < 0 else i - 1 for i in corners])
+    return np.array(vertices, dtype=np.float64).reshape(len(vertices), 3), _triangles(polygons)
+
+
+def _off(raw: bytes) -> tuple[Any, Any]:
+    lines = [line.partition("#")[0].split() for line in raw.decode("utf-8", "replace").splitlines()]
+    lines = [words for words in lines if words]
+    if not lines or not re.fullmatch("(ST)?C?N?OFF", lines[0][0].upper()) or "BINARY" in lines[0]:
+        raise MeshError("does not begin with OFF and numbers as text; the file is damaged or something else")
+    lines = ([lines[0][1:]] if len(lines[0]) > 1 else []) + lines[1:]
+    n, m = (int(word) for word in lines[0][:2])
+    if n < 0 or m < 0 or n + m > len(lines) - 1:
+        raise MeshError(f"claims {n} vertices and {m} faces, but {len(lines) - 1} lines follow; the file is cut short")
+    polygons = [[int(word) for word in words[1 : int(words[0]) + 1]] for words in lines[n + 1 : n + m + 1]]
+    return np.array([words[:3] for words in lines[1 : n + 1]], dtype=np.float64).reshape(n, 3), _triangles(polygons)
+
+
+def _stl(raw: bytes) -> tuple[Any, Any]:
+    faces = int.from_bytes(raw[80:84], "little")
+    if len(raw) == 84 + 50 * faces:
+        record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+        V = np.frombuffer(raw, dtype=record, offset=84)["corners"].reshape(-1, 3)
+    elif raw.lstrip()[:5].lower() == b"solid":
+        V = np.array(re.findall(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", raw, re.IGNORECASE)).astype(np.float64).reshape(-1, 3)
+        faces = len(re.findall(rb"endfacet", raw, re.IGNORECASE))
+        if len(V) != 3 * faces or raw.lower().rfind(b"endsolid") < raw.lower().rfind(b"facet"):
+            raise MeshError(f"{len(V)} corners in {faces} finished facets and no endsolid after them; the file is cut short")
+    else:
+        raise MeshError(f"claims {faces} facets in {len(raw)} bytes; the file is damaged or cut short")
+    return V, np.arange(len(V)).reshape(-1, 3)
+
+
+def _glb(raw: bytes) -> tuple[Any, Any]:
+    if raw[:4] != b"glTF" or int.from_bytes(raw[8:12], "little") > len(raw):
+        raise MeshError("no complete binary glTF; the file is damaged, cut short or something else")
+    header = json.loads(raw[20 : 20 + int.from_bytes(raw[12:16], "little")])
+    if outside := [b["uri"] for b in header.get("buffers", []) if not str(b.get("uri", "data:")).startswith("data:")]:
+        raise MeshError(f"keeps its data outside itself, in {outside[0]!r}, which is not opened; export it as one file")
+    encoded = _ENCODED & set(header.get("extensionsRequired", []))
+    if encoded or any("bufferView" not in a or "sparse" in a for a in header.get("accessors", [])):
+        what = ", ".join(sorted(encoded)) or "sparse or compressed arrays"
+        raise MeshError(f"uses {what}, which is not read; export it uncompressed")
+    scene = load_glb(BytesIO(raw), resolver=None, skip_materials=True)
+    meshes = {key: mesh for key, mesh in scene["geometry"].items() if "faces" in mesh}
+    world = {scene["base_frame"]: np.eye(4)}
+    placed = [] if scene["graph"] else [(key, np.eye(4)) for key in meshes]
+    for edge in scene["graph"]:  # parents come before their children
+        world[edge["frame_to"]] = world[edge["frame_from"]] @ edge["matrix"]
+        if edge.get("geometry") in meshes:
+            placed.append((edge["geometry"], world[edge["frame_to"]]))
+    if (total := sum(len(meshes[key]["vertices"]) for key, _ in placed)) > _MOST_VERTICES:
+        raise MeshError(f"its scene unfolds to {total} vertices, more than {_MOST_VERTICES}; no frame needs as many")
+    V, F, begin = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+    for key, M in placed:
+        X, G = checked(meshes[key]["vertices"], meshes[key]["faces"], f"mesh {key}")
+        V.append(X @ M[:3, :3].T + M[:3, 3])
+        # a mirror turns faces inside out unless their corners are turned too
+        F.append((G[:, ::-1] if np.linalg.det(M[:3, :3]) < 0 else G).astype(np.int64) + begin)
+        begin += len(X)
+    return np.concatenate(V), np.concatenate(F)
+
+
+_READERS: dict[str, Callable[[bytes], tuple[Any, Any]]] = {
+    ".ply": _ply,
+    ".obj": _obj,
+    ".off": _off,
+    ".stl": _stl,
+    ".glb": _glb,
+}

@@ -1,0 +1,193 @@
+"""Sequences of meshes: which files are frames, in which order, and what one frame holds.
+
+A file is input from outside: every count it claims is held against its size before memory is taken, nothing outside it
+is opened, and whatever cannot be a mesh is refused with its name and the reason.
+"""
+
+import glob
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.input.formats import checked, suffixes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+_READ = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
+
+
+def natural_order(name: str) -> tuple[tuple[str | int, ...], str]:
+    """Sort key by which frame_2 comes before frame_10; names that differ in zeros or case alone keep a fixed order.
+
+    returns : text and numbers in turn (so that like is compared with like), then the name itself
+    """
+    parts = re.split(r"([0-9]+)", name)
+    return tuple(int(part) if i % 2 else part.casefold() for i, part in enumerate(parts)), name
+
+
+def mesh_files(where: Path | str) -> list[Path]:
+    """The mesh files of a folder or of a glob pattern, one a frame, in natural order.
+
+    Other files (textures, truth.json) and hidden ones are passed over.
+
+    raises : SourceError if there is nothing of the name, no mesh in it, or meshes of several formats
+    """
+    path = Path(where).expanduser()
+    if path.is_dir():
+        found = [p for p in path.iterdir() if p.is_file() and not p.name.startswith(".")]
+        pattern = ""
+    elif glob.has_magic(str(path)):
+        # Path.glob takes no absolute pattern
+        found = [Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file()]  # noqa: PTH207
+        pattern = "matches of "
+    else:
+        raise SourceError(_not_a_folder(path))
+    kinds = Counter(p.suffix.lower() for p in found)
+    meshes = {kind: n for kind, n in sorted(kinds.items()) if kind in suffixes()}
+    if not meshes:
+        others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
+        known = " ".join(suffixes())
+        raise SourceError(f"{pattern}{path}: no mesh among its files ({others}); {known} are read, one file a frame")
+    if len(meshes) > 1:
+        counts = ", ".join(f"{n} × {kind}" for kind, n in meshes.items())
+        likely = max(meshes, key=lambda kind: meshes[kind])
+        example = (path / f"*{likely}") if path.is_dir() else path.with_suffix(likely)
+        raise SourceError(f"{pattern}{path}: meshes of several formats ({counts}); choose by a pattern such as {example}")
+    return sorted((p for p in found if p.suffix.lower() in meshes), key=lambda p: [natural_order(q) for q in p.parts])
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A sequence in a few arrays, all frames one after the other; reads only the frame asked for.
+
+    fps  : frames a second, None if not known
+    unit : of the coordinates, None if not known
+    """
+
+    fps: float | None
+    unit: str | None
+    name: str
+    _arrays: Mapping[str, Any]
+    _vertex_offsets: NDArray[np.int64]
+    _face_offsets: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, Any], name: str) -> "Frames":
+        """Frames from arrays by name: numpy's, or any that have a shape and a dtype and can be sliced.
+
+        vertices, faces : (all vertices, xyz) · (all faces, corner), indices counted within the frame
+        vertex_offsets  : (frame + 1,) where each frame's vertices begin, and their end
+        face_offsets    : likewise, or (2,) if all frames have the same faces
+        fps, unit       : (), may be missing
+        raises          : SourceError if an array is missing, or of a shape, type or order that cannot be
+        """
+        if missing := [key for key in _READ[:4] if key not in arrays]:
+            raise SourceError(f"{name}: no array {', '.join(missing)}; there are {', '.join(sorted(arrays)) or 'none'}")
+        for key, kind, what in (("vertices", "f", "floating"), ("faces", "iu", "whole")):
+            array = arrays[key]
+            if array.dtype.kind not in kind or len(array.shape) != 2 or array.shape[1] != 3:
+                raise SourceError(f"{name}: {key} is {array.dtype} {tuple(array.shape)}; {what} numbers (n, 3) are needed")
+        vertex_offsets = _offsets(arrays, "vertex_offsets", "vertices", name)
+        face_offsets = _offsets(arrays, "face_offsets", "faces", name)
+        frames = len(vertex_offsets) - 1
+        if len(face_offsets) not in (2, frames + 1):
+            raise SourceError(
+                f"{name}: vertex_offsets tell of {frames} frames, face_offsets of {len(face_offsets) - 1}; "
+                "they must agree, or face_offsets hold one pair for all frames"
+            )
+        if len(face_offsets) == 2 and len(set(np.diff(vertex_offsets))) > 1:
+            raise SourceError(f"{name}: one set of faces for all frames, but frames differ in their number of vertices")
+        return cls(_rate(arrays, name), _unit(arrays), name, arrays, vertex_offsets, face_offsets)
+
+    def __len__(self) -> int:
+        return len(self._vertex_offsets) - 1
+
+    def mesh(self, t: int) -> tuple[Floats, Ints]:
+        """V (vertex, xyz) and F (face, corner) of frame t, which the caller may change; MeshError as `checked`."""
+        if not 0 <= t < len(self):
+            raise SourceError(f"{self.name}: there is no frame {t}; frames are 0 to {len(self) - 1}")
+        i = t if len(self._face_offsets) > 2 else 0
+        V = self._arrays["vertices"][self._vertex_offsets[t] : self._vertex_offsets[t + 1]]
+        F = self._arrays["faces"][self._face_offsets[i] : self._face_offsets[i + 1]]
+        return checked(np.array(V, dtype=np.float64), np.array(F), f"{self.name}, frame {t}")
+
+
+def read_npz(path: Path | str) -> Frames:
+    """All frames of one .npz; asked again for the same unchanged file, the same value without reading.
+
+    raises : SourceError if it is no .npz of plain arrays, or as `Frames.of`
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise SourceError(f"{path}: {'not a file' if path.exists() else 'there is no such file'}")
+    state = path.stat()
+    return _frames(str(path.resolve()), state.st_size, state.st_mtime_ns)
+
+
+@lru_cache(maxsize=2)
+def _frames(path: str, size: int, mtime_ns: int) -> Frames:
+    """The file in this state; two are remembered, so that reading frame after frame unpacks it once."""
+    try:
+        # opened here, because numpy leaves a file open that turns out to be no archive
+        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
+            arrays = {key: archive[key] for key in _READ if key in archive.files}
+    except Exception as error:
+        raise SourceError(
+            f"{path}: cannot be read as .npz ({type(error).__name__}: {error}); an archive of plain arrays is needed"
+        ) from error
+    for array in arrays.values():
+        array.flags.writeable = False
+    return Frames.of(arrays, path)
+
+
+def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> NDArray[np.int64]:
+    """The offsets `key` into the array `of`, each frame holding at least one element."""
+    if arrays[key].dtype.kind not in "iu" or len(arrays[key].shape) != 1 or arrays[key].shape[0] < 2:
+        found = f"{arrays[key].dtype} {tuple(arrays[key].shape)}"
+        raise SourceError(f"{name}: {key} is {found}; whole numbers (frame + 1,) are needed")
+    offsets = np.asarray(arrays[key][...]).astype(np.int64)
+    if (np.diff(offsets) <= 0).any():
+        t = int(np.flatnonzero(np.diff(offsets) <= 0)[0])
+        raise SourceError(f"{name}: {key} must increase, but {offsets[t + 1]} follows {offsets[t]} after frame {t}")
+    if offsets[0] < 0 or offsets[-1] > arrays[of].shape[0]:
+        held = arrays[of].shape[0]
+        raise SourceError(f"{name}: {key} run from {offsets[0]} to {offsets[-1]}, but there are {held} {of}")
+    return offsets
+
+
+def _rate(arrays: Mapping[str, Any], name: str) -> float | None:
+    if "fps" not in arrays:
+        return None
+    fps = np.asarray(arrays["fps"][...])
+    if fps.dtype.kind not in "fiu" or fps.size != 1 or not 0 < float(fps.reshape(())) < np.inf:
+        raise SourceError(f"{name}: fps is {fps}; one positive number of frames a second is needed, or none")
+    return float(fps.reshape(()))
+
+
+def _unit(arrays: Mapping[str, Any]) -> str | None:
+    unit = np.asarray(arrays["unit"][...]).reshape(-1) if "unit" in arrays else np.empty(0)
+    word = unit[0] if len(unit) else ""
+    text = (word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)).strip()
+    return None if text in ("", "unknown") else text
+
+
+def _not_a_folder(path: Path) -> str:
+    """What to say about a path that is neither a folder nor a pattern: the nearest that exists, and likely names."""
+    if path.exists():
+        return f"{path}: one file, not a sequence; give the folder of the frames' files, or a pattern such as *{path.suffix}"
+    missing = path.absolute()
+    while not missing.parent.is_dir():
+        missing = missing.parent
+    like = get_close_matches(missing.name, sorted(p.name for p in missing.parent.iterdir()), n=1)
+    hint = f"; there is {missing.parent / like[0]}" if like else f"; the nearest folder that exists is {missing.parent}"
+    return f"{path}: there is no such folder{hint}"

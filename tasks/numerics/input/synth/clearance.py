@@ -1,0 +1,51 @@
+"""How far limbs that do not belong together stay from each other: balls along the limbs, compared pair by pair."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import shortest_path
+
+from kinetree.tasks.numerics.input.synth.figures import Figure
+from kinetree.tasks.numerics.input.synth.flesh import Flesh
+
+Floats = npt.NDArray[np.float64]
+
+_STEPS = 8
+# Balls nearer to each other along the tree than this multiple of their radii are neighbours, not limbs that may meet.
+_FAR = 2.2
+
+
+def clearance(figure: Figure, flesh: Flesh, X: Floats) -> Floats:
+    """Smallest gap between limbs that are far apart along the tree; negative when they overlap.
+
+    X       : (frame, joint, xyz)
+    returns : (frame,) in the figure's unit; infinite for a figure without two such limbs
+    """
+    s = np.linspace(0.0, 1.0, _STEPS)
+    r = flesh.table[:, np.linspace(0, flesh.table.shape[1] - 1, _STEPS).astype(int)].ravel()
+    far = _path_lengths(figure, flesh, s) > _FAR * (r[:, None] + r[None, :])
+    i, j = np.nonzero(np.triu(far, 1))
+    gap = np.full(len(X), np.inf)
+    if len(i):
+        for t, x in enumerate(X):
+            balls = (x[flesh.parent, None] + s[:, None] * (x[flesh.child] - x[flesh.parent])[:, None]).reshape(-1, 3)
+            gap[t] = np.min(np.linalg.norm(balls[i] - balls[j], axis=1) - r[i] - r[j])
+    return gap
+
+
+def _path_lengths(figure: Figure, flesh: Flesh, s: Floats) -> Floats:
+    """(ball, ball) lengths of the ways along the limbs' axes at rest."""
+    limbs, joints = len(flesh.parent), len(figure.joints)
+    ball = np.arange(limbs * _STEPS).reshape(limbs, _STEPS)
+    length = np.linalg.norm(figure.rest[flesh.child] - figure.rest[flesh.parent], axis=1)
+    # A zero would mean "no edge" to the sparse graph, so balls at a joint are tied to it by a negligible length.
+    rows = [ball[:, :-1].ravel(), ball[:, 0], ball[:, -1]]
+    columns = [ball[:, 1:].ravel(), limbs * _STEPS + flesh.parent, limbs * _STEPS + flesh.child]
+    tie = 1e-9 * length
+    weights = [np.repeat(length / (_STEPS - 1), _STEPS - 1), tie, tie]
+    size = limbs * _STEPS + joints
+    graph = coo_matrix((np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
+    paths = shortest_path(graph.tocsr(), directed=False)
+    return np.asarray(paths[: limbs * _STEPS, : limbs * _STEPS], dtype=np.float64)

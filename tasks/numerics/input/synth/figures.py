@@ -1,0 +1,121 @@
+"""Figures of synthetic sequences: a tree of joints, the radii of the limbs between them, and the curves that turn them.
+
+A figure is data, so that a user can write one; this module checks the words and freezes them. In rest pose:
+
+    name: gripper
+    unit: mm
+    joints:                                     # one root; every other joint names its parent
+      - {name: palm, position: [0, 0, 0], radius: 60}
+      - {name: knuckle, parent: palm, position: [0, 0, 150], radius: 30}
+      - {name: tip, parent: knuckle, position: [0, 0, 300], radii: [30, 34, 20], flatten: 0.6, side: [1, 0, 0]}
+    motions:                                    # the first is the one used when none is named
+      nod:
+        knuckle: [{axis: [1, 0, 0], amplitude: 30, frequency: 0.7, phase: 0.25}]
+
+`radii` is the profile of the limb from the parent to the joint, evenly spaced; without it the limb runs from the
+parent's radius to the joint's. `flatten` squeezes the limb to that share of its radius along `side`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.input.synth.descriptions import (
+    Joint,
+    Motion,
+    mapping,
+    number,
+    read_joints,
+    read_motion,
+    refuse_unknown,
+    suggestion,
+)
+
+Floats = npt.NDArray[np.float64]
+
+_FIGURE_KEYS = ("name", "unit", "fps", "joints", "motions")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A checked figure: joints in an order in which every parent stands before its children, and named motions."""
+
+    name: str
+    unit: str
+    fps: float
+    joints: tuple[Joint, ...]
+    motions: Mapping[str, Motion]
+
+    @classmethod
+    def of(cls, description: Mapping[str, Any]) -> Figure:
+        """Check and freeze a figure that was written as data.
+
+        raises : ConfigError at an unknown key, an unknown or missing parent, two roots, a cycle, a number out of range
+        """
+        where = f"figure {description.get('name', '(no name)')!r}"
+        refuse_unknown(where, description, _FIGURE_KEYS)
+        entries = description.get("joints")
+        if not isinstance(entries, Sequence) or isinstance(entries, str) or len(entries) < 2:
+            raise ConfigError(f"{where}: joints is {entries!r}, expected a list of at least two joints")
+        joints = read_joints(where, entries)
+        names = [joint.name for joint in joints]
+        motions: dict[str, Motion] = {}
+        for name, curves in mapping(where, "motions", description.get("motions", {"still": {}})).items():
+            motions[str(name)] = read_motion(f"{where}, motion {name!r}", curves, names)
+        fps = number(where, "fps", description.get("fps", 25.0), low=0.0)
+        return cls(str(description.get("name", "tree")), str(description.get("unit", "unknown")), fps, joints, motions)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the joints, in their order."""
+        return [joint.name for joint in self.joints]
+
+    @property
+    def parents(self) -> npt.NDArray[np.int64]:
+        """(joint,) index of the parent, −1 at the root."""
+        return np.array([joint.parent for joint in self.joints], dtype=np.int64)
+
+    @property
+    def rest(self) -> Floats:
+        """(joint, xyz) positions at rest, in the figure's unit."""
+        return np.array([joint.position for joint in self.joints], dtype=np.float64)
+
+    @property
+    def height(self) -> float:
+        """Largest extent of the balls around the joints at rest: the length errors are quoted against."""
+        R = np.array([joint.radii[-1] for joint in self.joints])[:, None]
+        return float(np.max((self.rest + R).max(axis=0) - (self.rest - R).min(axis=0)))
+
+    def index(self, name: str, where: str) -> int:
+        """Index of the joint of that name; ConfigError with the nearest known name when there is none."""
+        if name not in self.names:
+            raise ConfigError(f"{where}: figure {self.name!r} has no joint {name!r}{suggestion(name, self.names)}")
+        return self.names.index(name)
+
+    def below(self, joint: int) -> set[int]:
+        """The joint and everything that hangs on it."""
+        below = {joint}
+        for j, p in enumerate(self.parents.tolist()):
+            if p in below:
+                below.add(j)
+        return below
+
+    def motion(self, name: str | None) -> Motion:
+        """The motion of that name, or the first one; ConfigError with the nearest known name when there is none."""
+        known = list(self.motions)
+        if name is not None and name not in self.motions:
+            raise ConfigError(f"figure {self.name!r} has no motion {name!r}{suggestion(name, known)}")
+        return self.motions[name if name is not None else known[0]] if known else {}
+
+
+def named(name: str, figures: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """The figure of that name among `figures` (name → description); ConfigError suggesting the nearest known name."""
+    if name not in figures:
+        raise ConfigError(f"there is no figure {name!r}{suggestion(name, figures)}")
+    return Figure.of(figures[name])

@@ -1,0 +1,65 @@
+"""The same figure with fixed connectivity: one mesh at rest, skinned to the joints and settled on the implicit surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from kinetree.tasks.numerics.input.synth.flesh import Flesh
+from kinetree.tasks.numerics.input.synth.implicit import limb_distances, values
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+_ROUNDS = 6
+
+
+@dataclass(frozen=True)
+class Skin:
+    """A mesh at rest with its weights.
+
+    V, F    : (vertex, xyz), (face, corner)
+    weights : (vertex, limb), rows sum to 1
+    owner   : (vertex,) the limb that is nearest at rest
+    """
+
+    V: Floats
+    F: Ints
+    weights: Floats
+    owner: Ints
+
+    @classmethod
+    def of(cls, flesh: Flesh, rest: Floats, V: Floats, F: Ints) -> Skin:
+        """Smooth weights from the blend: a limb counts by how little farther it is than the nearest, on its own radius.
+
+        It counts only through a limb that it blends with, so that a hand beside a thigh takes nothing from it.
+
+        rest : (joint, xyz) rest positions; V : (vertex, xyz) on the surface at rest
+        """
+        d = limb_distances(flesh.at(rest, np.tile(np.eye(3), (len(rest), 1, 1))), V)
+        width = 0.8 * flesh.table.min(axis=1)
+        closeness = np.maximum(1.0 - (d - d.min(axis=1, keepdims=True)) / width, 0.0) ** 2
+        through = np.stack([(closeness * near).max(axis=1) for near in flesh.neighbours], 1)
+        weights = closeness * through
+        return cls(V, F, weights / weights.sum(axis=1, keepdims=True), np.argmin(d, axis=1).astype(np.int64))
+
+    def posed(self, flesh: Flesh, rest: Floats, X: Floats, G: Floats) -> Floats:
+        """Vertices at a pose: linear blend skinning, then a few steps onto the surface of the limbs around the owner.
+
+        Limbs that merely touch are left out of that surface, so that at a contact the skins press into each other
+        as two skins do, and no vertex changes its limb.
+
+        rest, X : (joint, xyz) at rest and posed; G : (joint, 3, 3) world rotations
+        returns : (vertex, xyz)
+        """
+        V = np.zeros_like(self.V)
+        for b, p in enumerate(flesh.parent):
+            V += self.weights[:, b, None] * (X[p] + np.einsum("ij,vj->vi", G[p], self.V - rest[p]))
+        near = (flesh.neighbours @ flesh.neighbours)[self.owner]
+        cones = flesh.at(X, G)
+        for _ in range(_ROUNDS):
+            f, g = values(cones, V, near)
+            V -= f[:, None] * g
+        return V

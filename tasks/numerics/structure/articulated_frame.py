@@ -1,0 +1,198 @@
+"""A finished articulated body in one frame: where its surface goes, and how it answers to small turns of its parts.
+
+x_v = Σ_a w_va [R_a (v − rest_a) + X_a] and X_a = X_p + R_p (rest_a − rest_p): the body has bones of fixed length. Turning
+part b by ω moves a vertex by ω × l_vb, with the lever l_vb = Σ w_va (x_va − X_b) over the parts a at or beyond b, where
+x_va is the point X_a carries if a is b, and the joint by which a hangs on b otherwise.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.registration.graph_kinematics import deformed, turned
+from kinetree.tasks.numerics.structure.articulated_fit import beyond
+from kinetree.tasks.numerics.structure.frame_poses import some
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+
+
+class Body(NamedTuple):
+    """The body at rest.
+
+    V, F, N       : (vertex, xyz) mesh unit · (face, corner) · (vertex, xyz) unit normals, smoothed
+    start, ring   : neighbours of the vertices
+    bound, weight : (vertex, 4) parts each vertex follows · how much, summing to 1
+    label         : (vertex,) the part it follows most
+    rest, parents : (part, xyz) the joint about which each turns, mesh unit · (part,) −1 for the first, parents first
+    meets         : (part, part) the same part, or joined by a joint
+    beyond        : (part, part) the second is the first or hangs on it
+    asked, mass   : (sample,) vertices that stand for the surface · (sample,) area of each, mesh unit²
+    reach         : (part,) Σ mass |v − rest|² of a part's surface, mesh unit⁴
+    size          : root of the area, mesh unit
+    """
+
+    V: Floats
+    F: Ints
+    N: Floats
+    start: Ints
+    ring: Ints
+    bound: Ints
+    weight: Floats
+    label: Ints
+    rest: Floats
+    parents: Ints
+    meets: Flags
+    beyond: Flags
+    asked: Ints
+    mass: Floats
+    reach: Floats
+    size: float
+
+    @classmethod
+    def of(
+        cls, V: Floats, F: npt.NDArray[np.integer[Any]], bound: npt.NDArray[np.integer[Any]], weight: Floats, rest: Floats,
+        parents: Ints,
+    ) -> "Body":  # fmt: skip
+        """A skinned mesh; see the class for the arrays."""
+        V, rest, faces = np.array(V, dtype=np.float64), np.array(rest, dtype=np.float64), F.astype(np.int64)
+        area = Surface.of(V, faces).area
+        label = bound[:, 0].astype(np.int64)
+        count = len(parents)
+        asked, mass = some(label, area, count)
+        meets = np.eye(count, dtype=np.bool_)
+        meets[np.arange(1, count), parents[1:]] = meets[parents[1:], np.arange(1, count)] = True
+        reach: Floats = np.bincount(label, area * ((V - rest[label]) ** 2).sum(axis=1), count).astype(np.float64)
+        return cls(
+            V, faces, smoothed_normals(V, faces), *rings(faces, len(V)), bound.astype(np.int64),
+            np.array(weight, dtype=np.float64), label, rest, parents, meets, beyond(parents) > 0, asked, mass, reach,
+            float(np.sqrt(area.sum())),
+        )  # fmt: skip
+
+
+class Posture(NamedTuple):
+    """R : (part, 3, 3) from rest to the frame, x : (xyz) where the root's joint is, mesh unit."""
+
+    R: Floats
+    x: Floats
+
+
+def joints(body: Body, at: Posture) -> Floats:
+    """(part, xyz) where the joints are, mesh unit."""
+    X = np.empty((len(body.parents), 3))
+    X[0] = at.x
+    for j in range(1, len(X)):
+        p = body.parents[j]
+        X[j] = X[p] + at.R[p] @ (body.rest[j] - body.rest[p])
+    return X
+
+
+def surface(body: Body, at: Posture) -> tuple[Floats, Floats]:
+    """(vertex, xyz) where the surface goes, mesh unit, and (vertex, xyz) its unit normals."""
+    R = np.ascontiguousarray(at.R)
+    x = deformed(body.V, body.bound, body.weight, body.rest, R, joints(body, at))
+    return x, turned(body.N, body.bound, body.weight, R)
+
+
+def against_parents(R: Floats, parents: Ints) -> Floats:
+    """(…, part, 3, 3) R_pᵀ R_a of every part; the first keeps its own."""
+    turn = np.swapaxes(R[..., np.maximum(parents, 0), :, :], -1, -2) @ R
+    turn[..., 0, :, :] = R[..., 0, :, :]
+    return turn
+
+
+def chained(turn: Floats, parents: Ints) -> Floats:
+    """(part, 3, 3) rotations of the parts from their turning against their parents: undoes `against_parents`."""
+    R = turn.copy()
+    for j in range(1, len(parents)):
+        R[j] = R[parents[j]] @ turn[j]
+    return R
+
+
+def limbs(parents: Ints, doubted: Flags) -> Ints:
+    """(part,) number of the piece of the tree that each doubted part is in with its doubted neighbours, −1 elsewhere."""
+    piece = np.full(len(parents), -1)
+    for j in np.flatnonzero(doubted):
+        joined = parents[j] >= 0 and doubted[parents[j]]
+        piece[j] = piece[parents[j]] if joined else piece.max() + 1
+    return piece
+
+
+@compiled
+def pulled(
+    H: Floats, g: Floats, vertex: Ints, d: Floats, n: Floats, plane: Floats, point: Floats,
+    V: Floats, bound: Ints, weight: Floats, rest: Floats, parents: Ints, R: Floats, X: Floats,
+) -> None:  # fmt: skip
+    """Adds Σ plane (n·(d − δx))² + point |d − δx|² to the normal equations of the turns of all parts, then the shift.
+
+    H, g         : (3 part + 3, 3 part + 3) · (3 part + 3,) changed in place
+    vertex, d, n : (row,) vertex of the body · (row, xyz) where it should go from where it is · (row, xyz) unit
+    plane, point : (row,) weights
+    """
+    P = len(parents)
+    lever = np.zeros((P, 3))
+    used, is_used = np.zeros(P, np.int64), np.zeros(P, np.bool_)
+    for i in range(len(vertex)):
+        if plane[i] + point[i] <= 0.0:
+            continue
+        v, count = vertex[i], 0
+        for k in range(bound.shape[1]):
+            w, a = weight[v, k], bound[v, k]
+            if w <= 0.0:
+                continue
+            if not is_used[a]:
+                is_used[a], used[count], count = True, a, count + 1
+            for x in range(3):
+                for y in range(3):
+                    lever[a, x] += w * R[a, x, y] * (V[v, y] - rest[a, y])
+            while parents[a] >= 0:
+                b = parents[a]
+                if not is_used[b]:
+                    is_used[b], used[count], count = True, b, count + 1
+                for x in range(3):
+                    lever[b, x] += w * (X[a, x] - X[b, x])
+                a = b
+        _row(H, g, lever, used, count, d[i], n[i], plane[i], point[i], P)
+        for k in range(count):
+            is_used[used[k]] = False
+            for x in range(3):
+                lever[used[k], x] = 0.0
+
+
+@compiled
+def _row(
+    H: Floats, g: Floats, lever: Floats, used: Ints, count: int, d: Floats, n: Floats, plane: float, point: float, P: int
+) -> None:
+    off = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
+    J = np.zeros((count, 3))
+    for k in range(count):
+        a, r = used[k], lever[used[k]]
+        for x in range(3):
+            y, z = (x + 1) % 3, (x + 2) % 3
+            J[k, x] = r[y] * n[z] - r[z] * n[y]
+            g[3 * a + x] += plane * off * J[k, x] + point * (r[y] * d[z] - r[z] * d[y])
+            for s in range(3):
+                H[3 * a + x, 3 * P + s] += plane * J[k, x] * n[s]
+            H[3 * a + x, 3 * P + z] += point * r[y]
+            H[3 * a + x, 3 * P + y] -= point * r[z]
+    for k in range(count):
+        for m in range(k + 1):
+            a, b, r, o = used[k], used[m], lever[used[k]], lever[used[m]]
+            dot = r[0] * o[0] + r[1] * o[1] + r[2] * o[2]
+            for x in range(3):
+                for y in range(3):
+                    h = plane * J[k, x] * J[m, y] - point * o[x] * r[y] + (point * dot if x == y else 0.0)
+                    H[3 * a + x, 3 * b + y] += h
+                    if k != m:
+                        H[3 * b + y, 3 * a + x] += h
+    for x in range(3):
+        g[3 * P + x] += plane * off * n[x] + point * d[x]
+        H[3 * P + x, 3 * P + x] += point
+        for y in range(3):
+            H[3 * P + x, 3 * P + y] += plane * n[x] * n[y]

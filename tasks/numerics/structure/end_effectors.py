@@ -1,0 +1,54 @@
+"""Where bones end: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import KDTree
+
+from kinetree.tasks.numerics.geometry.neighbours import rings
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
+    """(end, 2) part and vertex of every end of a bone, by part, a part's most distant first.
+
+    Every leaf is one. A part on which nothing hangs and that has no leaf ends where its surface is farthest, along its edges,
+    from its border; a body of one part has no ends but its leaves.
+
+    V, F    : (vertex, xyz) mesh unit · (face, corner)
+    label   : (vertex,) part, parents : (part,) −1 for the root
+    leaves  : (leaf,) vertices
+    """
+    start, ring = rings(F, len(V))
+    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
+    ends: list[tuple[int, int]] = []
+    for part in range(len(parents)):
+        mine = [int(v) for v in leaves if label[v] == part]
+        bare = part > 0 and not (parents == part).any()
+        far = _from_border(V, edge, label, part) if bare or len(mine) > 1 else np.zeros(len(V))
+        if bare and not mine:
+            mine = [int(np.argmax(far))]
+        ends += [(part, v) for v in sorted(mine, key=lambda v: (-far[v], *V[v]))]
+    return np.array(ends, dtype=np.int64).reshape(-1, 2)
+
+
+def nearest_vertices(V: Floats, points: Floats) -> Ints:
+    """(point,) the vertex nearest to each point (point, xyz)."""
+    return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
+
+
+def _from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
+    """(vertex,) way along the part's own edges from its border, mesh unit; 0 elsewhere, and where no border can be reached."""
+    edge = edge[label[edge[:, 0]] == part]
+    inside = label[edge[:, 1]] == part
+    border = np.unique(edge[~inside, 0])
+    edge = edge[inside]
+    if not len(border):
+        return np.where(label == part, np.linalg.norm(V - V[label == part].mean(axis=0), axis=1), 0.0)
+    length = np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1)
+    links = coo_array((np.maximum(length, 1e-300), (edge[:, 0], edge[:, 1])), shape=(len(V), len(V)))
+    far = dijkstra(links.tocsr(), directed=False, indices=border, min_only=True)
+    return np.where(np.isfinite(far), far, 0.0)

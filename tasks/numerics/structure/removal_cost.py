@@ -1,0 +1,170 @@
+"""By how much a part would be missed: what its neighbours, single or blended in pairs, leave of its motion."""
+
+import numpy as np
+import numpy.typing as npt
+
+from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.structure.part_motion import middle
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+TOUCHING, BEYOND = 6, 3
+"""Neighbours that are tried: those with the longest borders, and the largest of those behind them."""
+
+
+@compiled
+def removal_cost(
+    V: Floats,
+    N: Floats,
+    x: Floats,
+    weight: Floats,
+    area: Floats,
+    member: Ints,
+    part: int,
+    other: Ints,
+    touches: int,
+    R: Floats,
+    t: Floats,
+    bone: float,
+    slip: float,
+    loose: float,
+    quiet: float,
+) -> float:
+    """L4 norm over frames of the root mean square of what the part explains and others do not.
+
+    Each vertex is explained by a part, or by the blend of two whose shares are the same in all frames, as skinning has
+    it. A bone between two others is nearly such a blend of its ends, a slice of a joint is exactly one: so only what
+    is short may be explained by blends. What the part itself leaves, as its median vertex has it, is taken off.
+
+    V, N    : (vertex, xyz) reference, mesh unit · (vertex, xyz) its unit normals
+    weight  : (frame, vertex) belief
+    area    : (vertex,) mesh unit²
+    member  : (own vertex,) vertices of the part that are asked
+    other   : (candidate,) parts that may explain it, of which the first `touches` touch it
+    R, t    : (frame, part, 3, 3) · (frame, part, xyz)
+    bone    : 0 for a part that blends may explain, 1 for one that only single parts may, or between
+    slip    : what a displacement along the surface counts against one across it, 0 to 1
+    loose   : how much is taken off
+    quiet   : mean squared residual that all vertices have, of noise, and that is not taken off, mesh unit²
+    returns : mesh unit
+    """
+    frames, count = x.shape[0], len(other)
+    loss, mass = np.zeros(frames), np.zeros(frames)
+    r = np.empty((count + 1, frames, 3))
+    E = np.empty((count + 1, count + 1))
+    itself = np.empty(len(member))
+    for k in range(len(member)):
+        v = member[k]
+        for a in range(count):
+            _left(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
+        _left(V, N, x, weight, v, part, part, R, t, slip, r[count])
+        _products(r, E)
+        best = 0
+        for a in range(1, touches):
+            if E[a, a] < E[best, best]:
+                best = a
+        i, j, w, without = _best_blend(E, 0, count)
+        m, n, u, kept = _best_blend(E, count, count + 1)
+        if without < kept:
+            m, n, u = i, j, w
+        seen = 0.0
+        for f in range(frames):
+            for c in range(3):
+                still = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
+                blend = w * r[i, f, c] + (1.0 - w) * r[j, f, c]
+                loss[f] += area[v] * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - still * still)
+            mass[f] += area[v] * weight[f, v]
+            seen += weight[f, v]
+        itself[k] = E[count, count] / max(seen, 1e-6)
+    full, total, frames_seen = 1e-300, 0.0, 1e-300
+    for f in range(frames):
+        full = max(full, mass[f])
+    for f in range(frames):
+        if mass[f] > 0.0:
+            total += mass[f] / full * max(loss[f] / mass[f], 0.0) ** 2
+            frames_seen += mass[f] / full
+    return np.sqrt(max(np.sqrt(total / frames_seen) - loose * max(middle(itself, len(member)) - quiet, 0.0), 0.0))
+
+
+@compiled
+def candidates(near: Ints, size: Floats, part: int) -> tuple[Ints, int]:
+    """Parts that may explain a part: its neighbours and the largest of theirs.
+
+    near    : (part, part) edges between any two
+    size    : (part,) area
+    returns : (candidate,) parts · how many of them, the first, touch it
+    """
+    parts = len(near)
+    rank = np.zeros(parts)
+    for q in range(parts):
+        if near[part, q] > 0:
+            rank[q] = 1.0 + near[part, q]
+            for p in range(parts):
+                if near[q, p] > 0 and p != part and near[part, p] == 0:
+                    rank[p] = size[p] / (size[p] + 1.0)
+    out = np.empty(TOUCHING + BEYOND, np.int64)
+    count = touches = 0
+    while count < len(out):
+        best = 0
+        for p in range(parts):
+            if rank[p] > rank[best]:
+                best = p
+        if rank[best] <= 0.0 or (rank[best] < 1.0 and count - touches == BEYOND):
+            break
+        if rank[best] < 1.0 or touches < TOUCHING:
+            out[count] = best
+            count += 1
+            touches += rank[best] > 1.0
+        rank[best] = 0.0
+    return out[:count], touches
+
+
+@compiled
+def _left(
+    V: Floats, N: Floats, x: Floats, weight: Floats, v: int, p: int, home: int, R: Floats, t: Floats, slip: float, out: Floats
+) -> None:
+    """Writes (frame, xyz) √w · what the motion of part p leaves of a vertex; along the surface, as `home` turns it, less."""
+    for f in range(x.shape[0]):
+        w = np.sqrt(weight[f, v])
+        across = 0.0
+        for i in range(3):
+            r = t[f, p, i] - x[f, v, i] + R[f, p, i, 0] * V[v, 0] + R[f, p, i, 1] * V[v, 1] + R[f, p, i, 2] * V[v, 2]
+            n = R[f, home, i, 0] * N[v, 0] + R[f, home, i, 1] * N[v, 1] + R[f, home, i, 2] * N[v, 2]
+            out[f, i] = w * slip * r
+            across += n * r
+        if slip < 1.0:
+            for i in range(3):
+                n = R[f, home, i, 0] * N[v, 0] + R[f, home, i, 1] * N[v, 1] + R[f, home, i, 2] * N[v, 2]
+                out[f, i] += w * (1.0 - slip) * across * n
+
+
+@compiled
+def _products(r: Floats, E: Floats) -> None:
+    """Writes the lower triangle of E (one, one), the products of what each leaves, summed over frames."""
+    for a in range(len(r)):
+        for b in range(a + 1):
+            total = 0.0
+            for f in range(r.shape[1]):
+                total += r[a, f, 0] * r[b, f, 0] + r[a, f, 1] * r[b, f, 1] + r[a, f, 2] * r[b, f, 2]
+            E[a, b] = total
+
+
+@compiled
+def _best_blend(E: Floats, low: int, high: int) -> tuple[int, int, float, float]:
+    """The two whose blend leaves least, one of them from `low` on and below `high`, the other before it.
+
+    returns : first · second · share of the first · what is left; a single one is a blend with itself
+    """
+    first, second, share, least = low, low, 1.0, np.inf
+    for a in range(low, high):
+        if E[a, a] < least:
+            first, second, share, least = a, a, 1.0, E[a, a]
+        for b in range(a):
+            bend = E[a, a] - 2.0 * E[a, b] + E[b, b]
+            if bend <= 0.0:
+                continue
+            w = (E[b, b] - E[a, b]) / bend
+            if 0.0 < w < 1.0 and E[b, b] - w * w * bend < least:
+                first, second, share, least = a, b, w, E[b, b] - w * w * bend
+    return first, second, share, least

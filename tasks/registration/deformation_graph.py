@@ -1,0 +1,56 @@
+"""The reference mesh as a deformation graph."""
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
+from kinetree.schemas.registration.reference import Reference
+from kinetree.tasks.numerics.registration import deformation_graph as numerics
+
+
+@task()
+def deformation_graph(reference: Reference, params: DeformationGraphParams) -> DeformationGraph:
+    """Covers the reference mesh with nodes, binds its vertices to them and ties neighbours (ours, for 2014, Sec. 5.2)."""
+    if reference.fixed:
+        return _empty(reference.size)
+    # with a node on every vertex nothing lies between nodes, and nothing would tie them
+    nodes = max(min(params.nodes, len(reference.vertices) // 2), 1)
+    settings = numerics.DeformationGraphSettings(nodes, params.finest, params.thick, params.strut, params.samples)
+    made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), settings)
+    return DeformationGraph(
+        vertices=made.V,
+        faces=made.F,
+        normals=made.N,
+        nodes=made.node,
+        bound=made.bound,
+        weight=made.weight,
+        ties=made.edge,
+        samples=made.sample,
+        size=made.size,
+        degree=np.diff(made.start),
+        ring=made.ring,
+        blocks=made.pair,
+        block_of_vertex=made.of_vertex,
+        block_of_tie=made.of_edge,
+    )
+
+
+def _empty(size: float) -> DeformationGraph:
+    """Where every frame has the reference's connectivity there is nothing to fit."""
+    whole, real = np.int32, np.float64
+    return DeformationGraph(
+        vertices=np.empty((0, 3), real),
+        faces=np.empty((0, 3), whole),
+        normals=np.empty((0, 3), real),
+        nodes=np.empty(0, whole),
+        bound=np.empty((0, 4), whole),
+        weight=np.empty((0, 4), real),
+        ties=np.empty((0, 2), whole),
+        samples=np.empty(0, whole),
+        size=size,
+        degree=np.empty(0, whole),
+        ring=np.empty(0, whole),
+        blocks=np.empty((0, 2), whole),
+        block_of_vertex=np.empty((0, 6), whole),
+        block_of_tie=np.empty(0, whole),
+    )

@@ -1,0 +1,31 @@
+"""What people take away: comparison with the truth, files for other programs, figures, the report."""
+
+from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.paper_figures import paper_figures
+from kinetree.tasks.results.ply import ply
+from kinetree.tasks.results.report import report
+from kinetree.tasks.results.rignet import rignet
+from kinetree.tasks.results.segmentation import segmentation
+from kinetree.tasks.results.skeleton_json import skeleton_json
+from kinetree.tasks.results.structure_figures import structure_figures
+from kinetree.tasks.results.tables import tables
+from kinetree.tasks.results.truth import truth
+from kinetree.tasks.results.usd import usd
+
+RESULTS = (
+    truth,
+    evaluation,
+    glb,
+    bvh,
+    skeleton_json,
+    segmentation,
+    tables,
+    ply,
+    rignet,
+    usd,
+    report,
+)
+FIGURES = (structure_figures,)
+FIGURES_2014 = (paper_figures,)

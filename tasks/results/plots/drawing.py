@@ -1,0 +1,117 @@
+"""What every picture is made of: figures without a window, views of a body, surfaces as shaded faces."""
+
+import contextlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinetree.errors import ConfigError
+from kinetree.schemas.array import Floats, Ints
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Fetch = Callable[..., Any]
+"""Gives the artifact of a task at an index, as `Pipeline.artifact` does."""
+FORMATS = (".png", ".svg", ".pdf")
+"""How a picture's name may end."""
+BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+"""Okabe and Ito's eight, which the colour-blind can tell apart."""
+
+
+def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tuple[Figure, Any]":
+    """A figure that belongs to no window, so that no display is needed."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(rows, columns)
+
+
+def verbatim(figure: "Figure") -> "Figure":
+    """The figure, no name or unit in it read as a formula."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+    return figure
+
+
+def written(figure: "Figure", path: Path) -> None:
+    """Writes a picture, whole or not at all; raises ConfigError where it cannot be written."""
+    beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        verbatim(figure).savefig(beside, dpi=150, bbox_inches="tight")
+        beside.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+
+
+def view(bodies: list[Floats], up: int = 1) -> Floats:
+    """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
+
+    The eye looks along the shorter of the other two extents.
+
+    up : 0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions
+    """
+    extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
+    axis = up if up >= 0 else ~up
+    eye = min((a for a in range(3) if a != axis), key=lambda a: float(extent[a]))
+    view = np.eye(3)[:, [3 - eye - axis, axis, eye]]
+    view[:, 1] *= 1.0 if up >= 0 else -1.0
+    view[:, 2] *= np.linalg.det(view)
+    return np.asarray(view, dtype=np.float64)
+
+
+def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
+    """Faces from the farthest to the nearest, shaded by how they face the eye.
+
+    X      : (vertex, xyz) across, up and towards the eye
+    colour : (face, 4) red, green, blue and opacity from 0 to 1
+    """
+    from matplotlib.collections import PolyCollection
+
+    corners = X[F]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    towards = normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+    order = np.argsort(corners[:, :, 2].mean(axis=1))
+    order = order[towards[order] > 0] if (towards > 0).any() else order
+    shaded = colour.copy()
+    shaded[:, :3] *= (0.45 + 0.55 * np.clip(towards, 0, 1))[:, None]
+    flat: Any = corners[order, :, :2]
+    axes.add_collection(PolyCollection(flat, facecolors=shaded[order], edgecolors="face", linewidths=0.1), autolim=False)
+    axes.set(aspect="equal", xlim=limits(X[:, 0]), ylim=limits(X[:, 1]))
+    axes.set_axis_off()
+
+
+def levels(F: Ints, values: Floats, low: float | None = None, high: float | None = None) -> Floats:
+    """(face, 4) colours of a quantity known per vertex, from `low` to `high`; grey where it is not known."""
+    from matplotlib import colormaps
+
+    level = values[F].mean(axis=1)
+    low = float(np.nanmin(values)) if low is None else low
+    high = float(np.nanmax(values)) if high is None else high
+    colour: Floats = colormaps["viridis"](np.nan_to_num((level - low) / max(high - low, 1e-300)))
+    colour[np.isnan(level)] = (0.7, 0.7, 0.7, 1.0)
+    return colour
+
+
+def graded(highest: float) -> Any:
+    """Colours from 0 to the highest value, for lines and a bar beside them."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    return ScalarMappable(Normalize(0.0, highest), "viridis")
+
+
+def limits(x: NDArray[np.float64]) -> tuple[float, float]:
+    """The range of x with a little air."""
+    margin = 0.06 * float(np.ptp(x))
+    return float(x.min()) - margin, float(x.max()) + margin

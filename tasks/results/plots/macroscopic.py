@@ -1,0 +1,60 @@
+"""μ on the body with its leaves, C(t) with the cuts (2014, Sec. 4, Fig. 5)."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinetree.schemas.array import Artifact, Floats
+from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, levels, surface, view
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
+    """C(t) with the cuts and what made them, intervals shaded in turn (2014, Fig. 5); below, how near each cue came."""
+    series, cut = fetch("correlation"), fetch("intervals")
+    figure, (axes, below) = blank(9.0, 6.0, rows=2)
+    t = np.array(cut.frames)
+    between = (t[:-1] + t[1:]) / 2
+    for row, name in enumerate(cut.cue_names):
+        below.plot(between, cut.strengths[row], label=name, color=COLOURS[row], lw=1, ls=("-", "--", "-.", ":")[row % 4])
+    below.axhline(1.0, color="black", lw=0.6)
+    below.set(xlabel="frame", ylabel="cue / its threshold", xlim=(t[0] - 0.5, t[-1] + 0.5), ylim=(0, None))
+    below.legend(fontsize=7, ncols=len(cut.cue_names))
+    for number, (begin, end) in enumerate(zip(cut.begin, cut.end, strict=True)):
+        axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color="#0072B2" if number % 2 else "#E69F00", alpha=0.12, lw=0)
+    axes.plot(between, series.correlation, color="black", marker=".", lw=1)
+    for end, cues in zip(cut.end[:-1], cut.cues, strict=True):
+        axes.axvline(t[end] + 0.5, color="#D55E00", lw=1)
+        axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.5), xycoords=("data", "axes fraction"), fontsize=7)
+    axes.set(ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
+    count = len(cut.begin)
+    axes.set_title(f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
+    return figure
+
+
+def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
+    """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
+    followed = fetch("leaves")
+    figure, row = blank(3.2 * len(frames), 4.2, len(frames))
+    axis = view([fetch("mesh", frame=frame).vertices for frame in frames], up)
+    for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
+        mesh, found = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
+        surface(axes, mesh.vertices @ axis, mesh.faces, levels(mesh.faces, found.mu))
+        _leaves(axes, followed, frame, axis)
+        axes.set_title(f"frame {frame}", fontsize=9)
+    return figure
+
+
+def _leaves(axes: "Axes", followed: Artifact, frame: int, axis: Floats) -> None:
+    told: Any = followed
+    at = told.frames.index(frame)
+    for leaf, position in enumerate(told.positions[:, at]):
+        if not np.isnan(position).any():
+            x, y, _ = position @ axis
+            seen = told.rows[leaf, at] >= 0
+            colour = COLOURS[leaf % len(COLOURS)]
+            axes.plot(x, y, "o", ms=7, color=colour if seen else "none", mec=colour if not seen else "white")
+            axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, bbox=BEHIND)

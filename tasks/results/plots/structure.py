@@ -1,0 +1,115 @@
+"""The body's parts, its tree of joints, how far each joint turns and how much it is to be believed (2014, Fig. 15)."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import to_rgba
+
+from kinetree.schemas.array import Floats
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.results.scene import shades
+from kinetree.tasks.results.formats.rig import skinned
+from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, surface, view
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PALE = ("#7FB8DB", "#EFB27F", "#7FCEB9", "#E5BCD3", "#F2CF7F", "#AAD9F4", "#BFBFBF", "#F7F1A0")
+"""Pale enough that a skeleton is seen over them."""
+
+
+def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
+    """Parts and skeleton on the aligned mesh, one view a frame; white where the surface is not rigid."""
+    found = fetch("skeleton")
+    figure, row = blank(3.4 * len(frames), 4.6, len(frames))
+    axis = view([skinned(found, found.frames.index(frame)) for frame in frames], up)
+    colour = part_colours(found)
+    for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
+        surface(axes, skinned(found, found.frames.index(frame)) @ axis, found.faces, colour)
+        bones(axes, found, found.positions[found.frames.index(frame)] @ axis)
+        axes.set_title(f"frame {frame}", fontsize=9)
+    return figure
+
+
+def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
+    """The tree of joints by name, from the root outwards: lengths of bones and range of turning."""
+    found = fetch("skeleton")
+    place = _layout(found.parents)
+    depth = place[:, 0].max() + 1
+    figure, axes = blank(max(7.0, 2.1 * depth), max(2.5, 0.42 * (place[:, 1].max() + 2)))
+    unit = f" {found.unit}" if found.unit else ""
+    for j, parent in enumerate(found.parents):
+        if parent >= 0:
+            axes.plot(*zip(place[parent], place[j], strict=True), color="0.6", lw=1, zorder=1)
+        colour = {"root": "black", "joint": COLOURS[1], "leaf": COLOURS[0]}[found.kinds[j]]
+        axes.plot(*place[j], "o", color=colour, ms=6, zorder=2)
+        told = found.names[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
+        told += f", {found.degrees[j]:.0f}°" if found.kinds[j] == "joint" else ""
+        axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=BEHIND)
+    axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
+    axes.set_axis_off()
+    axes.set_title("Joints (orange), ends of bones (blue): length of the bone to the parent, range of turning", fontsize=9)
+    return figure
+
+
+def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
+    """How far every joint is to be believed in every frame, and by what its place is uncertain."""
+    found = fetch("skeleton")
+    inner = [j for j, kind in enumerate(found.kinds) if kind != "leaf"]
+    figure, (axes, beside) = blank(10.0, max(2.5, 0.25 * len(inner) + 1.2), columns=2)
+    picture = axes.imshow(found.confidence[:, inner].T, aspect="auto", vmin=0, vmax=1, cmap="cividis", interpolation="nearest")
+    figure.colorbar(picture, ax=axes, label="confidence")
+    ticks = np.unique(np.linspace(0, len(found.frames) - 1, 8).astype(int))
+    axes.set(yticks=range(len(inner)), xlabel="frame", xticks=ticks, xticklabels=[found.frames[t] for t in ticks])
+    axes.set_yticklabels([found.names[j] for j in inner], fontsize=7)
+    size = float(np.linalg.norm(np.ptp(found.vertices, axis=0)))
+    beside.barh(range(len(inner)), found.drift[inner] / size * 100, color=COLOURS[0])
+    beside.set(ylim=(len(inner) - 0.5, -0.5), yticks=range(len(inner)), xlabel="parts disagree by, % of the body's diagonal")
+    beside.set_yticklabels([f"{found.degrees[j]:.0f}°" for j in inner], fontsize=7)
+    beside.set_ylabel("range of turning")
+    return figure
+
+
+def part_colours(found: Skeleton) -> Floats:
+    """(face, 4) pale colours of the parts, white where a face is not rigid or lies between two."""
+    shade = shades(np.asarray(found.label), found.faces, len(PALE))
+    corners = found.label[found.faces]
+    label = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], -1)
+    colour: Floats = np.ones((len(label), 4))
+    rgb = np.array([to_rgba(c) for c in PALE])
+    colour[label >= 0] = rgb[shade[label[label >= 0]]]
+    return colour
+
+
+def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
+    """Bones and joints over a body, in the view's own axes; the root is a square, ends of bones are small."""
+    for j, parent in enumerate(found.parents):
+        if parent >= 0:
+            axes.plot(*X[[parent, j], :2].T, color="black", lw=1.4, zorder=3)
+    shape: dict[str, Any] = {"root": ("s", 6, "black"), "joint": ("o", 5, COLOURS[1]), "leaf": (".", 5, COLOURS[0])}
+    for j, kind in enumerate(found.kinds):
+        marker, size, colour = shape[kind]
+        axes.plot(*X[j, :2], marker, ms=size, color=colour, mec="white", mew=0.4, zorder=4)
+
+
+def _layout(parents: tuple[int, ...]) -> Floats:
+    """(joint, 2) depth and row of every joint: leaves in rows of their own, parents amid their children."""
+    children: list[list[int]] = [[] for _ in parents]
+    depth = np.zeros(len(parents))
+    for j, parent in enumerate(parents):
+        if parent >= 0:
+            children[parent].append(j)
+            depth[j] = depth[parent] + 1
+    row = np.full(len(parents), -1.0)
+    free = 0
+    waiting = [(j, False) for j, parent in enumerate(parents) if parent < 0][::-1]
+    while waiting:
+        j, done = waiting.pop()
+        if not children[j]:
+            row[j], free = free, free + 1
+        elif done:
+            row[j] = np.mean([row[c] for c in children[j]])
+        else:
+            waiting += [(j, True), *((c, False) for c in reversed(children[j]))]
+    return np.stack([depth, row], axis=1)

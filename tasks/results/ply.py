@@ -1,0 +1,20 @@
+"""The user's own meshes with their parts."""
+
+from kinetree.errors import MeshError
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.ply import Ply
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.source import name, surface
+from kinetree.tasks.results.formats.labels import input_labels
+from kinetree.tasks.results.formats.ply import ply as written
+
+
+@task(over="frame", on_request=True)
+def ply(source: Source, projection: Projection, skeleton: Skeleton) -> Ply:
+    """Writes one frame's own mesh with its vertices coloured and numbered by part (ours)."""
+    V, F = surface(source)
+    if len(V) != len(projection.face):
+        raise MeshError(f"{name(source)}: it has {len(V)} vertices, but {len(projection.face)} were aligned; run again")
+    return Ply.of({"frame.ply": written(V, F, input_labels(skeleton, projection), skeleton)})

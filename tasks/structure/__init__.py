@@ -1,0 +1,15 @@
+"""Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
+
+from kinetree.tasks.structure.kinematic_tree import kinematic_tree
+from kinetree.tasks.structure.pose_refinement import pose_refinement
+from kinetree.tasks.structure.rigid_parts import rigid_parts
+from kinetree.tasks.structure.skeleton import skeleton
+from kinetree.tasks.structure.traces import traces
+
+STRUCTURE = (
+    rigid_parts,
+    kinematic_tree,
+    pose_refinement,
+    skeleton,
+    traces,
+)

@@ -1,0 +1,149 @@
+"""The command: a run and a truth in, a table, JSON or a picture out, and refusals in words."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import known_tasks
+import pytest
+import typer
+from click.testing import Result
+from known import generated, written_truth
+from typer.testing import CliRunner
+
+from kinetree.errors import ConfigError, InputError, UnknownNodeError
+from kinetree.pipeline import application
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.tasks.application import APPLICATION
+from kinetree.tasks.commands.evaluate import evaluate
+from kinetree.tasks.input.synth import write_sequence
+
+RECIPE = generated()
+SYNTH = {"figure": "human", "frames": 6, "vertices": 600, "connectivity": "fixed"}
+
+
+@pytest.fixture(autouse=True)
+def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = replace(APPLICATION, methods=lambda: {"mesoscopic": known_tasks.GRAPH})
+    monkeypatch.setattr(application, "_installed", lambda: known)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> str:
+    out = tmp_path_factory.mktemp("run")
+    told = {"output": str(out), "source": {"synth": SYNTH}, "compute": {"executor": "sync"}}
+    pipeline = Pipeline.of(told, methods={"mesoscopic": known_tasks.GRAPH})
+    assert pipeline.run()["status"] == "done"
+    return str(out)
+
+
+@pytest.fixture
+def truth(tmp_path: Path) -> Path:
+    path = tmp_path / "truth.json"
+    path.write_text(written_truth(RECIPE))
+    return path
+
+
+def asked(*words: object) -> Result:
+    app = typer.Typer()
+    app.command()(evaluate)
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def refused(*words: object) -> Exception:
+    result = asked(*words)
+    assert isinstance(result.exception, Exception), result.output
+    return result.exception
+
+
+def test_run_of_a_generated_sequence_evaluates_itself(run: str) -> None:
+    told = json.loads((Path(run) / "evaluation.json").read_text())
+    assert told["format"] == "kinetree.evaluation/1"
+    assert told["summary"]["found"] == told["summary"]["scored"] > 8
+    assert len(told["error"]) == 6
+    assert None in told["error"][0]
+
+
+def test_table_names_every_joint_and_sums_up(run: str, truth: Path) -> None:
+    result = asked(run, truth)
+    assert result.exit_code == 0, result.exception
+    lines = result.output.splitlines()
+    assert any(line.split()[:4] == ["knee_l", line.split()[1], "knee_l", line.split()[3]] for line in lines)
+    assert "joints found at 0.00 % of the height" in result.output
+    assert "tree edit distance 0" in result.output
+    assert "CD-J2J" in result.output
+
+
+def test_json_is_what_a_run_leaves(run: str) -> None:
+    assert json.loads(asked(run, "--json").output) == json.loads((Path(run) / "evaluation.json").read_text())
+
+
+def test_truth_that_is_named_goes_before_the_runs_own(run: str, truth: Path) -> None:
+    told = json.loads(truth.read_text())
+    told["positions"] = [[[x + 0.03 * told["height"], y, z] for x, y, z in frame] for frame in told["positions"]]
+    truth.write_text(json.dumps(told))
+    found: dict[str, Any] = json.loads(asked(run, truth, "--json").output)
+    assert found["truth"] == "truth.json"
+    assert found["summary"]["percent"] == pytest.approx(3.0)
+
+
+def test_limit_can_be_set(run: str, truth: Path) -> None:
+    told = json.loads(truth.read_text())
+    told["positions"] = [[[x + 0.07 * told["height"], y, z] for x, y, z in frame] for frame in told["positions"]]
+    truth.write_text(json.dumps(told))
+    assert json.loads(asked(run, truth, "--json").output)["summary"]["found"] == 0
+    wider = json.loads(asked(run, truth, "--json", "--set", "evaluation.found=0.1").output)["summary"]
+    assert wider["found"] == wider["scored"]
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg"])
+def test_errors_are_drawn(run: str, truth: Path, tmp_path: Path, ending: str) -> None:
+    told = json.loads(truth.read_text())
+    told["positions"] = [[[x + 1.5 * t, y, z] for x, y, z in frame] for t, frame in enumerate(told["positions"])]
+    told["positions"] = [[*frame[:7], [9e3, 0, 0], *frame[8:]] for frame in told["positions"]]
+    truth.write_text(json.dumps(told))
+    path = tmp_path / f"errors{ending}"
+    result = asked(run, truth, "--plot", path)
+    assert result.exit_code == 0, result.exception
+    assert path.stat().st_size > 5000
+    assert {p.name for p in tmp_path.iterdir()} == {"truth.json", path.name}
+
+
+def test_what_is_wrong_with_the_truth_is_an_error_of_input(run: str, truth: Path, tmp_path: Path) -> None:
+    assert "No such file" in str(refused(run, tmp_path / "nowhere.json"))
+    told = json.loads(truth.read_text())
+    truth.write_text(json.dumps({**told, "positions": told["positions"][:2]}))
+    error = refused(run, truth)
+    assert type(error) is InputError
+    assert str(error).startswith("truth.json: it has frames 0 to 1, but not 4 of the 6 of the sequence")
+    truth.write_text(json.dumps({**told, "positions": [[[1e7, 0, 0]] * len(told["joints"])] * 6}))
+    assert "truth of another sequence" in str(refused(run, truth))
+
+
+def test_picture_without_a_format_and_run_that_was_not_made_are_refused(run: str, tmp_path: Path) -> None:
+    error = refused(run, "--plot", tmp_path / "a.gif")
+    assert isinstance(error, ConfigError)
+    assert "pictures end in .png, .svg, .pdf" in str(error)
+    config = tmp_path / "own.yaml"
+    config.write_text(json.dumps({"output": str(tmp_path / "own"), "source": {"synth": SYNTH}}))
+    error = refused(config)
+    assert isinstance(error, UnknownNodeError)
+    assert "kinetree run computes what is missing" in str(error)
+
+
+def test_folder_of_meshes_has_no_truth_until_one_is_named(tmp_path: Path) -> None:
+    write_sequence(SynthParams.model_validate(SYNTH), tmp_path / "walk")
+    out = tmp_path / "out"
+    told = {"output": str(out), "source": {"input": str(tmp_path / "walk" / "*.ply")}, "compute": {"executor": "sync"}}
+    assert Pipeline.of(told).run()["status"] == "done"
+    assert not (out / "evaluation.json").exists()
+    error = refused(out)
+    assert isinstance(error, ConfigError)
+    assert "nobody knows the truth of it; name one" in str(error)
+    summary = json.loads(asked(out, tmp_path / "walk" / "truth.json", "--json").output)["summary"]
+    assert summary["found"] == summary["scored"]
+    assert summary["parts"] is None
+    assert Pipeline.of(told | {"truth": {"file": str(tmp_path / "walk" / "truth.json")}}).run()["status"] == "done"
+    assert json.loads((out / "evaluation.json").read_text())["truth"] == "truth.json"

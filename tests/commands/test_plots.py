@@ -1,0 +1,71 @@
+"""Pictures: drawn whole or not at all."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pages import artifacts, judged, unjudged
+from rigs import spider
+from traced import traces_of
+
+from kinetree.errors import ConfigError
+from kinetree.tasks.results.plots import WHAT, draw
+from kinetree.tasks.results.plots.drawing import view
+from kinetree.tasks.results.plots.motion import turns
+
+MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+
+
+@pytest.fixture(scope="module")
+def fetch() -> Any:
+    told = artifacts() | {"evaluation": judged(spider()), "traces": traces_of(spider())}
+    return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+
+
+@pytest.mark.parametrize("what", sorted(WHAT))
+@pytest.mark.parametrize("ending", sorted(MAGIC))
+def test_every_picture_is_drawn_in_every_format(fetch: Any, tmp_path: Path, what: str, ending: str) -> None:
+    draw(what, fetch, [0, 6], tmp_path / f"a{ending}")
+    assert [p.name for p in tmp_path.iterdir()] == [f"a{ending}"]
+    assert (tmp_path / f"a{ending}").read_bytes().startswith(MAGIC[ending])
+
+
+def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(fetch: Any, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="there are: .*correlation, .*mu"):
+        draw("skelton", fetch, [0], tmp_path / "a.png")
+    with pytest.raises(ConfigError, match=r"pictures end in \.png"):
+        draw("mu", fetch, [0], tmp_path / "a.gif")
+    with pytest.raises(ConfigError, match="cannot be written"):
+        draw("mu", fetch, [0], tmp_path / "missing" / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_errors_without_a_truth_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="nobody knows the truth"):
+        draw("errors", lambda name: unjudged(spider()), [0], tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_words_from_outside_are_no_formulas(fetch: Any, tmp_path: Path) -> None:
+    body = spider(unit=r"$\frac$", names=(r"$\bad{", *spider().names[1:]))
+    draw("tree", lambda name, frame=None: body if name == "skeleton" else fetch(name, frame), [0], tmp_path / "a.svg")
+    assert r"$\bad{" in (tmp_path / "a.svg").read_text()
+
+
+@pytest.mark.parametrize("up", [0, 1, 2, ~0, ~1, ~2])
+def test_direction_that_is_said_to_be_up_is_up(up: int) -> None:
+    rng = np.random.default_rng(0)
+    axes = view([rng.normal(size=(50, 3)) * [1, 2, 3]], up)
+    assert np.array_equal(axes[:, 1], np.eye(3)[up] if up >= 0 else -np.eye(3)[~up])
+    assert np.linalg.det(axes) == pytest.approx(1)
+
+
+def test_turning_of_a_hinge_is_the_angle_it_was_turned_by() -> None:
+    body = spider()
+    arm = body.names.index("arm")
+    angle = np.radians(np.linspace(0, 90, len(body.frames)))
+    c, s, zero, one = np.cos(angle), np.sin(angle), 0 * angle, 0 * angle + 1
+    rotation = np.array(body.rotation)
+    rotation[:, arm] = rotation[:, 0] @ np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
+    np.testing.assert_allclose(turns(spider(rotation=rotation))[:, arm], np.degrees(angle), atol=1e-5)

@@ -1,0 +1,262 @@
+"""Contracts of finding frames: which frames there are, what each is, and that what is read is what was planned."""
+
+import os
+import shutil
+
+import numpy as np
+import pytest
+import zarr
+
+from kinetree.errors import MeshError, SourceError
+from kinetree.pipeline.files import Files
+from kinetree.pipeline.key import artifact_digest
+from kinetree.pipeline.store import Store
+from kinetree.schemas.input.source import Source, SourceParams
+from kinetree.tasks.input.source import name, source, surface
+
+V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
+
+
+def off(scale=1.0):
+    rows = [" ".join(map(str, v)) for v in V * scale] + ["3 " + " ".join(map(str, f)) for f in F]
+    return "OFF\n4 4 0\n" + "\n".join(rows) + "\n"
+
+
+def packed(frames=3, **changes):
+    arrays = {
+        "vertices": np.concatenate([V * (t + 1) for t in range(frames)]), "faces": F,
+        "vertex_offsets": np.arange(frames + 1) * 4, "face_offsets": np.array([0, 4]),
+        "fps": np.array(25.0), "unit": np.array("mm"),
+    }  # fmt: skip
+    return {key: a for key, a in {**arrays, **changes}.items() if a is not None}
+
+
+@pytest.fixture
+def files(tmp_path):
+    return Files.of(Store.at(tmp_path / "store"))
+
+
+@pytest.fixture
+def found(files, tmp_path):
+    """The frames at a path below the test's folder."""
+
+    def find(where, frames=":"):
+        return source(SourceParams(input=str(tmp_path / where), frames=frames), files)
+
+    return find
+
+
+@pytest.fixture
+def scans(tmp_path):
+    folder = tmp_path / "scans"
+    folder.mkdir()
+    for t in (1, 2, 10, 9):
+        (folder / f"frame_{t}.off").write_text(off(t))
+    return folder
+
+
+def as_npz(path, **changes):
+    np.savez(path, **packed(**changes))
+
+
+def as_zarr(path, **changes):
+    held = packed(**changes)
+    group = zarr.create_group(path, attributes={k: held.pop(k).item() for k in ("fps", "unit") if k in held})
+    for key, array in held.items():
+        group.create_array(key, data=array)
+
+
+def as_zarr_2(path, **changes):
+    held = packed(**changes)
+    group = zarr.create_group(path, zarr_format=2, attributes={k: held.pop(k).item() for k in ("fps", "unit") if k in held})
+    for key, array in held.items():
+        group.create_array(key, data=array)
+
+
+PACKED = pytest.mark.parametrize(
+    ("where", "write"),
+    [("a.npz", as_npz), ("a.zarr", as_zarr), ("a", as_zarr), ("b.zarr", as_zarr_2)],
+    ids=lambda x: str(x)[:9],
+)
+
+# ── folders and patterns ────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_folder_is_frames_in_natural_order_numbered_from_zero(found, scans):
+    frames = found("scans")
+    assert list(frames) == [0, 1, 2, 3]
+    assert [name(s) for s in frames.values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
+    assert all((s.part, s.kind, s.fps, s.unit) == (None, "file", None, None) for s in frames.values())
+
+
+def test_pattern_chooses_files(found, scans):
+    (scans / "frame_3.obj").write_text("")
+    assert [name(s) for s in found("scans/*.off").values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
+    assert [name(s) for s in found("scans/frame_1*.off").values()] == ["frame_1.off", "frame_10.off"]
+
+
+@pytest.mark.parametrize(
+    ("frames", "numbers"),
+    [(":", [0, 1, 2, 3]), ("1:3", [1, 2]), ("::2", [0, 2]), ("-2:", [2, 3]), ("1:99", [1, 2, 3]), (" 0 : 4 : 3 ", [0, 3])],
+)
+def test_chosen_frames_keep_their_numbers(found, scans, frames, numbers):
+    whole, chosen = found("scans"), found("scans", frames)
+    assert list(chosen) == numbers
+    assert all(chosen[t] == whole[t] for t in numbers)
+
+
+def test_frame_is_its_bytes_whatever_its_name_age_and_folder(found, scans, tmp_path):
+    before = {t: artifact_digest(s) for t, s in found("scans").items()}
+    os.utime(scans / "frame_1.off", (1, 1))
+    shutil.copytree(scans, tmp_path / "moved")
+    (tmp_path / "moved" / "frame_1.off").rename(tmp_path / "moved" / "frame_0.off")
+    assert {t: artifact_digest(s) for t, s in found("moved").items()} == before
+    (scans / "frame_2.off").write_text(off(7))
+    after = {t: artifact_digest(s) for t, s in found("scans").items()}
+    assert [t for t in before if before[t] != after[t]] == [1]
+
+
+def test_surface_is_the_users_own_vertices_and_faces(found, scans):
+    vertices, faces = surface(found("scans")[1])
+    np.testing.assert_array_equal(vertices, V * 2)
+    np.testing.assert_array_equal(faces, F)
+
+
+def test_file_that_changes_between_planning_and_reading_is_refused(found, scans):
+    frames = found("scans")
+    (scans / "frame_2.off").write_text(off(3))
+    with pytest.raises(SourceError, match=r"^frame_2\.off: the file changed while the run was under way; run again$"):
+        surface(frames[1])
+    surface(frames[0])
+
+
+def test_file_that_vanishes_between_planning_and_reading_is_refused(found, scans):
+    frames = found("scans")
+    (scans / "frame_2.off").unlink()
+    with pytest.raises(MeshError, match=r"frame_2\.off: there is no such file"):
+        surface(frames[1])
+
+
+def test_unreadable_file_fails_when_it_is_read_and_not_before(found, scans, monkeypatch):
+    from kinetree.pipeline import files as remembering
+
+    digest = remembering.file_digest
+
+    def refuse(path):
+        if path.name == "frame_2.off":
+            raise PermissionError(13, "Permission denied", str(path))
+        return digest(path)
+
+    monkeypatch.setattr(remembering, "file_digest", refuse)
+    frames = found("scans")
+    assert frames[1].content == "unreadable: Permission denied"
+    assert len(frames) == 4
+    with pytest.raises(SourceError, match=r"frame_2\.off: the file changed"):
+        surface(frames[1])
+
+
+# ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
+
+
+@PACKED
+def test_packed_sequence_is_its_frames_with_rate_and_unit(found, tmp_path, where, write):
+    write(tmp_path / where)
+    frames = found(where)
+    assert list(frames) == [0, 1, 2]
+    assert {(s.fps, s.unit) for s in frames.values()} == {(25.0, "mm")}
+    assert name(frames[2]) == f"{where}, frame 2"
+    for t, each in frames.items():
+        vertices, faces = surface(each)
+        np.testing.assert_array_equal(vertices, V * (t + 1))
+        np.testing.assert_array_equal(faces, F)
+
+
+@PACKED
+def test_packed_sequence_without_rate_and_unit_knows_none(found, tmp_path, where, write):
+    write(tmp_path / where, fps=None, unit=None)
+    assert {(s.fps, s.unit) for s in found(where).values()} == {(None, None)}
+
+
+@PACKED
+def test_packed_frames_keep_their_identity_when_others_are_appended_or_changed(found, tmp_path, where, write):
+    write(tmp_path / where)
+    before = {t: artifact_digest(s) for t, s in found(where).items()}
+    path = tmp_path / where
+    shutil.rmtree(path) if path.is_dir() else path.unlink()
+    write(path, frames=4, vertices=np.concatenate([V, 9 * V, 3 * V, 4 * V]))
+    after = {t: artifact_digest(s) for t, s in found(where).items()}
+    assert [t for t in before if before[t] == after[t]] == [0, 2]
+    assert len(after) == 4
+
+
+@pytest.mark.parametrize(("where", "write"), [("a.npz", as_npz), ("a.zarr", as_zarr)])
+def test_packed_sequence_that_changes_between_planning_and_reading_is_refused(found, tmp_path, where, write):
+    write(tmp_path / where)
+    frames = found(where)
+    surface(frames[1])
+    if where.endswith("zarr"):
+        zarr.open_group(tmp_path / where)["vertices"][4:8] = 9 * V  # in place: only a chunk changes
+    else:
+        write(tmp_path / where, vertices=np.concatenate([V, 9 * V, 3 * V]), unit=np.array("cm"))
+    with pytest.raises(SourceError, match=f"^{where}, frame 1: the file changed while the run was under way; run again$"):
+        surface(frames[1])
+    surface(frames[0])
+
+
+def test_same_mesh_in_npz_and_zarr_is_the_same_but_for_how_it_is_read(found, tmp_path):
+    as_npz(tmp_path / "a.npz")
+    as_zarr(tmp_path / "a.zarr")
+    assert [s.content for s in found("a.npz").values()] == [s.content for s in found("a.zarr").values()]
+
+
+@pytest.mark.parametrize("unit", ["it's", 'say "mm"', "a\\b", "a\nb", "None", "µm"])
+def test_unit_is_told_as_it_is_written(found, tmp_path, unit):
+    as_npz(tmp_path / "a.npz", unit=np.array(unit))
+    assert found("a.npz")[0].unit == unit
+
+
+def test_damaged_zarr_is_refused_as_a_source_and_not_as_our_store(found, tmp_path):
+    as_zarr(tmp_path / "a.zarr")
+    for chunk in (tmp_path / "a.zarr" / "vertices" / "c").rglob("*"):
+        if chunk.is_file():
+            chunk.write_bytes(b"x")
+    with pytest.raises(SourceError, match=r"a\.zarr: not a readable zarr group"):
+        found("a.zarr")
+
+
+# ── refusals ────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_no_input_says_what_to_give(files):
+    with pytest.raises(SourceError, match=r"^no input: name a folder of meshes with --input, or source\.input in the config$"):
+        source(SourceParams(), files)
+
+
+@pytest.mark.parametrize("frames", ["", "1", "a:b", "1:2:3:4", "::0", "1.5:3"])
+def test_frames_that_are_no_range_are_refused(found, scans, frames):
+    with pytest.raises(SourceError, match=r"write start:stop or start:stop:step, e\.g\. 10:60:2"):
+        found("scans", frames)
+
+
+def test_frames_backwards_or_beyond_are_refused(found, scans):
+    with pytest.raises(SourceError, match="the step must be positive; time runs forward"):
+        found("scans", "::-1")
+    with pytest.raises(SourceError, match="selects none of the 4 frames of"):
+        found("scans", "8:")
+
+
+def test_single_frame_is_refused_because_nothing_moves(found, scans):
+    with pytest.raises(SourceError, match="^frames '1:2' selects a single frame; kinematics are seen in motion"):
+        found("scans", "1:2")
+
+
+@pytest.mark.parametrize("where", ["none.npz", "none.zarr", "none"])
+def test_missing_sequence_is_refused_by_name(found, tmp_path, where):
+    with pytest.raises(SourceError, match=f"^{tmp_path / where}: there is no such "):
+        found(where)
+
+
+def test_source_that_is_told_by_hand_is_read_like_any_other(scans):
+    with pytest.raises(SourceError, match="the file changed"):
+        surface(Source(content="00", path=str(scans / "frame_1.off")))

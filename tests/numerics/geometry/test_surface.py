@@ -1,0 +1,62 @@
+"""Laws of a prepared surface: areas, centre, and which half-edges are neighbours."""
+
+import numpy as np
+import shapes
+
+from kinetree.tasks.numerics.geometry.surface import BLIND, NONE, Surface
+
+
+def test_vertex_areas_sum_to_the_area_of_the_surface() -> None:
+    V, F = shapes.open_cylinder(24, 9, radius=0.5, height=3.0)
+    assert np.isclose(Surface.of(V, F).area.sum(), 24 * 2 * 0.5 * np.sin(np.pi / 24) * 3.0)
+
+
+def test_the_centre_of_area_is_the_middle_of_a_symmetric_body_however_it_is_meshed() -> None:
+    V, F = shapes.sphere(2)
+    split = F[V[F].mean(axis=1)[:, 2] > 0]
+    number = len(V) + np.arange(len(split))
+    finer = np.concatenate([np.stack([split[:, k], split[:, (k + 1) % 3], number], axis=1) for k in range(3)])
+    rest = F[V[F].mean(axis=1)[:, 2] <= 0]
+    W = np.concatenate([V, V[split].mean(axis=1)])
+    assert np.allclose(Surface.of(V + 5.0, F).centre, 5.0)
+    assert np.allclose(Surface.of(W + 5.0, np.concatenate([rest, finer])).centre, 5.0, atol=1e-3)
+
+
+def test_a_twin_of_a_twin_is_the_half_edge_itself() -> None:
+    surface = Surface.of(*shapes.sphere(2))
+    twin = surface.twin.astype(np.int64)
+    assert np.array_equal(twin[twin], np.arange(len(twin)))
+
+
+def test_only_borders_lack_a_twin_on_an_orientable_surface() -> None:
+    surface = Surface.of(*shapes.open_cylinder(24, 9))
+    assert (surface.twin == NONE).sum() == 2 * 24
+
+
+def test_an_edge_of_three_faces_pairs_none_of_them() -> None:
+    V, F, _ = shapes.three_pages(4, 6)
+    twin = Surface.of(V, F).twin
+    assert (twin == BLIND).sum() == 3 * 5
+    assert (twin == NONE).sum() == 3 * (2 * 3 + 5)
+
+
+def test_every_edge_is_in_the_rings_of_both_its_ends() -> None:
+    for V, F in (shapes.sphere(2), shapes.open_cylinder(12, 5), shapes.three_pages(4, 6)[:2]):
+        surface = Surface.of(V, F)
+        owner = np.repeat(np.arange(len(V)), np.diff(surface.ring_start.astype(np.int64)))
+        found = {(int(surface.order[a]), int(surface.order[b])) for a, b in zip(owner, surface.ring >> 1, strict=True)}
+        sides = F[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        assert found == {(int(a), int(b)) for a, b in sides} | {(int(b), int(a)) for a, b in sides}
+
+
+def test_paths_may_bend_at_borders_and_saddles_but_not_on_a_ball() -> None:
+    ball, flat = Surface.of(*shapes.sphere(2)), Surface.of(*shapes.flat_grid(5, 5))
+    assert not ball.bends.any()
+    assert sorted(flat.order[flat.bends == 1]) == [v for v in range(25) if v // 5 in (0, 4) or v % 5 in (0, 4)]
+
+
+def test_paths_may_bend_where_two_balls_touch() -> None:
+    V, F = shapes.sphere(2)
+    joined = np.where(F == 0, len(V), F + len(V) + 1)
+    surface = Surface.of(np.concatenate([V, V[:1], 2 * V[0] - V]), np.concatenate([F, np.where(joined == len(V), 0, joined)]))
+    assert surface.order[surface.bends == 1].tolist() == [0]

@@ -1,0 +1,125 @@
+"""Laws of finding and repairing frames in which a limb was lost, on tubes."""
+
+import numpy as np
+import pytest
+from limbs import LENGTH, bent, rotation, tube
+
+from kinetree.tasks.numerics.registration import tracking as repair
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.tracking import (
+    LOST,
+    Tracked,
+    attempts,
+    predicted,
+    repaired,
+    strayed,
+    suspects,
+    tracked,
+)
+
+ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
+
+
+@pytest.fixture(scope="module")
+def body():
+    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
+
+
+@pytest.fixture(scope="module")
+def targets(body):
+    V, F = tube(around=29, along=57, start=0.07)
+    return [Target.of(bent(V, angle), F, body.size) for angle in ANGLES]
+
+
+def rigid(body, R, t):
+    return Pose(np.tile(R, (len(body.node), 1, 1)), body.g @ R.T + t)
+
+
+def test_a_frame_that_is_followed_is_covered_at_the_first_attempt(body, targets):
+    found = tracked(body, None, at_rest(body), targets[1])
+    assert (found.attempt, found.uncovered) == (0, pytest.approx(0.0, abs=LOST))
+
+
+def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
+    V, F = tube(around=29, along=57, start=0.07)
+    step = 0.9
+    before, last = (rigid(body, rotation((1, 0, 0), k * step), np.zeros(3)) for k in (1, 2))
+    target = Target.of(V @ rotation((1, 0, 0), 3 * step).T, F, body.size)
+    alone, led = (tracked(body, b, last, target) for b in (None, before))
+    assert led.uncovered <= min(LOST, alone.uncovered)
+    x = shape(body, led.pose)[0]
+    assert np.linalg.norm(x - body.V @ rotation((1, 0, 0), 3 * step).T, axis=1).mean() < 0.01 * LENGTH
+
+
+def test_a_missing_half_is_reported_as_uncovered(body):
+    V, F = tube(around=29, along=57)
+    longer = V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH]
+    found = tracked(body, None, at_rest(body), Target.of(longer, F, body.size))
+    assert found.uncovered > 0.1
+
+
+def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
+    V, F = tube(around=29, along=57)
+    longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
+    assert tracked(body, None, at_rest(body), longer, usual=1.0).attempt == 0
+
+
+def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, monkeypatch):
+    V, F = tube(around=29, along=57)
+    inner = F[V[F, 2].max(axis=1) < V[:, 2].min() + 0.3 * LENGTH][:, ::-1]
+    folded = Target.of(np.concatenate([V, 0.97 * V]), np.concatenate([F, inner + len(V)]), body.size)
+    fits = []
+    monkeypatch.setattr(repair, "fit", lambda *a: fits.append(a) or fit(*a))
+    found = tracked(body, None, at_rest(body), folded)
+    assert found.uncovered > 2 * LOST
+    assert strayed(body, found.pose, folded) == 0
+    assert len(fits) == 1
+
+
+def test_what_strays_is_the_share_of_a_frame_far_from_the_body(body):
+    V, F = tube(around=29, along=57)
+    there = Target.of(V, F, body.size)
+    assert strayed(body, at_rest(body), there) == 0
+    assert strayed(body, rigid(body, np.eye(3), np.array([10 * LENGTH, 0, 0])), there) == 1
+
+
+def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
+    R = [rotation((1, 2, 0), k * 0.3) for k in range(3)]
+    steady = [rigid(body, r, k * np.array([1.0, 0, 0])) for k, r in enumerate(R)]
+    found = predicted(steady[0], steady[1])
+    np.testing.assert_allclose(found.rotation, steady[2].rotation, atol=1e-12)
+    np.testing.assert_allclose(predicted(steady[0], steady[0]).translation, steady[0].translation)
+
+
+def test_suspects_stand_out_from_the_sequence():
+    share = np.array([0.001, 0.002, 0.001, 0.03, 0.002, 0.001])
+    np.testing.assert_array_equal(suspects(share), share > 0.02)
+    assert not suspects(np.full(9, 0.02)).any()
+    assert not suspects(np.array([0.0, 0.0, LOST / 2])).any()
+
+
+def test_a_lost_frame_is_found_again_from_the_other_side(body, targets):
+    good, last = [], at_rest(body)
+    for target in targets:
+        good.append(tracked(body, None, last, target))
+        last = good[-1].pose
+    lost = Tracked(rigid(body, rotation((1, 0, 0), np.pi / 2), np.zeros(3)), 0.3, 0)
+    mended = repaired(body, [*good[:3], lost, good[4]], targets, reference=0)
+    assert mended[3].uncovered <= LOST
+    true = bent(body.V, ANGLES[3])
+    assert np.linalg.norm(shape(body, mended[3].pose)[0] - true, axis=1).mean() < 0.01 * LENGTH
+
+
+def test_good_frames_and_the_reference_are_left_alone(body, targets):
+    found = [Tracked(at_rest(body), share, 0) for share in (0.5, 0.001, 0.001, 0.001, 0.001)]
+    mended = repaired(body, found, targets, reference=0)
+    assert all(a is b for a, b in zip(mended, found, strict=True))
+
+
+def test_later_attempts_reach_further_and_try_longer():
+    first, *others = attempts(FitSettings())
+    assert not first.predicted
+    assert max(a.settings.reach[0] for a in others) > first.settings.reach[0]
+    assert max(a.settings.steps for a in others) > first.settings.steps

@@ -1,0 +1,76 @@
+"""A long part's centre line says where its joints are expected."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from limbs import rotation, tube
+
+from kinetree.tasks.numerics.structure.centre_lines import centre_line, towards_axes
+
+EXPECTED = np.array([[0.3, 0.2, -4.0], [-0.2, 0.3, 4.0]])
+
+
+def body(stretch: float = 1.0) -> npt.NDArray[np.float64]:
+    """A tube of radius 1 about z, from −6 to 6 times `stretch`."""
+    V, _ = tube(around=24, along=120, flat=1.0)
+    V = V - V.mean(axis=0)
+    return np.asarray(V * [1.0, 1.0, 12.0 * stretch / np.ptp(V[:, 2])])
+
+
+def expected(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, bow: float = 0.0) -> npt.NDArray[np.float64]:
+    """Where joints are expected of three parts of a tube, that were seen to one side of it; `bow` bends the middle one."""
+    V = body(stretch)
+    label = np.where(V[:, 2] < -4 * stretch, 0, np.where(V[:, 2] < 4 * stretch, 1, 2))
+    V[:, 0] += bow * np.cos(V[:, 2] * np.pi / (4 * stretch))
+    at = EXPECTED * [1.0, 1.0, stretch]
+    return towards_axes(V, np.ones(len(V)), label, np.eye(3)[label], np.array(parents), at, np.full(2, radius))
+
+
+def test_joints_at_both_ends_of_a_long_part_are_expected_on_its_line() -> None:
+    assert expected([-1, 0, 1]) == pytest.approx(EXPECTED * [0.0, 0.0, 1.0], abs=0.02)
+
+
+def test_a_part_on_which_nothing_or_much_hangs_says_nothing() -> None:
+    assert expected([-1, 0, 0]) == pytest.approx(EXPECTED)
+
+
+def test_a_short_or_bent_part_and_a_line_far_from_the_border_say_nothing() -> None:
+    assert expected([-1, 0, 1], stretch=0.15) == pytest.approx(EXPECTED * [1.0, 1.0, 0.15])
+    assert expected([-1, 0, 1], bow=0.5) == pytest.approx(EXPECTED)
+    assert expected([-1, 0, 1], radius=0.2) == pytest.approx(EXPECTED)
+
+
+def test_an_oblique_cut_tilts_the_principal_axis_but_not_the_line() -> None:
+    V = body()
+    V = V[V[:, 2] < 2.0 + 2.5 * V[:, 0]]
+    line = centre_line(V, np.ones(len(V)))
+    assert line is not None
+    tilted = np.linalg.eigh(np.cov(V.T))[1][:, 2]
+    assert abs(tilted[0]) > 0.05
+    assert abs(line.axis[0]) < 0.03
+
+
+def test_the_line_is_that_of_the_middle_wherever_the_surface_is_sampled_densely() -> None:
+    V = body()
+    dense = np.concatenate([V, np.repeat(V[V[:, 0] > 0.3], 5, axis=0)])
+    line = centre_line(dense, np.ones(len(dense)))
+    assert line is not None
+    assert np.hypot(*line.point[:2]) < 0.1
+    assert np.hypot(*dense.mean(axis=0)[:2]) > 0.3
+
+
+def test_the_line_moves_with_the_part() -> None:
+    V, Q, shift = body() + [0.1, 0.0, 0.3], rotation((1.0, 2.0, 0.5), 1.1), np.array([3.0, -7.0, 2.0])
+    here, there = centre_line(V, np.ones(len(V))), centre_line(V @ Q.T + shift, np.ones(len(V)))
+    assert here is not None
+    assert there is not None
+    assert abs(there.axis @ (Q @ here.axis)) == pytest.approx(1.0, abs=1e-4)
+    off = there.point - (Q @ here.point + shift)
+    assert np.linalg.norm(off - there.axis * (off @ there.axis)) < 0.01
+
+
+def test_what_has_no_whole_sections_has_no_line() -> None:
+    V = body()
+    half = V[V[:, 0] > 0.0]
+    assert centre_line(half, np.ones(len(half))) is None
+    assert centre_line(V, np.zeros(len(V))) is None

@@ -1,0 +1,95 @@
+"""What the surface shows: parts that slid along it are none, parts that bend it are."""
+
+import numpy as np
+import pytest
+from articulated import Known, chain
+from limbs import rotation
+
+from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.structure import joint_evidence as shown
+from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
+from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces, part_tree
+from kinetree.tasks.numerics.structure.pruning import pruned
+
+FRAMES = 4
+X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+MOVED = rotation((1.0, 2.0, 3.0), 0.8)
+
+
+def turned(axis: tuple[float, float, float], degrees: float) -> np.ndarray:
+    """(frame, part, 3, 3) the upper part turns, more in every frame."""
+    turn = np.tile(np.eye(3), (FRAMES, 2, 1, 1))
+    for f in range(FRAMES):
+        turn[f, 1] = rotation(axis, np.deg2rad(degrees) * f / (FRAMES - 1))
+    return turn
+
+
+def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> tuple[Surfaces, Carried, Seen]:
+    """The aligned body before frames that show the true one, both moved as a whole."""
+    M = np.eye(3) if moved is None else moved
+    x, goal = aligned.x @ M.T, true.x @ M.T
+    residual = np.stack([projected(a, b, true.F).distance for a, b in zip(x, goal, strict=True)])
+    parts = Carried(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
+    seen = Seen(np.ones(residual.shape), residual, lambda t: (goal[t], true.F))
+    return Surfaces(aligned.V, aligned.F, x, aligned.area), parts, seen
+
+
+def least(aligned: Known, true: Known, moved: np.ndarray | None = None) -> int:
+    body, parts, seen = looked_at(aligned, true, moved)
+    return least_evident_joint(body, parts, part_tree(body, parts), seen)
+
+
+def otherwise(turn: np.ndarray) -> Known:
+    """The same tube in other triangles."""
+    return chain((1.0,), turn, around=23, along=37)
+
+
+@pytest.mark.parametrize("moved", [None, MOVED], ids=["in place", "moved as a whole"])
+def test_part_that_slid_about_a_round_limb_is_not_shown(moved: np.ndarray | None) -> None:
+    still = otherwise(turned(Z, 0.0))
+    assert least(chain((1.0,), turned(Z, 9.0)), still, moved) == 1
+
+
+@pytest.mark.parametrize("moved", [None, MOVED], ids=["in place", "moved as a whole"])
+@pytest.mark.parametrize("degrees", [6.0, 20.0])
+def test_part_that_bends_is_shown(degrees: float, moved: np.ndarray | None) -> None:
+    bent = turned(X, degrees)
+    assert least(chain((1.0,), bent), otherwise(bent), moved) == -1
+
+
+def test_part_that_bends_in_the_alignment_alone_is_not_shown() -> None:
+    assert least(chain((1.0,), turned(X, 4.0)), otherwise(turned(X, 0.0))) == 1
+
+
+def test_handful_of_vertices_shows_nothing() -> None:
+    bent = turned(X, 20.0)
+    body = chain((1.0,), bent)
+    few = np.zeros(len(body.V), np.int64)
+    few[np.argsort(-body.V[:, 2], kind="stable")[:8]] = 1
+    assert least(body._replace(label=few), otherwise(bent)) == 1
+
+
+def test_body_that_only_slid_is_one_part_and_one_that_bends_two() -> None:
+    bent = turned(X, 20.0)
+    slid, true = chain((1.0,), turned(Z, 9.0)), otherwise(turned(Z, 0.0))
+    tips = np.zeros(0, np.int64)
+    for aligned, there, count in ((slid, true, 1), (chain((1.0,), bent), otherwise(bent), 2)):
+        body, parts, seen = looked_at(aligned, there)
+        assert pruned(body, parts, tips, seen, ratio=0.0).parts.R.shape[1] == count
+
+
+@pytest.mark.parametrize(("first", "second", "goes"), [(2.0, 1.3, True), (np.inf, 1.3, False), (np.inf, 1.05, True)])
+def test_joint_needs_less_where_another_moves_clearly(
+    first: float, second: float, goes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, parts, seen = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
+    scores = iter((first, second))
+    asked: list[int] = []
+
+    def scored(*told: object) -> float:
+        asked.append(int(str(told[4])))
+        return next(scores)
+
+    monkeypatch.setattr(shown, "_shown", scored)
+    found = least_evident_joint(body, parts, part_tree(body, parts), seen)
+    assert found == (asked[1] if goes else -1)

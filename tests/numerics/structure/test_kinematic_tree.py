@@ -1,0 +1,131 @@
+"""The finished body."""
+
+import numpy as np
+import pytest
+import trimesh
+from articulated import Known, chain, swings, three_arms
+from limbs import bent, rotation
+
+from kinetree.tasks.numerics.structure.kinematic_tree import KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
+
+
+def of(body: Known, leaves: tuple[int, ...] = (), trust: np.ndarray | None = None) -> KinematicTree:
+    return kinematic_tree(
+        body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual, np.array(leaves, dtype=np.int64), trust
+    )
+
+
+def ways(body: Known) -> np.ndarray:
+    """(frame, part, xyz) where the true joints go."""
+    above = np.maximum(body.parents, 0)
+    return np.einsum("tpxy,py->tpx", body.R[:, above], body.joints) + body.t[:, above]
+
+
+@pytest.mark.parametrize("blend", [0.0, 1.0])
+def test_joints_of_a_chain_are_where_they_are_in_every_frame(blend: float) -> None:
+    body = chain((-2.0, 2.0), blend=blend)
+    found = of(body)
+    turning = [j for j, kind in enumerate(found.kinds) if kind == "joint"]
+    assert len(turning) == 2
+    for j in turning:
+        away = np.linalg.norm(ways(body)[:, 1:] - found.positions[:, j, None], axis=2)
+        assert away.mean(axis=0).min() < 0.05
+    assert found.kinds.count("leaf") == 2
+    assert found.confidence.min() > 0.95
+    assert found.degrees[turning].min() > 40
+
+
+def test_every_joint_goes_where_its_parent_carries_it() -> None:
+    found = of(three_arms())
+    for j in range(1, len(found.names)):
+        p = found.parents[j]
+        carried = found.positions[:, p] + found.rotation[:, p] @ (found.rest[j] - found.rest[p])
+        assert found.positions[:, j] == pytest.approx(carried, abs=1e-9)
+    bones = np.linalg.norm(found.positions[:, 1:] - found.positions[:, found.parents[1:]], axis=2)
+    assert np.ptp(bones, axis=0) == pytest.approx(0, abs=1e-9)
+
+
+def test_skin_follows_the_joints() -> None:
+    body = chain((-2.0, 2.0), blend=1.0)
+    found = of(body)
+    moved = np.einsum("tvkab,vkb->tvka", found.rotation[:, found.influence], body.V[:, None] - found.rest[found.influence])
+    x = np.einsum("vk,tvka->tva", found.weight, moved + found.positions[:, found.influence])
+    assert np.linalg.norm(x - body.x, axis=2).mean() < 0.05
+    assert (found.label == -1).any()
+    assert set(found.label) - {-1} == {j for j, kind in enumerate(found.kinds) if kind != "leaf"}
+
+
+def test_stiff_body_is_one_root_and_has_no_joint() -> None:
+    body = chain((0.0,), np.tile(np.eye(3), (12, 2, 1, 1)))
+    found = of(body)
+    assert found.names == ("root",)
+    assert found.kinds == ("root",)
+    assert set(found.label) == {0}
+    one = body._replace(label=np.zeros(len(body.V), np.int64), R=body.R[:, :1], t=body.t[:, :1])
+    assert of(one, leaves=(3,)).names == ("root", "root_end")
+
+
+def test_noise_at_every_vertex_moves_no_joint_by_half_a_percent() -> None:
+    body = chain((-2.0, 2.0), blend=1.0)
+    rough = body.x + 0.00067 * 10.0 * np.random.default_rng(0).normal(size=body.x.shape)
+    joints = []
+    for x in (body.x, rough):
+        p = rigid_parts(x[0], body.F, x)
+        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, np.zeros(0, dtype=np.int64))
+        joints.append(found.positions[:, [kind == "joint" for kind in found.kinds]])
+    assert joints[0].shape == joints[1].shape == (24, 2, 3)
+    assert np.linalg.norm(joints[0] - joints[1], axis=2).mean(axis=0).max() < 0.005 * 10.0
+
+
+def test_body_turns_and_moves_as_a_whole_with_space() -> None:
+    body = three_arms()
+    Q, shift = rotation((1.0, -2.0, 0.5), 0.7), np.array([3.0, 50.0, -8.0])
+    other = body._replace(x=body.x @ Q.T + shift, R=Q @ body.R, t=body.t @ Q.T + shift)
+    one, two = of(body), of(other)
+    assert two.names == one.names
+    assert two.rest == pytest.approx(one.rest, abs=1e-6)
+    assert two.positions == pytest.approx(one.positions @ Q.T + shift, abs=1e-4)
+
+
+def test_names_and_joints_do_not_depend_on_the_order_of_vertices() -> None:
+    body = three_arms()
+    order = np.random.default_rng(4).permutation(len(body.V))
+    rank = np.argsort(order)
+    other = body._replace(V=body.V[order], F=rank[body.F], x=body.x[:, order], label=body.label[order], W=body.W[order])
+    one, two = of(body), of(other)
+    assert two.names == one.names
+    joints = [j for j, kind in enumerate(one.kinds) if kind != "leaf"]
+    assert two.positions[:, joints] == pytest.approx(one.positions[:, joints], abs=1e-4)
+
+
+def test_vertices_without_a_part_and_parts_without_vertices_do_no_harm() -> None:
+    body = chain((0.0,))
+    label = np.where(np.arange(len(body.V)) % 11 == 0, -1, 2 * body.label)
+    R, t = (np.stack([a[:, 0], a[:, 0], a[:, 1]], axis=1) for a in (body.R, body.t))
+    found = of(body._replace(label=label, R=R, t=t))
+    assert found.kinds.count("joint") == 1
+    assert of(body._replace(label=np.full(len(body.V), -1), R=R, t=t)).names == ("root",)
+
+
+def test_distrust_of_one_frame_is_told_and_changes_no_joint() -> None:
+    body = chain((0.0,), swings(16, 2))
+    trust = np.ones(body.x.shape[:2])
+    trust[5, body.label == 1] = 0.0
+    found = of(body, trust=trust)
+    assert found.support.min() == 15
+    assert found.confidence[5].min() < 0.1
+    assert found.rest[1] == pytest.approx(of(body).rest[1], abs=1e-3)
+
+
+@pytest.mark.parametrize("leaves", [(), (0,)])
+def test_a_ring_with_no_leaf_or_one_has_one_tree(leaves: tuple[int, ...]) -> None:
+    ring = trimesh.creation.torus(3.0, 0.8, major_sections=48, minor_sections=16)
+    V, F, tips = np.array(ring.vertices), np.array(ring.faces), np.array(leaves, dtype=np.int64)
+    x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
+    held = rigid_parts(V, F, x, leaves=tips)
+    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips)
+    assert (found.parents < 0).sum() == 1
+    assert found.kinds.count("joint") >= 1
+    assert found.kinds.count("joint") + found.kinds.count("leaf") + 1 == len(found.kinds)
+    assert np.isfinite(found.positions).all()

@@ -1,0 +1,56 @@
+"""All parts in one tree."""
+
+import numpy as np
+import pytest
+import trimesh
+from articulated import Known, chain, moved, swings, three_arms
+from limbs import tube
+
+from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, part_tree
+
+
+def of(body: Known) -> PartTree:
+    parts = Carried(body.label, body.R, body.t, body.residual)
+    return part_tree(Surfaces(body.V, body.F, body.x, body.area), parts)
+
+
+def test_links_of_a_chain_hang_on_each_other() -> None:
+    body = chain((-2.5, 0.0, 2.0))
+    found = of(body)
+    beside = {(int(found.tree.order[k]), int(found.tree.order[p])) for k, p in enumerate(found.tree.parents) if p >= 0}
+    assert {frozenset(pair) for pair in beside} == {frozenset((k, k + 1)) for k in range(3)}
+    assert found.joints.rest[found.tree.border[1:]] == pytest.approx(
+        np.array([body.joints[max(pair)] for pair in sorted(beside, key=lambda p: found.tree.order.tolist().index(p[0]))]),
+        abs=1e-3,
+    )
+    assert found.degrees[1:].min() > 40
+    assert found.ratio[0] == np.inf
+
+
+def test_arms_hang_on_the_middle() -> None:
+    found = of(three_arms())
+    assert found.tree.order[0] == 0
+    assert found.tree.parents.tolist() == [-1, 0, 0, 0]
+
+
+def test_ring_of_parts_is_cut_open_and_loses_none() -> None:
+    mesh = trimesh.creation.torus(4.0, 1.0, major_sections=48, minor_sections=12)
+    V, F = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
+    label = np.floor((np.arctan2(V[:, 1], V[:, 0]) + np.pi) / (np.pi / 2 + 1e-9)).astype(np.int64)
+    joints = np.array([[4 * np.cos(a), 4 * np.sin(a), 0] for a in -np.pi + np.pi / 2 * np.arange(4)])
+    body = moved(V, F, np.eye(4)[label], joints, np.array([-1, 0, 1, 2]), swings(20, 4, 10))
+    found = of(body)
+    assert sorted(found.tree.order) == [0, 1, 2, 3]
+    assert (found.tree.parents < np.arange(4)).all()
+
+
+def test_part_that_meets_no_other_hangs_on_the_nearest() -> None:
+    one = chain((0.0,))
+    V, F = tube(12, 20)
+    V = np.concatenate([one.V, V * 0.2 + [0.0, 0.0, 8.0]])
+    F = np.concatenate([one.F, F + len(one.V)])
+    label = np.concatenate([one.label, np.full(len(V) - len(one.V), 2)])
+    joints = np.concatenate([one.joints, [[0.0, 0.0, 6.0]]])
+    found = of(moved(V, F, np.eye(3)[label], joints, np.array([-1, 0, 1]), swings(20, 3)))
+    place = found.tree.order.tolist().index(2)
+    assert found.tree.order[found.tree.parents[place]] == 1

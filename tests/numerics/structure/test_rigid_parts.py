@@ -1,0 +1,150 @@
+"""Laws of rigid parts on bodies whose parts are known."""
+
+import numpy as np
+import pytest
+import shapes
+import trimesh
+from limbs import bent, rotation, tube
+
+from kinetree.tasks.numerics.structure.rigid_parts import RigidPartsSettings, rigid_parts
+
+FRAMES = 8
+
+
+def linked(*hinges, around=20, along=56):
+    """A tube that bends at each hinge, out of phase, about x: V, F, x and the true part of every vertex."""
+    V, F = tube(around, along)
+    x = np.empty((FRAMES, *V.shape))
+    for f in range(FRAMES):
+        x[f] = V
+        for k, z in reversed(list(enumerate(hinges))):
+            x[f] = bent(x[f] - [0, 0, z], 0.6 * np.sin(0.9 * f + 1.3 * k), 0.1) + [0, 0, z]
+    return V, F, x, np.searchsorted(np.array(hinges), V[:, 2])
+
+
+def assert_parts_are(found, V, true):
+    assert found.R.shape[1] == true.max() + 1
+    for k in range(true.max() + 1):
+        most = np.bincount(found.label[true == k]).argmax()
+        inside = found.label == most
+        assert (inside == (true == k)).mean() > 0.93
+
+
+@pytest.mark.parametrize("hinges", [(0.0,), (-1.7, 1.6)])
+def test_links_of_a_tube_are_its_parts(hinges):
+    V, F, x, true = linked(*hinges)
+    assert_parts_are(rigid_parts(V, F, x), V, true)
+
+
+def test_arms_of_a_y_pipe_are_its_parts():
+    V, F, _ = shapes.y_pipe(20, 4)
+    angle = np.round(np.arctan2(V[:, 1], V[:, 0]) / (2 * np.pi / 3)).astype(int) % 3
+    out = np.stack([np.cos(angle * 2 * np.pi / 3), np.sin(angle * 2 * np.pi / 3), 0 * angle], axis=1)
+    along = (V * out).sum(axis=1)
+    x = np.empty((FRAMES, *V.shape))
+    for f in range(FRAMES):
+        turn = 0.5 * np.sin(0.8 * f + 2 * angle)
+        share = np.clip(along - 9, 0, 1)
+        x[f] = V + (share * (along - 10) * (np.cos(turn) - 1) - share * V[:, 2] * np.sin(turn))[:, None] * out
+        x[f, :, 2] += share * ((along - 10) * np.sin(turn) + V[:, 2] * (np.cos(turn) - 1))
+    found = rigid_parts(V, F, x)
+    assert_parts_are(found, V, np.where(along > 9.5, 1 + angle, 0))
+
+
+def test_a_stiff_body_is_one_part_however_it_moves():
+    V, F = tube(around=20, along=40)
+    x = np.stack([V @ rotation((1, 1, f), 0.4 * f).T + [f, 0, -f] for f in range(FRAMES)])
+    found = rigid_parts(V, F, x + 1e-4 * np.random.default_rng(0).normal(size=x.shape))
+    assert found.R.shape[1] == 1
+    assert found.rigid.min() > 0.99
+    assert found.residual.max() < 3e-4
+
+
+def test_motions_carry_the_reference_to_every_frame():
+    V, F, x, _ = linked(0.0)
+    found = rigid_parts(V + 100, F, x)
+    sure = found.rigid > 0.99
+    carried = np.einsum("fvij,vj->fvi", found.R[:, found.label], V + 100) + found.t[:, found.label]
+    assert np.linalg.norm(carried - x, axis=2)[:, sure].max() < 0.15
+    np.testing.assert_allclose(found.R @ np.swapaxes(found.R, 2, 3), np.broadcast_to(np.eye(3), found.R.shape), atol=1e-9)
+
+
+def test_rigid_motion_of_the_whole_and_scale_change_no_label():
+    V, F, x, _ = linked(-1.7, 1.6)
+    here = rigid_parts(V, F, x)
+    moved = 7 * np.stack([x[f] @ rotation((f, 1, 2), 0.5 * f).T + f for f in range(FRAMES)])
+    there = rigid_parts(7 * V @ rotation((1, 0, 1), 1.0).T, F, moved)
+    assert (here.label == there.label).mean() > 0.99
+
+
+def test_the_order_of_vertices_changes_no_part():
+    V, F, x, true = linked(-1.7, 1.6)
+    order = np.random.default_rng(0).permutation(len(V))
+    rank = np.argsort(order)
+    assert_parts_are(rigid_parts(V[order], rank[F], x[:, order]), V[order], true[order])
+
+
+def test_the_same_input_has_the_same_parts_to_the_bit():
+    V, F, x, _ = linked(0.0)
+    V.flags.writeable = x.flags.writeable = False
+    for a, b in zip(rigid_parts(V, F, x), rigid_parts(V, F, x), strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_what_is_not_trusted_makes_no_part():
+    V, F, x, true = linked(0.0)
+    trust = np.ones(x.shape[:2])
+    wrong = np.abs(V[:, 2] - 3) < 0.8
+    x[2:5, wrong] += [1.5, 0, 0]
+    trust[2:5, wrong] = 0.0
+    assert rigid_parts(V, F, x).R.shape[1] > 2
+    assert_parts_are(rigid_parts(V, F, x, trust), V, true)
+
+
+def test_a_ring_and_a_body_without_leaves_have_parts():
+    ring = trimesh.creation.torus(3.0, 0.8, major_sections=48, minor_sections=16)
+    V, F = np.array(ring.vertices), np.array(ring.faces)
+    x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
+    found = rigid_parts(V, F, x)
+    assert 2 <= found.R.shape[1] <= 6
+    assert rigid_parts(V, F, np.stack([V] * 3)).R.shape[1] == 1
+    assert rigid_parts(V, F, x, leaves=np.zeros(0, np.int64)).R.shape[1] >= 2
+    assert rigid_parts(V, F, x, leaves=np.array([0])).R.shape[1] >= 2
+
+
+def test_small_components_go_with_what_is_nearest():
+    V, F, x, true = linked(0.0)
+    ball, faces = shapes.sphere(1)
+    eye = 0.2 * ball + [1.3, 0, 4]
+    both = np.concatenate([V, eye])
+    moved = np.concatenate(
+        [x, np.stack([x[f][true == 1].mean(axis=0) + eye - eye.mean(axis=0) for f in range(FRAMES)])], axis=1
+    )
+    found = rigid_parts(both, np.concatenate([F, faces + len(V)]), moved)
+    assert found.R.shape[1] == 2
+    assert (found.label[len(V) :] == found.label[np.argmax(V[:, 2])]).all()
+
+
+def test_one_frame_shows_no_parts():
+    V, F, _, _ = linked(0.0)
+    assert rigid_parts(V, F, V[None]).R.shape[1] == 1
+
+
+def test_a_large_surface_asked_at_some_of_its_vertices_has_the_same_parts():
+    V, F, x, true = linked(-1.7, 1.6, around=40, along=120)
+    lone = np.array([[0.9, 0.0, 3.0], [0.9, 0.1, 3.0], [0.9, 0.0, 3.1]])
+    F = np.concatenate([F, [[len(V), len(V) + 1, len(V) + 2]]])
+    x = np.concatenate([x, np.tile(lone, (FRAMES, 1, 1))], axis=1)
+    found = rigid_parts(np.concatenate([V, lone]), F, x, settings=RigidPartsSettings(most=2000))
+    assert_parts_are(found, V, np.append(true, [2, 2, 2]))
+    assert len(found.label) == len(found.rigid) == len(V) + 3
+
+
+def test_what_slides_along_the_surface_counts_only_where_every_vertex_was_followed():
+    V, F = tube(around=24, along=56, flat=1.0)
+    share = np.clip((V[:, 2] + 0.2) / 0.4, 0.0, 1.0)
+    twist = 0.065 * np.sin(1.1 * np.arange(FRAMES))[:, None] * share
+    x = np.stack([np.cos(twist) * V[:, 0] - np.sin(twist) * V[:, 1], np.sin(twist) * V[:, 0] + np.cos(twist) * V[:, 1]], 2)
+    x = np.concatenate([x, np.tile(V[:, 2:], (FRAMES, 1, 1))], axis=2)
+    assert rigid_parts(V, F, x).R.shape[1] == 2
+    assert rigid_parts(V, F, x, np.ones(x.shape[:2])).R.shape[1] == 1

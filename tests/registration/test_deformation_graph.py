@@ -1,0 +1,44 @@
+"""Contract of template: the numerics' graph, whole, in the store's dtypes; nothing at all for fixed connectivity."""
+
+from dataclasses import fields
+
+import numpy as np
+from stepwise import walk
+
+from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
+from kinetree.tasks.numerics.registration import deformation_graph as numerics
+from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.pose import graph
+
+
+def test_stored_graph_is_the_graph_bit_for_bit() -> None:
+    reference = walk().reference
+    made = numerics.deformation_graph(
+        np.array(reference.vertices), np.array(reference.faces), numerics.DeformationGraphSettings(nodes=200)
+    )
+    back = graph(walk().template)
+    for field in fields(made):
+        mine, theirs = getattr(made, field.name), getattr(back, field.name)
+        assert np.array_equal(mine, theirs), field.name
+        assert np.isscalar(mine) or (mine.dtype == theirs.dtype and theirs.flags.writeable), field.name
+
+
+def test_parameters_reach_the_graph() -> None:
+    other = deformation_graph(walk().reference, DeformationGraphParams(nodes=200, samples=2, strut=0.0))
+    assert len(other.nodes) == 200
+    assert len(other.samples) <= 400 < len(walk().template.samples)
+    assert len(other.ties) < len(walk().template.ties)
+    assert len(deformation_graph(walk().reference, DeformationGraphParams(nodes=50)).nodes) == 50
+
+
+def test_fixed_connectivity_needs_no_graph() -> None:
+    reference = walk().reference.model_copy(update={"fixed": True})
+    empty = deformation_graph(reference, DeformationGraphParams())
+    assert all(array.size == 0 for array in empty.arrays().values())
+    assert empty.size == reference.size
+
+
+def test_mesh_of_few_vertices_has_a_node_on_every_second_and_they_are_tied() -> None:
+    made = deformation_graph(walk().reference, DeformationGraphParams(nodes=100_000))
+    assert len(made.nodes) == len(made.vertices) // 2
+    assert np.bincount(made.ties.ravel(), minlength=len(made.nodes)).min() > 0

@@ -1,0 +1,60 @@
+"""The page: one file, words from outside harmless, nothing asked of the network."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from pages import page
+
+from kinetree.schemas.results.report import RUN, Report
+from kinetree.tasks.results.page.document import as_script, table
+
+EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
+
+
+def test_words_from_outside_are_escaped_everywhere():
+    text = page(EVIL, facts=[(EVIL, EVIL)], warnings=[EVIL])
+    assert text.count("<script") == 5
+    assert "alert(1)" in text
+    assert "<script>alert" not in text
+    assert text.count("{{scene}}") >= 4
+
+
+def test_json_in_a_script_cannot_end_it_and_reads_as_it_was():
+    told = {EVIL: [EVIL, 1.5, None]}
+    assert "<" not in as_script(told)
+    assert json.loads(as_script(told)) == told
+
+
+def test_numbers_that_json_does_not_know_are_refused():
+    with pytest.raises(ValueError, match="JSON compliant"):
+        as_script({"a": float("nan")})
+
+
+def test_page_asks_nothing_of_the_network():
+    text = page()
+    assert "default-src 'none'" in text
+    assert not re.findall(r'(?:src|href)="(?!data:|#)[^"]*"', text)
+
+
+def test_what_ran_is_laid_into_the_page_harmlessly():
+    text = page()
+    assert text.count(RUN) == 1
+    report = Report(text=np.frombuffer(text.encode(), np.uint8))
+    told = report.page({"run": EVIL}).decode()
+    assert RUN not in told
+    found = re.search(r'<script type="application/json" id="told">(.*?)</script>', told)
+    assert found is not None
+    assert json.loads(found.group(1)) == {"run": EVIL}
+
+
+def test_warnings_have_a_box_only_where_there_are_some():
+    assert 'class="warnings" aria' not in page()
+    assert 'class="warnings" aria' in page(warnings=["leaf 2 is lost"])
+
+
+def test_tables_put_numbers_to_the_right_and_escape_cells():
+    told = table(("a", "b"), [("<b>", 1.23456), ("c", 2)])
+    assert "&lt;b&gt;" in told
+    assert '<td class="n">1.235</td>' in told

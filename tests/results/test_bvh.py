@@ -1,0 +1,93 @@
+"""skeleton.bvh, read back joint by joint by a parser that is not ours."""
+
+import numpy as np
+import pytest
+from rigs import spider
+from scipy.spatial.transform import Rotation
+
+from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.formats.bvh import continuous, euler_zxy
+
+LEAVES = {"tail", "foot", "spur"}
+"""Leaves beside other children, which are joints of the file; the hand, an only child, is its parent's end site."""
+
+
+@pytest.fixture
+def body():
+    return spider()
+
+
+def text(skeleton):
+    return bvh(skeleton).files(())["skeleton.bvh"].decode()
+
+
+def read(skeleton, folder):
+    pybvh = pytest.importorskip("pybvh", reason="pip install pybvh brings the parser")
+    path = folder / "skeleton.bvh"
+    path.write_text(text(skeleton))
+    return pybvh.read_bvh_file(str(path))
+
+
+def test_parser_finds_every_joint_where_the_skeleton_has_it_in_every_frame(body, tmp_path):
+    found = read(body, tmp_path)
+    at = found.node_positions()
+    known = {node.name: number for number, node in enumerate(found.nodes)}
+    known["hand"] = known["EndSitearm"]
+    for joint, name in enumerate(body.names):
+        np.testing.assert_allclose(at[:, known[name]], body.positions[:, joint], atol=1e-5)
+
+
+def test_parser_finds_the_pace(body, tmp_path):
+    assert read(body, tmp_path).fps == pytest.approx(10.0)
+    assert read(spider(fps=None), tmp_path).fps == pytest.approx(30.0)
+
+
+def test_offsets_are_the_bones_of_the_reference_pose_and_the_root_has_none(body):
+    told = [tuple(map(float, line.split()[1:])) for line in text(body).splitlines() if "OFFSET" in line]
+    bones = {tuple(np.round(body.rest[j] - body.rest[p], 6)) for j, p in enumerate(body.parents) if p >= 0}
+    assert told[0] == (0.0, 0.0, 0.0)
+    assert set(told[1:]) - {(0.0, 0.0, 0.0)} == bones
+
+
+def test_only_child_that_is_a_leaf_is_an_end_site_and_others_are_joints(body):
+    told = text(body)
+    assert "hand" not in told
+    assert {name for name in LEAVES if f"JOINT {name}" in told} == LEAVES
+    assert told.count("End Site") == 4
+
+
+def test_names_are_single_words_still_unique(tmp_path):
+    names = ("root\nJOINT x", "a b", "a\tb", "<script>", "é", "7", "")
+    lines = text(spider(names=names)).splitlines()
+    found = [line.split(maxsplit=1)[1] for line in lines if line.split()[0] in ("ROOT", "JOINT")]
+    assert len(set(found)) == len(found) == 6
+    assert all(word.isascii() and word.isidentifier() for word in found)
+    assert read(spider(names=names), tmp_path).joint_count == len(found)
+
+
+def test_frames_left_out_are_put_in_between(body):
+    gaps = spider(frames=(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 26))
+    lines = text(gaps).splitlines()
+    assert "Frames: 14" in lines
+    assert "Frame Time: 0.2" in lines
+    rows = np.array([list(map(float, line.split())) for line in lines[lines.index("Frame Time: 0.2") + 1 :]])
+    np.testing.assert_allclose(rows[11:14, :3], np.linspace(rows[10, :3], rows[13, :3], 4)[1:], atol=1e-6)
+    (told,) = bvh(gaps).remarks()
+    assert "2 were put in between" in told
+    assert bvh(body).remarks() == ()
+
+
+def test_angles_are_those_of_the_turns_even_where_two_axes_are_one():
+    R = Rotation.random(50, random_state=1).as_matrix()
+    level = Rotation.from_euler("ZXY", [[20, 90, 30], [-70, -90, 5]], degrees=True).as_matrix()
+    every = np.concatenate([R, level])
+    back = Rotation.from_euler("ZXY", euler_zxy(every), degrees=True).as_matrix()
+    np.testing.assert_allclose(back, every, atol=1e-12)
+
+
+def test_angles_go_on_through_half_turns_and_past_the_upright():
+    angles = np.stack([np.linspace(0, 700, 60), np.linspace(0, 170, 60), np.linspace(0, -400, 60)], axis=1)[:, None]
+    R = Rotation.from_euler("ZXY", angles[:, 0], degrees=True).as_matrix()[:, None]
+    found = continuous(euler_zxy(R))
+    assert np.abs(np.diff(found, axis=0)).max() < 20
+    np.testing.assert_allclose(Rotation.from_euler("ZXY", found[:, 0], degrees=True).as_matrix()[:, None], R, atol=1e-12)

@@ -1,0 +1,58 @@
+"""One frame's own mesh with its parts."""
+
+import io
+
+import numpy as np
+import pytest
+import trimesh
+from rigs import skinned, spider
+
+from kinetree.errors import MeshError
+from kinetree.pipeline.key import file_digest
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.registration.projection import Projection
+from kinetree.tasks.results.formats.labels import input_labels
+from kinetree.tasks.results.ply import ply
+
+
+@pytest.fixture
+def source(tmp_path):
+    body = spider()
+    path = tmp_path / "scan.ply"
+    trimesh.Trimesh(skinned(body)[4], body.faces, process=False).export(path)
+    return Source(content=file_digest(path), path=str(path))
+
+
+def onto(face, share):
+    return Projection(face=face, share=share, distance=np.zeros(len(face)))
+
+
+def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
+    body = spider()
+    n = len(body.vertices)
+    corner = {int(v): (f, c) for f, row in enumerate(body.faces) for c, v in enumerate(row)}
+    at = np.array([corner[v] for v in range(n)])
+    files = ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body).files((7,))
+    assert list(files) == ["parts/frame_0007.ply"]
+    found = trimesh.load(io.BytesIO(files["parts/frame_0007.ply"]), file_type="ply", process=False)
+    np.testing.assert_allclose(found.vertices, skinned(body)[4], atol=1e-5)
+    np.testing.assert_array_equal(found.faces, body.faces)
+    np.testing.assert_array_equal(found.metadata["_ply_raw"]["vertex"]["data"]["part"], body.label)
+
+
+def test_frame_that_is_not_the_one_that_was_aligned_is_refused(source):
+    with pytest.raises(MeshError, match=r"scan\.ply: it has \d+ vertices, but 2 were aligned"):
+        ply(source, onto([0, 1], np.eye(3)[:2]), spider())
+
+
+def test_label_is_that_of_the_part_with_the_largest_share_of_the_point():
+    body = spider(label=np.arange(len(spider().vertices)) % 2)
+    a, b, c = body.label[body.faces[0]]
+    flat = next(f for f, row in enumerate(body.label[body.faces]) if len(set(row.tolist())) == 2)
+    row = body.label[body.faces[flat]]
+    odd = int(np.argmin([np.sum(row == x) for x in row]))
+    share = np.full(3, 0.3)
+    share[odd] = 0.4
+    told = input_labels(body, onto([0, flat, flat, -1], [[1, 0, 0], share, np.eye(3)[odd], [0, 0, 0]]))
+    assert told.tolist() == [a, row[(odd + 1) % 3], row[odd], -1]
+    assert {a, b, c} <= {0, 1}

@@ -1,0 +1,143 @@
+"""The report of a small body: what is on the page, what is said first, and what can never be on it."""
+
+import re
+from html import unescape
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from pages import artifacts, judged
+from rigs import skinned, spider
+
+from kinetree.schemas.input.mesh import Cleaning
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.results.report import RUN, ReportParams
+from kinetree.tasks.results.report import report
+
+
+def page(params: ReportParams | None = None, **changes: Any) -> str:
+    told = {**artifacts(changes.get("skeleton")), **changes}
+    return report(**told, params=params or ReportParams(frames=4, views=1)).text.tobytes().decode()
+
+
+def heeded(text: str) -> list[str]:
+    """The warnings at the top."""
+    box = re.search(r'<aside class="warnings".*?</aside>', text, re.DOTALL)
+    return [unescape(found) for found in re.findall("<li>(.*?)</li>", box.group())] if box else []
+
+
+def facts(text: str) -> dict[str, str]:
+    told = re.search(r'<ul class="facts">(.*?)</ul>', text, re.DOTALL)
+    assert told is not None
+    return {name: unescape(value) for name, value in re.findall("<li>(.*?) <b>(.*?)</b></li>", told.group(1))}
+
+
+def headings(text: str) -> list[str]:
+    return re.findall(r'<section id="(\w+)">', text)
+
+
+@pytest.fixture(scope="module")
+def plain() -> str:
+    return page()
+
+
+def test_facts_are_told_first(plain: str) -> None:
+    told = facts(plain)
+    assert (told["frames"], told["joints"], told["intervals"]) == ("12", "2", "2")
+    assert (told["unit"], told["frames a second"]) == ("mm", "10")
+
+
+def test_every_joint_is_in_the_table(plain: str) -> None:
+    rows = re.findall("<tr>(.*?)</tr>", plain)
+    for name in spider().names:
+        assert any(f"<td>{name}</td>" in row for row in rows), name
+
+
+def test_truth_has_a_chapter_only_where_there_is_one(plain: str) -> None:
+    assert "truth" not in headings(plain)
+    told = page(evaluation=judged(spider()))
+    assert "truth" in headings(told)
+    assert "1 of 2 joints found" in told
+    assert "elbow &lt;i&gt;" in told
+    assert "missing" in told
+
+
+def test_nothing_to_heed_is_no_box_at_all() -> None:
+    leaves = artifacts()["leaves"].model_copy(update={"positions": np.zeros((4, 12, 3))})
+    assert heeded(page(leaves=leaves)) == []
+
+
+def test_what_to_heed_is_said_in_plain_words() -> None:
+    told = artifacts()
+    low = {"doubted": 0.9}
+    doubt = {f: a.model_copy(update=low if f in (3, 4) else {}) for f, a in told["alignment"].items()}
+    cleaned = Cleaning(components=2, components_kept=1)
+    removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in told["mesh"].items()}
+    body = spider(support=np.full(len(spider().names), 2))
+    said = heeded(page(alignment=doubt, mesh=removed, skeleton=body))
+    assert "the alignment is not trusted in frames 3, 4; poses there come from the whole model" in said
+    assert "components that are not the body were removed in frame 7" in said
+    assert any("little support" in text and "joints arm, knee" in text for text in said)
+
+
+def test_body_without_joints_says_that_it_is_one_rigid_part() -> None:
+    whole = spider()
+    kinds = tuple("leaf" if kind == "joint" else kind for kind in whole.kinds)
+    told = page(skeleton=spider(kinds=kinds))
+    assert any("one rigid part" in text for text in heeded(told))
+    assert "0 joints in 12 frames" in told
+
+
+def test_ring_is_said_to_be_no_tree_and_a_skin_that_does_not_follow_to_explain_nothing(plain: str) -> None:
+    assert not any("handle" in text or "explain" in text for text in heeded(plain))
+    ring = trimesh.creation.torus(3.0, 1.0, major_sections=24, minor_sections=12)
+    count = len(ring.vertices)
+    zero = np.zeros((count, 4))
+    body = spider(
+        vertices=np.array(ring.vertices), faces=ring.faces.astype(np.int32), label=np.zeros(count, np.int32),
+        influence=zero.astype(np.int32), weight=zero + [1, 0, 0, 0],
+    )  # fmt: skip
+    one, rest = np.ones(count), skinned(body)
+    grows = {
+        f: Alignment(vertices=rest[t] * (1 + 0.1 * t), residual=0 * one, stretch=one, trust=one, uncovered=0.0)
+        for t, f in enumerate(body.frames)
+    }
+    said = heeded(page(skeleton=body, alignment=grows))
+    assert any("1 handle, as a ring has" in text for text in said)
+    assert any("does not explain the motion" in text for text in said)
+
+
+def test_two_frames_are_said_to_be_few() -> None:
+    two = {name: getattr(spider(), name)[:2] for name in ("frames", "positions", "rotation", "confidence")}
+    assert any(text.startswith("2 frames only") for text in heeded(page(skeleton=spider(**two))))
+
+
+def test_alignment_is_drawn_only_where_something_was_aligned(plain: str) -> None:
+    assert "there is nothing to align" in plain
+    assert "Distance of the aligned mesh to every frame" in page(**artifacts(anew=True))
+
+
+def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
+    assert page() == plain
+
+
+@pytest.mark.parametrize("field", ["title", "unit", "names"])
+def test_no_word_from_outside_becomes_markup(field: str) -> None:
+    bad = "</script><script>alert(1)</script>\n<img src=x onerror=alert(1)>$\\frac$ & {{run}}"
+    if field == "title":
+        told = page(ReportParams(frames=2, views=1, title=bad))
+    elif field == "unit":
+        sequence = artifacts()["sequence"].model_copy(update={"unit": bad})
+        told = page(skeleton=spider(unit=bad), sequence=sequence)
+    else:
+        told = page(skeleton=spider(names=(bad, *spider().names[1:])))
+    assert "<script>alert" not in told
+    assert "<img src=x" not in told
+    assert told.count(RUN) == 1, "the place for what ran is one"
+
+
+def test_page_is_whole_and_asks_for_nothing(plain: str) -> None:
+    assert plain.startswith("<!doctype html>")
+    assert plain.rstrip().endswith("</html>")
+    assert not re.search(r'(src|href)="(?!data:|#)', plain)

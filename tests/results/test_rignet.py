@@ -1,0 +1,55 @@
+"""The rig as RigNet's text."""
+
+import numpy as np
+import pytest
+import trimesh
+from rigs import spider
+
+from kinetree.tasks.results.rignet import rignet
+
+
+@pytest.fixture
+def body():
+    return spider()
+
+
+def lines(skeleton):
+    told = rignet(skeleton).files(())["rignet/skeleton.txt"].decode().splitlines()
+    return {word: [line.split()[1:] for line in told if line.split()[0] == word] for word in ("joints", "root", "hier", "skin")}
+
+
+def test_every_line_is_of_a_known_kind_and_no_joint_is_missing(body):
+    told = lines(body)
+    assert sum(map(len, told.values())) == len(rignet(body).files(())["rignet/skeleton.txt"].decode().splitlines())
+    assert [row[0] for row in told["joints"]] == list(body.names)
+    np.testing.assert_allclose([[float(x) for x in row[1:]] for row in told["joints"]], body.rest)
+
+
+def test_hierarchy_leads_from_the_root_to_every_joint(body):
+    told = lines(body)
+    assert told["root"] == [["trunk"]]
+    pairs = [(body.names[p], body.names[j]) for j, p in enumerate(body.parents) if p >= 0]
+    assert [tuple(row) for row in told["hier"]] == pairs
+
+
+def test_skin_gives_every_vertex_weights_that_sum_to_one(body):
+    rows = lines(body)["skin"]
+    assert [int(row[0]) for row in rows] == list(range(len(body.vertices)))
+    for vertex, row in enumerate(rows):
+        weights = dict(zip(row[1::2], map(float, row[2::2]), strict=True))
+        assert sum(weights.values()) == pytest.approx(1.0, abs=3e-6)
+        assert weights[body.names[body.influence[vertex, 0]]] == pytest.approx(body.weight[vertex, 0], abs=1e-6)
+
+
+def test_mesh_beside_it_is_the_one_whose_vertices_are_numbered(body, tmp_path):
+    path = tmp_path / "skeleton.obj"
+    path.write_bytes(rignet(body).files(())["rignet/skeleton.obj"])
+    found = trimesh.load(path, process=False, maintain_order=True)
+    np.testing.assert_allclose(found.vertices, body.vertices, rtol=1e-7, atol=1e-7)
+    np.testing.assert_array_equal(found.faces, body.faces)
+
+
+def test_names_are_single_words_still_unique():
+    told = lines(spider(names=("a b", "a\nb", "a_b", "é", "<script>", "", "7")))
+    assert len({row[0] for row in told["joints"]}) == 7
+    assert all(len(row) == 4 for row in told["joints"])

@@ -1,0 +1,40 @@
+"""Labels on the input's own vertices, gathered."""
+
+import numpy as np
+from rigs import skinned, spider
+
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.projection import Projection
+from kinetree.tasks.results.segmentation import segmentation
+
+
+def gathered(shift=0.0):
+    body = spider(frames=tuple(range(3, 15)))
+    n = len(body.vertices)
+    zero, one = np.zeros(n), np.ones(n)
+    aligned = {
+        frame: Alignment(vertices=V + [shift, 0, 0], residual=zero, stretch=one, trust=one, uncovered=0.0)
+        for frame, V in zip(body.frames, skinned(body), strict=True)
+    }
+    counts = {frame: 2 + frame for frame in body.frames}
+    projected = {
+        frame: Projection(face=np.full(k, frame), share=np.eye(3)[np.zeros(k, int)], distance=np.zeros(k))
+        for frame, k in counts.items()
+    }
+    return body, counts, segmentation(body, aligned, projected)
+
+
+def test_every_frame_has_as_many_labels_as_its_file_has_vertices():
+    body, counts, found = gathered()
+    assert found.frame.tolist() == list(body.frames)
+    for i, frame in enumerate(body.frames):
+        mine = found.label[found.begin[i] : found.end[i]]
+        assert mine.tolist() == [body.label[body.faces[frame, 0]]] * counts[frame]
+    assert found.end[-1] == len(found.label)
+
+
+def test_error_is_the_distance_between_skinned_and_aligned():
+    _, _, found = gathered(shift=0.25)
+    np.testing.assert_allclose([found.error, found.error_95], 0.25, rtol=1e-6)
+    (told,) = found.remarks()
+    assert told.endswith("off the aligned ones by 0.25 mm (root mean square), 95 % below 0.25 mm")

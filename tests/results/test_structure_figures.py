@@ -1,0 +1,25 @@
+"""Contract of the evidence: chapters with pictures that are whole files."""
+
+import numpy as np
+from pages import UP
+from rigs import spider
+from traced import traces_of
+
+from kinetree.tasks.results.structure_figures import structure_figures
+
+
+def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_traces() -> None:
+    body = spider()
+    told = structure_figures(body, traces_of(body), UP)
+    begins = {"png": b"\x89PNG", "svg": b"<?xml"}
+    for chapter in told.chapters:
+        files = told.shown(chapter)
+        assert len(files) == len(chapter.pictures) > 0
+        assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
+    assert told.end[-1] == len(told.content)
+    np.testing.assert_array_equal(told.varies, traces_of(body).variation)
+
+
+def test_same_traces_are_the_same_bytes() -> None:
+    body = spider()
+    assert structure_figures(body, traces_of(body), UP) == structure_figures(body, traces_of(body), UP)

@@ -1,0 +1,55 @@
+"""The rigid parts as the task gives them."""
+
+import numpy as np
+from articulated import three_arms
+
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
+from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.structure.rigid_parts import rigid_parts
+
+FIRST = 10
+
+
+def told(V: np.ndarray, F: np.ndarray, x: np.ndarray, **params: float) -> RigidParts:
+    frames = tuple(range(FIRST, FIRST + len(x)))
+    reference = Reference(
+        frames=frames, frame=FIRST + 2, vertices=V, faces=F, size=1.0, fixed=True, leaves=0, free=True,
+        score=np.zeros(len(x)), before=np.array([1, 2, -1, *range(2, len(x) - 1)]),
+    )  # fmt: skip
+    zero, one = np.zeros(len(V)), np.ones(len(V))
+    aligned = {
+        f: Alignment(vertices=y, residual=zero, stretch=one, trust=one, uncovered=0.0) for f, y in zip(frames, x, strict=True)
+    }
+    leaves = Leaves(
+        frames=frames, rows=np.zeros((0, len(x)), int), positions=np.zeros((0, len(x), 3)), kept=np.ones((1, 0), bool),
+        lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
+    )  # fmt: skip
+    return rigid_parts(reference, aligned, leaves, RigidPartsParams(**params))
+
+
+def test_arms_that_turn_are_parts_and_carry_their_vertices() -> None:
+    body = three_arms()
+    found = told(body.V, body.F, body.x)
+    assert (found.frames[0], len(found.frames)) == (FIRST, len(body.x))
+    for arm in (1, 2, 3):
+        far = body.label == arm
+        assert (found.label[far] == np.bincount(found.label[far]).argmax()).mean() > 0.9
+    carried = np.einsum("fvij,vj->fvi", found.rotation[:, found.label], body.V) + found.translation[:, found.label]
+    sure = found.rigid > 0.99
+    assert sure.mean() > 0.5
+    assert np.linalg.norm(carried - body.x, axis=2)[:, sure].max() < 0.02 * np.ptp(body.V)
+    assert found.residual.shape == found.rotation.shape[:2]
+
+
+def test_a_stiff_sequence_is_one_part() -> None:
+    body = three_arms()
+    found = told(body.V, body.F, np.stack([body.V + f for f in range(5)]))
+    assert found.rotation.shape[1] == 1
+    assert (found.label == 0).all()
+
+
+def test_a_bar_out_of_reach_leaves_one_part() -> None:
+    body = three_arms()
+    assert told(body.V, body.F, body.x, removal_cost=10.0).rotation.shape[1] == 1

@@ -1,0 +1,49 @@
+"""The skeleton as it is left: poses of the aligned vertices, and those of the fit in their places."""
+
+import numpy as np
+import pytest
+from fitting import FIRST, FRAMES, arms, articulation
+from limbs import rotation
+
+from kinetree.schemas.structure.pose_refinement import PoseRefinement
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.structure.skeleton import skeleton
+
+
+def fitted(rows: tuple[int, ...], moved: bool) -> PoseRefinement:
+    """An arm turned by a right angle in some frames."""
+    known, _ = arms()
+    of = articulation(known)
+    kept = {name: np.array(getattr(of, name)[list(rows)]) for name in ("positions", "rotation", "confidence")}
+    if moved:
+        kept["rotation"][:, 1:3] = rotation((0.0, 0.0, 1.0), np.pi / 2)
+        kept["confidence"][:, 1:3] = 0.6
+    half = np.full(len(rows), 0.5)
+    return PoseRefinement(
+        frames=tuple(FIRST + r for r in rows), moved=np.full(len(rows), moved), before=half, after=half, **kept
+    )
+
+
+def test_without_a_fit_all_is_as_it_was() -> None:
+    known, _ = arms()
+    of = articulation(known)
+    for fits in ((), (fitted((6, 7), False),)):
+        found = skeleton(of, fits)
+        assert type(found) is Skeleton
+        for name in Skeleton.array_fields():
+            assert getattr(found, name).tobytes() == getattr(of, name).tobytes()
+
+
+def test_fitted_frames_are_put_in_their_places() -> None:
+    known, _ = arms()
+    of = articulation(known)
+    found = skeleton(of, (fitted((2,), True), fitted((6, 7), True)))
+    changed = [t for t in range(FRAMES) if not np.array_equal(found.rotation[t], of.rotation[t])]
+    assert changed == [2, 6, 7]
+    assert found.confidence[[2, 6, 7], 1] == pytest.approx(0.6)
+    assert found.degrees[1] > found.degrees[[0, 2]].max() == 0.0
+
+
+def test_skeleton_says_how_many_joints_it_has() -> None:
+    known, _ = arms()
+    assert skeleton(articulation(known), ()).remarks() == ("3 joints and 1 ends of bones under root",)

@@ -1,0 +1,26 @@
+"""C(t), as the task gives it."""
+
+import numpy as np
+import pytest
+
+from kinetree.schemas.topology.correlation import CorrelationParams
+from kinetree.schemas.topology.mu_histogram import MuHistogram
+from kinetree.tasks.topology.correlation import correlation
+
+
+def peaked(at: int, normalisation: str = "sequence") -> MuHistogram:
+    return MuHistogram(normalisation=normalisation, low=0.0, high=1.0, mass=np.eye(2000)[at])
+
+
+@pytest.mark.parametrize("normalisation", ["sequence", "frame"])
+def test_equal_frames_correlate_fully_and_others_less(normalisation: str) -> None:
+    told = correlation(tuple(peaked(at, normalisation) for at in (500, 500, 1500)), CorrelationParams())
+    assert told.correlation[0] == 1
+    assert told.correlation[1] < 0.1
+    assert told.histograms.shape == (3, 100)
+    assert told.histograms.sum(axis=1) == pytest.approx(np.ones(3))
+
+
+def test_spheres_whose_mu_is_constant_correlate_fully() -> None:
+    ball = MuHistogram(normalisation="sequence", low=0.443, high=0.443, mass=np.eye(2000)[0])
+    assert correlation((ball, ball), CorrelationParams()).correlation.tolist() == [1.0]

@@ -1,0 +1,63 @@
+"""Leaves followed through a sequence, as the task gives them."""
+
+import numpy as np
+import pytest
+
+from kinetree.schemas.topology.extrema import Extrema
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.schemas.topology.leaves import Leaves, LeavesParams
+from kinetree.tasks.topology.leaves import leaves
+
+FRAMES = 12
+
+
+def seen(*points: tuple[float, float, float]) -> Extrema:
+    X = np.array(points, float).reshape(-1, 3)
+    stems = np.linspace(0.2, 1.0, 5)[None, :, None] * X[:, None, :]
+    up = np.tile([0.0, 0.0, 1.0], (len(X), 1))
+    return Extrema(
+        vertices=np.arange(len(X)), persistence=np.full(len(X), 0.5), stems=stems, normals=up, value=np.full(len(X), 0.7),
+        peaks=np.full(len(X), 0.5), loops=np.zeros(0), size=1.0, centre=(0.0, 0.0, 0.0), euler=2, components=1,
+    )  # fmt: skip
+
+
+def cut(*ends: int) -> Intervals:
+    begin = [0, *(e + 1 for e in ends[:-1])]
+    return Intervals(
+        frames=tuple(range(FRAMES)), begin=np.array(begin), end=np.array(ends), z=np.zeros(FRAMES - 1),
+        cues=(("leaves",),) * (len(ends) - 1), strengths=np.zeros((1, FRAMES - 1)), cue_names=("leaves",), threshold=2.0,
+    )  # fmt: skip
+
+
+LEFT, RIGHT = (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+
+
+def test_leaf_lost_at_a_contact_comes_back_as_itself_and_counts_where_it_was_seen() -> None:
+    tips = {n: seen(LEFT, RIGHT) if not 4 <= n <= 7 else seen(RIGHT) for n in range(FRAMES)}
+    told = leaves(tips, cut(3, 7, 11), LeavesParams())
+    assert told.rows.shape == (2, FRAMES)
+    assert told.kept.tolist() == [[True, True], [False, True], [True, True]]
+    assert (told.lost.tolist(), told.lost_begin.tolist(), told.lost_end.tolist()) == ([0], [4], [7])
+    assert np.isnan(told.positions[0, 4:8]).all()
+
+
+def test_short_gap_is_bridged_on_a_straight_line() -> None:
+    tips = {n: seen((n / 20, 0.5, 0.0), RIGHT) if n != 5 else seen(RIGHT) for n in range(FRAMES)}
+    told = leaves(tips, cut(11), LeavesParams())
+    assert told.positions[0, 5] == pytest.approx([0.25, 0.5, 0.0])
+    assert told.rows[0, 5] == -1
+
+
+def test_paper_follows_each_interval_by_itself_from_its_first_frame() -> None:
+    tips = {n: seen(LEFT, RIGHT) if n != 2 else seen(LEFT) for n in range(FRAMES)}
+    told = leaves(tips, cut(5, 11), LeavesParams(method="nearest", share=1.0, bridge=0))
+    assert told.rows.shape == (4, FRAMES)
+    assert told.kept.tolist() == [[True, False, False, False], [False, False, True, True]]
+
+
+def test_body_without_tips_has_no_leaves() -> None:
+    told: Leaves = leaves({n: seen() for n in range(FRAMES)}, cut(11), LeavesParams())
+    assert told.rows.shape == (0, FRAMES)
+    assert told.kept.shape == (1, 0)
+    literal = leaves({n: seen() for n in range(FRAMES)}, cut(11), LeavesParams(method="nearest"))
+    assert literal.rows.shape == (0, FRAMES)
