@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+from kinetree.pipeline.look import html_table
 from kinetree.pipeline.reason import Reason
 from kinetree.pipeline.schedule import Entry, Schedule
-from kinetree.pipeline.told import html_table
 
 PlanState = Literal["fresh", "stale", "waits"]
 
@@ -46,10 +46,10 @@ class TaskPlan:
     def __str__(self) -> str:
         total = sum(self.states.values())
         head = f"{self.task} ×{total}" if self.over else self.task
-        told = [f"{count} {state}" if self.over else state for state, count in self.states.items()]
-        told += [f"more when {_some(self.unknown)} is there"] if self.unknown else []
+        parts = [f"{count} {state}" if self.over else state for state, count in self.states.items()]
+        parts += [f"more once {_some(self.unknown)} is computed"] if self.unknown else []
         why = "; ".join(f"{reason} ×{n}" if n > 1 else reason for reason, n in list(self.reasons.items())[:3])
-        return f"{head}: {', '.join(told)}{f' — {why}' if why else ''}"
+        return f"{head}: {', '.join(parts)}{f' — {why}' if why else ''}"
 
 
 @dataclass(frozen=True)
@@ -132,13 +132,13 @@ def _tasks(schedule: Schedule, nodes: tuple[Planned, ...]) -> Iterator[TaskPlan]
 
 
 def _tasks_of(labels: tuple[str, ...]) -> tuple[str, ...]:
-    """The tasks of nodes: thirty-six frames wait for thirty-six others, and that is one thing to say."""
+    """The tasks of nodes: that all nodes of one task wait for those of another is one thing to say."""
     return tuple(dict.fromkeys(label.partition("[")[0] for label in labels))
 
 
 def _counted(nodes: tuple[Planned, ...]) -> dict[str, int]:
-    found = Counter(n.state for n in nodes)
-    return {state: found[state] for state in ("fresh", "stale", "waits") if found[state]}
+    counts = Counter(n.state for n in nodes)
+    return {state: counts[state] for state in ("fresh", "stale", "waits") if counts[state]}
 
 
 def _some(names: tuple[str, ...]) -> str:

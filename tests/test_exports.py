@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,6 @@ import trimesh
 import zarr
 from exporting import GRAPH, order, write_frames
 from rigs import spider
-from typer.testing import CliRunner
 
 from kinetree.errors import (
     ConfigError,
@@ -23,11 +23,15 @@ from kinetree.errors import (
     StoreFullError,
     UnknownNodeError,
 )
-from kinetree.pipeline import inspect, views
+from kinetree.pipeline import application, views
 from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import write_elsewhere
+from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.export import EXTRAS, export
+
+EXPORTING = replace(APPLICATION, methods=lambda: {"mesoscopic": GRAPH})
+"""kinetree with the exports alone."""
 
 LEFT = ["segmentation.zarr", "skeleton.bvh", "skeleton.glb", "skeleton.json"]
 
@@ -50,8 +54,8 @@ def computed(scans, tmp_path_factory):
 
 @pytest.fixture
 def configured(scans, computed, tmp_path, monkeypatch):
-    monkeypatch.setattr(inspect, "_methods", lambda: {"mesoscopic": GRAPH})
     shutil.copytree(computed, tmp_path / "out" / "store")
+    monkeypatch.setattr(application, "_installed", lambda: EXPORTING)
     return {"source": {"input": str(scans)}, "output": str(tmp_path / "out"), "compute": {"executor": "sync"}}
 
 
@@ -309,10 +313,9 @@ def test_schema_is_published_without_a_run(tmp_path, capsys):
         export(None, "json-schema", tmp_path / "no" / "schema.json")
 
 
-def test_shown_skeleton_is_a_tree_with_lengths_turns_and_support(out):
-    shown = CliRunner().invoke(command_line(), ["show", "skeleton", str(out)])
-    assert shown.exit_code == 0, shown.output
-    lines = [line.rstrip() for line in shown.output.splitlines()]
+def test_shown_skeleton_is_a_tree_with_lengths_turns_and_support(out, capsys):
+    assert not command_line(EXPORTING)(["show", "skeleton", str(out)], standalone_mode=False)
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
     at = next(n for n, line in enumerate(lines) if line.startswith("trunk"))
     assert lines[at : at + 7] == [
         "trunk       root, 12 frames",
