@@ -28,7 +28,7 @@ class Planned:
     artifact: str | None
 
     def __str__(self) -> str:
-        why = "; ".join(map(str, self.reasons)) or (f"on {_some(self.waits)}" if self.waits else "")
+        why = "; ".join(map(str, self.reasons)) or (f"for {_some(self.waits)}" if self.waits else "")
         return f"{self.node}: {self.state}{f' ({why})' if why else ''}"
 
 
@@ -126,7 +126,7 @@ def _tasks(schedule: Schedule, nodes: tuple[Planned, ...]) -> Iterator[TaskPlan]
     for task in schedule.graph.tasks:
         mine = tuple(n for n in nodes if n.task == task.name)
         reasons = Counter(str(r) for n in mine for r in n.reasons)
-        waits = Counter(f"waits on {_some(_tasks_of(n.waits) if task.over else n.waits)}" for n in mine if n.waits)
+        waits = Counter(f"waits for {_some(_tasks_of(n.waits) if task.over else n.waits)}" for n in mine if n.waits)
         unknown = tuple(schedule.entries[n].label for n in schedule.blocked.get(task.name, ()) if n in schedule.entries)
         yield TaskPlan(task.name, "/".join(task.over), _counted(mine), dict((reasons + waits).most_common()), unknown)
 

@@ -218,7 +218,7 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
     pipeline = Pipeline.of({**configured, "skeleton": {"fails": True}})
     pipeline.run()
     for form in ("glb", "csv", "ply", "rignet"):
-        with pytest.raises(UnknownNodeError, match=r"from skeleton, not there.*: skeleton: stale.*; kinetree run computes"):
+        with pytest.raises(UnknownNodeError, match=r"from skeleton.*, .*: skeleton: stale.*; kinetree run computes"):
             export(str(tmp_path / "out"), form, tmp_path / "x")
     assert not (tmp_path / "x").exists()
 
@@ -226,7 +226,7 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
 def test_export_of_what_was_never_run_says_so(configured, tmp_path):
     shutil.rmtree(tmp_path / "out")
     (tmp_path / "walk.yaml").write_text(json.dumps(configured))
-    with pytest.raises(UnknownNodeError, match=r"from skeleton, not there.*: skeleton: stale"):
+    with pytest.raises(UnknownNodeError, match=r"from skeleton.*, which .* has not computed yet: skeleton: stale"):
         export(str(tmp_path / "walk.yaml"), "glb")
     assert not (tmp_path / "out").exists()
 
@@ -235,7 +235,7 @@ def test_frames_without_alignment_are_named(out, scans, tmp_path, configured):
     pipeline = Pipeline.of(configured)
     for frame in (3, 4):
         pipeline.store.discard(pipeline.why(f"projection[frame={frame}]").artifact)
-    with pytest.raises(UnknownNodeError, match=r"ply is made from projection\[frame=3\] and 1 more, not there"):
+    with pytest.raises(UnknownNodeError, match=r"ply is made from projection\[frame=3\] and 1 more, which this configuration"):
         export(str(out), "ply", tmp_path / "x")
     assert not (tmp_path / "x").exists()
 
@@ -272,11 +272,11 @@ def test_tables_that_cannot_all_be_written_are_not_there_at_all(out, tmp_path, m
 
 def test_own_input_is_never_overwritten(out, scans):
     before = (scans / "0003.ply").read_bytes()
-    with pytest.raises(ConfigError, match="the sequence is read from it"):
+    with pytest.raises(ConfigError, match="the input is read from it"):
         export(str(out), "glb", scans / "0003.ply")
     assert (scans / "0003.ply").read_bytes() == before
     frames = names(scans)
-    with pytest.raises(ConfigError, match="the sequence is read from this folder, as all its meshes"):
+    with pytest.raises(ConfigError, match="the input is all files of this kind in this folder"):
         export(str(out), "glb", scans)
     assert names(scans) == frames
 

@@ -141,7 +141,7 @@ def test_folder_of_meshes_has_no_truth_until_one_is_named(tmp_path: Path) -> Non
     assert not (out / "evaluation.json").exists()
     error = refused(out)
     assert isinstance(error, ConfigError)
-    assert "nobody knows the truth of it; name one" in str(error)
+    assert "its input came without a true skeleton; name one" in str(error)
     summary = json.loads(asked(out, tmp_path / "walk" / "truth.json", "--json").output)["summary"]
     assert summary["found"] == summary["scored"]
     assert summary["parts"] is None

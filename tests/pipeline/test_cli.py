@@ -290,7 +290,7 @@ def test_plan_tells_states_and_reasons(kinetree, walked):
     code, printed, _ = kinetree("plan", walked, "--set", "mesh.component_share=0.1", "--until", "connectivity")
     assert code == 0
     assert "mesh ×3: 3 stale — params: component_share 0.05 → 0.1 ×3" in printed
-    assert "connectivity: waits — waits on mesh[frame=0], mesh[frame=1], mesh[frame=2]" in printed
+    assert "connectivity: waits — waits for mesh[frame=0], mesh[frame=1], mesh[frame=2]" in printed
     code, printed, _ = kinetree("plan", walked, "--until", "connectivity", "--nodes")
     assert "mesh[frame=1]: fresh\n" in printed
     assert "everything is up to date; a run would compute nothing" in printed

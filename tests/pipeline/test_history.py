@@ -14,8 +14,8 @@ def why(toys, node, **blocks):
 
 def test_a_node_that_never_ran_says_so(toys):
     assert why(toys, "points[0]") == "points[frame=0]: stale (never ran)"
-    assert why(toys, "total") == "total: waits (on smooth[frame=0], smooth[frame=1], smooth[frame=2] and 3 more)"
-    assert why(toys, "track[5]") == "track[frame=5]: waits (on order)"
+    assert why(toys, "total") == "total: waits (for smooth[frame=0], smooth[frame=1], smooth[frame=2] and 3 more)"
+    assert why(toys, "track[5]") == "track[frame=5]: waits (for order)"
 
 
 def test_a_changed_parameter_is_told_old_and_new(toys):
@@ -23,7 +23,7 @@ def test_a_changed_parameter_is_told_old_and_new(toys):
     changed = {"intervals": {"length": 3}}
     assert why(toys, "intervals", **changed) == "intervals: stale (params: length 2 → 3)"
     assert why(toys, "points[1]", **changed) == "points[frame=1]: fresh"
-    assert why(toys, "report", **changed) == "report: waits (on intervals)"
+    assert why(toys, "report", **changed) == "report: waits (for intervals)"
 
 
 def test_a_changed_input_is_named(toys):
@@ -64,7 +64,7 @@ def test_a_plan_counts_by_task(toys):
     assert rows["points"] == "points ×6: 6 fresh"
     assert rows["smooth"] == "smooth ×6: 6 stale — params: grain 10.0 → 20.0 ×6"
     assert rows["cones"] == "cones ×0: more once intervals is computed"
-    assert rows["total"].startswith("total: waits — waits on smooth[frame=0]")
+    assert rows["total"].startswith("total: waits — waits for smooth[frame=0]")
 
 
 def test_reasons_are_told_against_the_last_run_into_the_same_folder(toys, tmp_path):
