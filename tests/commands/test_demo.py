@@ -11,7 +11,7 @@ from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.demo import demo
-from kinetree.tasks.sequence import sequence
+from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.source import source
 
 

@@ -8,7 +8,7 @@ from kinetree.errors import GraphError
 from kinetree.pipeline import output, views
 from kinetree.pipeline.key import code_closure
 from kinetree.schemas.array import Artifact
-from kinetree.tasks import METHODS, VIEWS
+from kinetree.tasks.methods import METHODS, VIEWS
 
 WORDED = {"report", "paper_figures"}
 """Tasks whose artifacts hold sentences for people."""
