@@ -12,7 +12,7 @@ from kinetree.pipeline.graph import Graph
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.demo import demo
 from kinetree.tasks.input.sequence import sequence
-from kinetree.tasks.source import source
+from kinetree.tasks.input.source import source
 
 
 def test_demo_computes_the_example_and_names_commands_that_there_are(
