@@ -102,13 +102,13 @@ def _streamed_sum(mesh: Links, order: Ints, edge: float, weight: Floats) -> tupl
     """Σ_u w_u g(u, ·) and, if some vertex is out of reach, how many are and from which source."""
     vertices = len(order)
     total = np.zeros(vertices)
-    room = workspace(vertices, len(mesh[1]))
+    work = workspace(vertices, len(mesh[1]))
     for s in range(vertices):
-        propagate(mesh, np.uint64(s), edge, np.inf, room)
+        propagate(mesh, np.uint64(s), edge, np.inf, work)
         unreached = 0
         for i in range(vertices):
-            total[order[i]] += weight[order[s]] * room[0][i]
-            unreached += np.isinf(room[0][i])
+            total[order[i]] += weight[order[s]] * work[0][i]
+            unreached += np.isinf(work[0][i])
         if unreached:
             return total, unreached, order[s]
     return total, 0, 0
