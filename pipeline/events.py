@@ -43,8 +43,8 @@ class Watch:
         """A node has its artifact, computed or found."""
         peak = result.record.peak_bytes if result.record else 0
         if result.status == "ran":
-            told = {"seconds": round(result.seconds, 6), "peak_bytes": peak, "artifact": result.artifact}
-            self._tell("finish", node=entry.label, task=entry.node.task, **told)
+            measured = {"seconds": round(result.seconds, 6), "peak_bytes": peak, "artifact": result.artifact}
+            self._tell("finish", node=entry.label, task=entry.node.task, **measured)
         else:
             self.fresh([entry])
 
@@ -55,8 +55,8 @@ class Watch:
 
     def fail(self, entry: Entry, result: Result, skipped: Iterable[Entry]) -> None:
         """A node failed, and those below it are skipped."""
-        told = {"error": result.error, "message": result.message, "seconds": round(result.seconds, 6), "trace": result.trace}
-        self._tell("failed", node=entry.label, task=entry.node.task, **told)
+        cause = {"error": result.error, "message": result.message, "seconds": round(result.seconds, 6), "trace": result.trace}
+        self._tell("failed", node=entry.label, task=entry.node.task, **cause)
         for other in skipped:
             self._tell("skipped", node=other.label, task=other.node.task, because=entry.label)
 
@@ -69,9 +69,9 @@ class Watch:
         self._tell("end", status=status, seconds=round(seconds, 3))
 
     def _tell(self, event: str, **rest: Any) -> None:
-        told = {"event": event, "time": round(time.time(), 3), **rest}
+        message = {"event": event, "time": round(time.time(), 3), **rest}
         for listener in self.listeners:
-            listener.hear(told)
+            listener.hear(message)
 
 
 @dataclass
@@ -112,5 +112,5 @@ class Account:
 
     def nodes(self) -> dict[str, int]:
         """Total counts."""
-        told = {kind: sum(row[kind] for row in self.tasks.values()) for kind in ("ran", "fresh", "failed")}
-        return {**told, "skipped": self.skipped}
+        counts = {kind: sum(row[kind] for row in self.tasks.values()) for kind in ("ran", "fresh", "failed")}
+        return {**counts, "skipped": self.skipped}

@@ -102,12 +102,14 @@ def _interruptible(loop: "_Loop") -> Iterator[None]:
     """Ctrl-C and SIGTERM become something the loop receives, so that it stops where it is at rest.
 
     Raised wherever the thread happens to be, they can leave a lock of a library held for ever. A node that runs in this
-    very thread is interrupted as usual.
+    very thread is interrupted as usual. A signal that whoever started this process had it ignore (nohup, a job in the
+    background) stays ignored.
     """
     if not loop.launch.is_apart or threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, loop.interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    heeded = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, loop.interrupt) for number in heeded}
     try:
         yield
     finally:
