@@ -26,17 +26,17 @@ def geodesics(mesh: Mesh, params: GeodesicsParams) -> Geodesics:
     if params.sum == "vertices":
         integral, bases = mu_from_every_vertex(surface), np.empty(0, np.int64)
     else:
-        found = farthest_bases(surface, params.bases)
-        integral, bases = mu(found.distance, found.weight), kept[found.vertex]
+        spread = farthest_bases(surface, params.bases)
+        integral, bases = mu(spread.distance, spread.weight), kept[spread.vertex]
     return Geodesics(
-        mu=_spread(integral, kept, len(mesh.vertices), np.nan),
-        area=_spread(surface.area, kept, len(mesh.vertices), 0.0),
+        mu=_scattered(integral, kept, len(mesh.vertices), np.nan),
+        area=_scattered(surface.area, kept, len(mesh.vertices), 0.0),
         bases=bases,
         share=share,
     )
 
 
-def _spread(values: Floats, kept: NDArray[np.int64], count: int, rest: float) -> Floats:
+def _scattered(values: Floats, kept: NDArray[np.int64], count: int, rest: float) -> Floats:
     """Values of the kept vertices among all vertices, `rest` elsewhere."""
     whole = np.full(count, rest)
     whole[kept] = values
