@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from kinetree.pipeline.errors import DamagedArtifactError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
+from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.layout import Given, Layout, T
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Reason, Recall, Work, differences, never_ran
@@ -69,7 +69,7 @@ class Schedule:
         self.recall = recall
         self.entries: dict[Node, Entry] = {}
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
-        self.code = {task.name: code_digest(task.module) for task in graph.tasks}
+        self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
         self._unlisted: dict[Node, None] = {}
@@ -193,7 +193,7 @@ class Schedule:
             }
             for argument, nodes in entry.inputs or ()
         ]
-        return Work(self.params.get(entry.node.task, {}), code_closure(entry.task.module), inputs)
+        return Work(self.params.get(entry.node.task, {}), code_parts(entry.task.module, entry.task.name), inputs)
 
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
