@@ -14,10 +14,9 @@ READ, HANDED, CALLED, STORED = range(4)
 """How a use treats what it names: only reads it; hands it on, to whatever end; calls it, or a method of it; stores into it."""
 DYNAMIC = frozenset({"globals", "exec", "eval", "__import__", "import_module", "__globals__", "_getframe", "currentframe"})
 """Names that reach definitions which no syntax tree shows."""
-READERS = frozenset(
-    "abs all any bool dict enumerate filter float frozenset getattr hasattr hash int isinstance issubclass iter len list map max"
-    " min next print range repr reversed round set sorted str sum super tuple type zip".split()
-)
+_UNCHANGING = """abs all any bool dict enumerate filter float frozenset getattr hasattr hash int isinstance issubclass iter len
+list map max min next print range repr reversed round set sorted str sum super tuple type zip"""
+READERS = frozenset(_UNCHANGING.split())
 """Built-in functions that leave their arguments as they are."""
 Target = tuple[str, str | None]
 """What an import binds: a module, and the name in it where it is one name."""
@@ -132,10 +131,15 @@ def imported_by(node: ast.AST, module: str, *, is_package: bool) -> Iterator[tup
     """The names that one import statement binds, and what to; the name of a starred import is "*"."""
     if isinstance(node, ast.Import):
         for alias in node.names:
-            yield alias.asname or alias.name.partition(".")[0], (alias.name if alias.asname else alias.name.partition(".")[0], None)
+            yield (
+                alias.asname or alias.name.partition(".")[0],
+                (alias.name if alias.asname else alias.name.partition(".")[0], None),
+            )
     elif isinstance(node, ast.ImportFrom):
         package = module if is_package else module.rpartition(".")[0]
-        origin = importlib.util.resolve_name("." * node.level + (node.module or ""), package) if node.level else node.module or ""
+        origin = (
+            importlib.util.resolve_name("." * node.level + (node.module or ""), package) if node.level else node.module or ""
+        )
         for alias in node.names:
             yield alias.asname or alias.name, (origin, alias.name)
 
@@ -176,6 +180,9 @@ class _Reader:
     def read(self, node: ast.AST, treated: int = HANDED) -> None:
         """Notes every use below a node; `treated` says what becomes of the node's value."""
         kind = type(node).__name__
+        if kind in _COMPREHENSIONS:
+            self._comprehension(node)
+            return
         special = getattr(self, f"_read_{kind}", None)
         if special is not None:
             special(node, treated)
@@ -263,7 +270,8 @@ class _Reader:
             self._annotation(node.returns)
         self._within(node, node.body)
 
-    _read_AsyncFunctionDef = _read_FunctionDef
+    def _read_AsyncFunctionDef(self, node: ast.AsyncFunctionDef, treated: int) -> None:
+        self._read_FunctionDef(node, treated)
 
     def _read_Lambda(self, node: ast.Lambda, _: int) -> None:
         self._signature(node.args)
@@ -300,7 +308,7 @@ class _Reader:
         self._read_all(body)
         self._scopes.pop()
 
-    def _read_comprehension_in(self, node: ast.AST, _: int) -> None:
+    def _comprehension(self, node: ast.AST) -> None:
         """A comprehension: its first iterable belongs outside, everything else sees its targets."""
         generators: list[ast.comprehension] = node.generators  # type: ignore[attr-defined]
         self.read(generators[0].iter, READ)
@@ -309,8 +317,6 @@ class _Reader:
             self._read_all([*([generator.iter] if number else []), *generator.ifs], READ)
         self._read_all([getattr(node, part, None) for part in ("elt", "key", "value")])
         self._scopes.pop()
-
-    _read_ListComp = _read_SetComp = _read_DictComp = _read_GeneratorExp = _read_comprehension_in
 
     def _annotation(self, node: ast.AST) -> None:
         """An annotation: texts in it are names that stand further down, save in literals and in what is called."""
@@ -332,9 +338,12 @@ class _Reader:
                 self._annotation(child)
 
 
-_READING = frozenset({"Compare", "BinOp", "UnaryOp", "JoinedStr", "FormattedValue", "ExceptHandler", "Raise", "Assert", "Slice"})
+_READING = frozenset(
+    {"Compare", "BinOp", "UnaryOp", "JoinedStr", "FormattedValue", "ExceptHandler", "Raise", "Assert", "Slice"}
+)
 """Expressions and statements that leave what they name as it is."""
 
+_COMPREHENSIONS = frozenset({"ListComp", "SetComp", "DictComp", "GeneratorExp"})
 _HOLDING = frozenset({"Tuple", "List", "Set", "Dict", "IfExp", "BoolOp", "keyword"})
 """Expressions with which the same becomes of what is in them as of themselves."""
 

@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - a module of a package is one text, and reads best in one line
 """Laws of reach: an edit changes a task's digest exactly where the task can reach it by name.
 
 Every construct is a little package `p` with the task `p.m:t`, edits that the task cannot reach and edits that it can.
@@ -46,7 +47,10 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
     ),
     "default of a keyword": ({"m": "A, B = 11, 22\ndef t(*, x=A): return x\ndef u(*, x=B): 0"}, ["m: 22 → 23"], ["m: 11 → 12"]),
     "annotation": (
-        {"m": "from p.s import Mesh, Other\ndef t(x: Mesh, *y: int) -> None: ...", "s": "class Mesh: size = 11\nclass Other: size = 22"},
+        {
+            "m": "from p.s import Mesh, Other\ndef t(x: Mesh, *y: int) -> None: ...",
+            "s": "class Mesh: size = 11\nclass Other: size = 22",
+        },
         ["s: 22 → 23"],
         ["s: 11 → 12", "m: x: Mesh → x: Other", "m: -> None → -> int"],
     ),
@@ -64,41 +68,51 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
         ['m: ["u"] → ["v"]'],
     ),
     "texts that are types outside annotations": (
-        {"m": 'from typing import TypeVar, cast\nT = TypeVar("T", bound="A")\nclass A: a = 11\nclass B: b = 22\nclass C: c = 33\n'
-              'def t(x: T): return cast("B", x)'},
+        {
+            "m": 'from typing import TypeVar, cast\nT = TypeVar("T", bound="A")\nclass A: a = 11\nclass B: b = 22\nclass C: c = 33\n'
+            'def t(x: T): return cast("B", x)'
+        },
         ["m: 33 → 34"],
         ["m: 11 → 12", "m: 22 → 23"],
     ),
     "class body": (
         {
             "m": "from typing import ClassVar\nfrom p.f import field, D, E\nclass A:\n    x: int = field(D)\n    y: ClassVar[int] = 11\n"
-                 "    def used(self): return 22\n    def unused(self): return E\nclass B: z = 33\ndef t(a: A): return a.used()",
+            "    def used(self): return 22\n    def unused(self): return E\nclass B: z = 33\ndef t(a: A): return a.used()",
             "f": "D = 44\nE = 55\nF = 66\ndef field(x): return x",
         },
         ["m: 33 → 34", "f: 66 → 67"],
         ["m: 11 → 12", "m: 22 → 23", "f: 44 → 45", "f: 55 → 56", "f: return x → return 1", "m: x: int → x: float"],
     ),
     "bases, metaclasses": (
-        {"m": "class Meta(type): a = 11\nclass Base(metaclass=Meta): b = 22\nclass Own(Base): c = 33\nclass Sister(dict): d = 44\n"
-              "def t(): return Own()"},
+        {
+            "m": "class Meta(type): a = 11\nclass Base(metaclass=Meta): b = 22\nclass Own(Base): c = 33\nclass Sister(dict): d = 44\n"
+            "def t(): return Own()"
+        },
         ["m: 44 → 45"],
         ["m: 11 → 12", "m: 22 → 23", "m: 33 → 34"],
     ),
     "NamedTuple and dataclass": (
-        {"m": "from typing import NamedTuple\nfrom dataclasses import dataclass\nclass A(NamedTuple):\n    x: float = 11\n"
-              "@dataclass(frozen=True)\nclass B:\n    y: A\n@dataclass\nclass C:\n    z: int = 22\ndef t(): return B(A())"},
+        {
+            "m": "from typing import NamedTuple\nfrom dataclasses import dataclass\nclass A(NamedTuple):\n    x: float = 11\n"
+            "@dataclass(frozen=True)\nclass B:\n    y: A\n@dataclass\nclass C:\n    z: int = 22\ndef t(): return B(A())"
+        },
         ["m: 22 → 23", "m: z: int → z: float"],
         ["m: 11 → 12", "m: frozen=True → frozen=False", "m: x: float → x: int"],
     ),
     "constants computed at import": (
-        {"m": "from p.n import scale\nA = 11\nB = [scale(a) for a in (A, 22)]\nC = scale(33)\ndef t(): return B",
-         "n": "K = 44\nL = 55\ndef scale(x): return K * x"},
+        {
+            "m": "from p.n import scale\nA = 11\nB = [scale(a) for a in (A, 22)]\nC = scale(33)\ndef t(): return B",
+            "n": "K = 44\nL = 55\ndef scale(x): return K * x",
+        },
         ["m: 33 → 34", "n: 55 → 56"],
         ["m: 11 → 12", "m: 22 → 23", "n: 44 → 45", "n: K * x → K + x"],
     ),
     "unpacked in pairs": ({"m": "A, B = 11, 22\ndef t(): return A"}, ["m: 22 → 23"], ["m: 11 → 12"]),
     "unpacked otherwise": (
-        {"m": "A, (B, *C) = 11, (22, 33)\nD = 44\ndef t(): return C"}, ["m: 44 → 45"], ["m: 11 → 12", "m: 22 → 23", "m: 33 → 34"]
+        {"m": "A, (B, *C) = 11, (22, 33)\nD = 44\ndef t(): return C"},
+        ["m: 44 → 45"],
+        ["m: 11 → 12", "m: 22 → 23", "m: 33 → 34"],
     ),
     "stars in tuples": (
         {"m": "def a(): 11\ndef b(): 22\ndef c(): 33\nA = (a,)\nB = (*A, b)\nC = (*A, c)\ndef t(): return B"},
@@ -111,63 +125,99 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
         ["m: 11 → 12", "m: 33 → 34", "m: 44 → 45", "m: A = A * 33\nA += 44 → A += 44\nA = A * 33", "m: A += 44\n → "],
     ),
     "bound under a condition": (
-        {"m": "import sys\nBIG = 11\nif sys.maxsize > BIG:\n    A = 22\n    B = 33\nelif BIG:\n    A = 44\nelse:\n    A = 55\ndef t(): return A"},
+        {
+            "m": "import sys\nBIG = 11\nif sys.maxsize > BIG:\n    A = 22\n    B = 33\nelif BIG:\n    A = 44\nelse:\n    A = 55\ndef t(): return A"
+        },
         ["m: 33 → 34"],
         ["m: 22 → 23", "m: 44 → 45", "m: 55 → 56", "m: 11 → 12", "m: sys.maxsize > → sys.maxsize <"],
     ),
-    "moved to the other branch": ({"m": "if 1:\n    A = 22\nelse:\n    B = 3\ndef t(): return A"}, ["m: B = 3 → B = 4"], ["m: if 1:\n    A = 22\nelse:\n    B = 3 → if 1:\n    B = 3\nelse:\n    A = 22"]),
+    "moved to the other branch": (
+        {"m": "if 1:\n    A = 22\nelse:\n    B = 3\ndef t(): return A"},
+        ["m: B = 3 → B = 4"],
+        ["m: if 1:\n    A = 22\nelse:\n    B = 3 → if 1:\n    B = 3\nelse:\n    A = 22"],
+    ),
     "bound in try": (
         {"m": "try:\n    import fast as A\nexcept ImportError:\n    A = 11\nfinally:\n    B = 22\nC = 33\ndef t(): return A"},
         ["m: 33 → 34"],
         ["m: 11 → 12", "m: fast → faster", "m: ImportError → OSError"],
     ),
     "bound in for, with and while": (
-        {"m": "S = 11\nT = {}\nfor k in range(S):\n    T[k] = 22\nwith open('a') as A:\n    U = A.read(33)\nwhile S:\n    S = S - 44\nV = 55\n"
-              "def t(): return k, U, T"},
+        {
+            "m": "S = 11\nT = {}\nfor k in range(S):\n    T[k] = 22\nwith open('a') as A:\n    U = A.read(33)\nwhile S:\n    S = S - 44\nV = 55\n"
+            "def t(): return k, U, T"
+        },
         ["m: 55 → 56"],
         ["m: 11 → 12", "m: 22 → 23", "m: 33 → 34", "m: 44 → 45"],
     ),
-    "bound by :=": ({"m": "if (A := 11) > (B := 22):\n    pass\nprint_ = (C := 33)\nD = 44\ndef t(): return C"}, ["m: 44 → 45"], ["m: 33 → 34"]),
+    "bound by :=": (
+        {"m": "if (A := 11) > (B := 22):\n    pass\nprint_ = (C := 33)\nD = 44\ndef t(): return C"},
+        ["m: 44 → 45"],
+        ["m: 33 → 34"],
+    ),
     "bound by match": (
-        {"m": "import sys\nmatch sys.argv:\n    case [A, *B]:\n        C = 11\n    case _:\n        A = 22\nD = 33\ndef t(): return A"},
+        {
+            "m": "import sys\nmatch sys.argv:\n    case [A, *B]:\n        C = 11\n    case _:\n        A = 22\nD = 33\ndef t(): return A"
+        },
         ["m: 33 → 34"],
         ["m: 11 → 12", "m: 22 → 23", "m: [A, *B] → [A, B]"],
     ),
     "deleted": ({"m": "A = 11\nB = 22\ndel A\ndef t(): return A"}, ["m: 22 → 23"], ["m: del A → del B"]),
     "global": (
-        {"m": "A = 1\nB = 2\ndef setter():\n    global A\n    A = 33\ndef other():\n    global B\n    B = 44\ndef t(): return A"},
+        {
+            "m": "A = 1\nB = 2\ndef setter():\n    global A\n    A = 33\ndef other():\n    global B\n    B = 44\ndef t(): return A"
+        },
         ["m: 44 → 45"],
         ["m: 33 → 34"],
     ),
     "global that is bound nowhere else": (
-        {"m": "def setter(x):\n    def inner():\n        global A\n        A = 33 + x\n    inner()\nB = 22\nsetter(11)\ndef t(): return A"},
+        {
+            "m": "def setter(x):\n    def inner():\n        global A\n        A = 33 + x\n    inner()\nB = 22\nsetter(11)\ndef t(): return A"
+        },
         ["m: 22 → 23"],
         ["m: 33 → 34", "m: 11 → 12"],
     ),
     "side effect on a constant": (
-        {"m": "FIELD = {}\nOTHER = {}\nFIELD.update(a=11)\nOTHER.update(a=22)\nFIELD['b'] = 33\ndel FIELD['a']\nOTHER['b'] = 44\ndef t(): return FIELD"},
+        {
+            "m": "FIELD = {}\nOTHER = {}\nFIELD.update(a=11)\nOTHER.update(a=22)\nFIELD['b'] = 33\ndel FIELD['a']\nOTHER['b'] = 44\ndef t(): return FIELD"
+        },
         ["m: 22 → 23", "m: 44 → 45"],
-        ["m: 11 → 12", "m: 33 → 34", "m: del FIELD['a']\n → ", "m: FIELD.update(a=11) → FIELD.update(b=11)",
-         "m: FIELD['b'] = 33\ndel FIELD['a'] → del FIELD['a']\nFIELD['b'] = 33"],
+        [
+            "m: 11 → 12",
+            "m: 33 → 34",
+            "m: del FIELD['a']\n → ",
+            "m: FIELD.update(a=11) → FIELD.update(b=11)",
+            "m: FIELD['b'] = 33\ndel FIELD['a'] → del FIELD['a']\nFIELD['b'] = 33",
+        ],
     ),
     "side effect from another module": (
-        {"m": "import p.e\nfrom p.c import TABLE\ndef t(): return TABLE", "c": "TABLE = []\nLIST = []",
-         "e": "from p import c\nX = 11\nY = 22\nc.TABLE.append(X)\nc.LIST.append(Y)"},
+        {
+            "m": "import p.e\nfrom p.c import TABLE\ndef t(): return TABLE",
+            "c": "TABLE = []\nLIST = []",
+            "e": "from p import c\nX = 11\nY = 22\nc.TABLE.append(X)\nc.LIST.append(Y)",
+        },
         ["e: 22 → 23"],
         ["e: 11 → 12", "e: c.TABLE.append(X) → c.TABLE.insert(0, X)"],
     ),
     "side effect through another name": (
-        {"m": "TABLE = {}\nLIST = {}\nBOTH = {'a': TABLE}\nOWN = {'a': LIST}\nBOTH['a'].update(b=11)\nOWN['a'].update(b=22)\ndef t(): return TABLE"},
+        {
+            "m": "TABLE = {}\nLIST = {}\nBOTH = {'a': TABLE}\nOWN = {'a': LIST}\nBOTH['a'].update(b=11)\nOWN['a'].update(b=22)\ndef t(): return TABLE"
+        },
         ["m: 22 → 23"],
         ["m: 11 → 12"],
     ),
     "attribute set at import": (
-        {"m": "class A: x = 11\nclass B: x = 22\ndef f(): 0\nA.y = 33\nB.y = 44\nsetattr(A, 'z', 55)\nf.limit = 66\ndef t(): return A, f"},
+        {
+            "m": "class A: x = 11\nclass B: x = 22\ndef f(): 0\nA.y = 33\nB.y = 44\nsetattr(A, 'z', 55)\nf.limit = 66\ndef t(): return A, f"
+        },
         ["m: 44 → 45"],
         ["m: 33 → 34", "m: 55 → 56", "m: 66 → 67"],
     ),
     "module's attribute set from outside": (
-        {"m": "from p import c, e\ndef t(): return c.LIMIT", "c": "LIMIT = 1\nOTHER = 2", "e": "from p import c\nc.LIMIT = 33\nc.OTHER = 44"},
+        {
+            "m": "from p import c, e\ndef t(): return c.LIMIT",
+            "c": "LIMIT = 1\nOTHER = 2",
+            "e": "from p import c\nc.LIMIT = 33\nc.OTHER = 44",
+        },
         ["e: 44 → 45"],
         ["e: 33 → 34"],
     ),
@@ -177,55 +227,81 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
         ["e: 'ignore' → 'raise'"],
     ),
     "call that changes the world": (
-        {"m": "import p.e\ndef t(): return 1.0", "e": "import numpy as np\ndef quiet(): np.seterr(all='ignore')\ndef no(): 22\nquiet()"},
+        {
+            "m": "import p.e\ndef t(): return 1.0",
+            "e": "import numpy as np\ndef quiet(): np.seterr(all='ignore')\ndef no(): 22\nquiet()",
+        },
         ["e: 22 → 23"],
         ["e: 'ignore' → 'raise'"],
     ),
     "registered by decorator": (
-        {"": "from p import w, z", "m": "from p.r import WRITERS\ndef t(k): return WRITERS[k]()",
-         "r": "WRITERS, READERS = {}, {}\ndef writer(name):\n    def keep(f):\n        WRITERS[name] = f\n        return f\n    return keep\n"
-              "def reader(f): READERS[f.__name__] = f; return f",
-         "w": "from p.r import writer, reader\n@writer('a')\ndef a(): return 11\n@reader\ndef b(): return 22",
-         "z": "from p.r import writer\ndef c(): return 33\nD = writer('c')(c)\n"},
+        {
+            "": "from p import w, z",
+            "m": "from p.r import WRITERS\ndef t(k): return WRITERS[k]()",
+            "r": "WRITERS, READERS = {}, {}\ndef writer(name):\n    def keep(f):\n        WRITERS[name] = f\n        return f\n    return keep\n"
+            "def reader(f): READERS[f.__name__] = f; return f",
+            "w": "from p.r import writer, reader\n@writer('a')\ndef a(): return 11\n@reader\ndef b(): return 22",
+            "z": "from p.r import writer\ndef c(): return 33\nD = writer('c')(c)\n",
+        },
         ["w: 22 → 23"],
         ["w: 11 → 12", "w: writer('a') → writer('b')", "z: 33 → 34", ": w, z → z, w"],
     ),
     "registered for a class that the task reads": (
-        {"": "import p.w", "m": "from p.s import Mesh\ndef t(x: Mesh): return x", "s": "class Mesh: size = 11",
-         "r": "WORDS = {}\ndef words(cls):\n    def keep(f):\n        WORDS[cls] = f\n        return f\n    return keep",
-         "w": "from p.r import words\nfrom p.s import Mesh\n@words(Mesh)\ndef mesh(m): return 'two words'"},
+        {
+            "": "import p.w",
+            "m": "from p.s import Mesh\ndef t(x: Mesh): return x",
+            "s": "class Mesh: size = 11",
+            "r": "WORDS = {}\ndef words(cls):\n    def keep(f):\n        WORDS[cls] = f\n        return f\n    return keep",
+            "w": "from p.r import words\nfrom p.s import Mesh\n@words(Mesh)\ndef mesh(m): return 'two words'",
+        },
         ["w: two → three", "r: WORDS[cls] = f → WORDS[cls, 1] = f"],
         ["s: 11 → 12"],
     ),
     "registered by a decorator that changes the class": (
-        {"": "import p.w", "m": "from p.s import Mesh\ndef t(x: Mesh): return x", "s": "class Mesh: size = 11",
-         "r": "def method(cls):\n    def keep(f):\n        setattr(cls, f.__name__, f)\n        return f\n    return keep",
-         "w": "from p.r import method\nfrom p.s import Mesh\n@method(Mesh)\ndef area(m): return 22\ndef other(m): return 33"},
+        {
+            "": "import p.w",
+            "m": "from p.s import Mesh\ndef t(x: Mesh): return x",
+            "s": "class Mesh: size = 11",
+            "r": "def method(cls):\n    def keep(f):\n        setattr(cls, f.__name__, f)\n        return f\n    return keep",
+            "w": "from p.r import method\nfrom p.s import Mesh\n@method(Mesh)\ndef area(m): return 22\ndef other(m): return 33",
+        },
         ["w: 33 → 34"],
         ["w: 22 → 23"],
     ),
     "singledispatch": (
-        {"": "import p.w", "m": "from p.s import area\ndef t(x): return area(x)",
-         "s": "from functools import singledispatch\n@singledispatch\ndef area(x): return 11\n@singledispatch\ndef size(x): return 22",
-         "w": "from p.s import area, size\n@area.register\ndef _(x: int): return 33\n@size.register\ndef other(x: int): return 44"},
+        {
+            "": "import p.w",
+            "m": "from p.s import area\ndef t(x): return area(x)",
+            "s": "from functools import singledispatch\n@singledispatch\ndef area(x): return 11\n@singledispatch\ndef size(x): return 22",
+            "w": "from p.s import area, size\n@area.register\ndef _(x: int): return 33\n@size.register\ndef other(x: int): return 44",
+        },
         ["w: 44 → 45", "s: 22 → 23"],
         ["s: 11 → 12", "w: 33 → 34"],
     ),
     "subclasses that make themselves known": (
-        {"": "import p.w", "m": "from p.s import Base\ndef t(): return Base.known", "w": "from p.s import Base, Free\nclass A(Base): a = 22\nclass B(Free): b = 33",
-         "s": "class Base:\n    known = []\n    def __init_subclass__(cls): Base.known.append(cls)\nclass Free: f = 11"},
+        {
+            "": "import p.w",
+            "m": "from p.s import Base\ndef t(): return Base.known",
+            "w": "from p.s import Base, Free\nclass A(Base): a = 22\nclass B(Free): b = 33",
+            "s": "class Base:\n    known = []\n    def __init_subclass__(cls): Base.known.append(cls)\nclass Free: f = 11",
+        },
         ["w: 33 → 34", "s: 11 → 12"],
         ["w: 22 → 23"],
     ),
     "guards": (
-        {"": "if __name__ != 'p':\n    raise ImportError('11')\nfrom p import e",
-         "m": "if __name__ != 'p.m':\n    raise ImportError(f'{22} words')\ndef t(): return 1\nif __name__ == '__main__':\n    print(t(33))",
-         "e": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from p.m import t\n    X = 44"},
+        {
+            "": "if __name__ != 'p':\n    raise ImportError('11')\nfrom p import e",
+            "m": "if __name__ != 'p.m':\n    raise ImportError(f'{22} words')\ndef t(): return 1\nif __name__ == '__main__':\n    print(t(33))",
+            "e": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from p.m import t\n    X = 44",
+        },
         [": 11 → 12", "m: 22 → 23", "m: 33 → 34", "e: 44 → 45"],
         ["m: return 1 → return 2"],
     ),
     "imported for types alone": (
-        {"m": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from p.s import A, B\ndef t(x: 'A'): 0\ndef u(x: 'B'): 0", "s": "class A: a = 11\nclass B: b = 22"},
+        {
+            "m": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from p.s import A, B\ndef t(x: 'A'): 0\ndef u(x: 'B'): 0",
+            "s": "class A: a = 11\nclass B: b = 22",
+        },
         ["s: 22 → 23"],
         ["s: 11 → 12"],
     ),
@@ -240,79 +316,139 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
         ["n: 11 → 12"],
     ),
     "module by its full name": (
-        {"m": "import p.sub.n\nimport p.k\ndef t(): return p.sub.n.a()", "sub.__init__": "X = 33", "sub.n": "def a(): return 11\ndef b(): return 22", "k": "X = 44"},
+        {
+            "m": "import p.sub.n\nimport p.k\ndef t(): return p.sub.n.a()",
+            "sub.__init__": "X = 33",
+            "sub.n": "def a(): return 11\ndef b(): return 22",
+            "k": "X = 44",
+        },
         ["sub.n: 22 → 23", "sub.__init__: 33 → 34", "k: 44 → 45"],
         ["sub.n: 11 → 12"],
     ),
     "module from a package, relatively": (
-        {"sub.__init__": "", "m": "from .sub import n as numerics\ndef t(): return numerics.a()", "sub.n": "from ..k import b\nfrom . import o\ndef a(): return b() + o.c()",
-         "k": "def b(): return 11\nX = 22", "sub.o": "def c(): return 33\nY = 44"},
+        {
+            "sub.__init__": "",
+            "m": "from .sub import n as numerics\ndef t(): return numerics.a()",
+            "sub.n": "from ..k import b\nfrom . import o\ndef a(): return b() + o.c()",
+            "k": "def b(): return 11\nX = 22",
+            "sub.o": "def c(): return 33\nY = 44",
+        },
         ["k: 22 → 23", "sub.o: 44 → 45"],
         ["k: 11 → 12", "sub.o: 33 → 34"],
     ),
     "module as a value": (
-        {"m": "from p import n, k\ndef t(name): return getattr(n, name)()\ndef u(): return k", "n": "def a(): return 11\ndef b(): return K\nK = 22", "k": "X = 33"},
+        {
+            "m": "from p import n, k\ndef t(name): return getattr(n, name)()\ndef u(): return k",
+            "n": "def a(): return 11\ndef b(): return K\nK = 22",
+            "k": "X = 33",
+        },
         ["k: 33 → 34"],
         ["n: 11 → 12", "n: 22 → 23", "n: K = 22 → K = 22\nL = 1"],
     ),
     "module handed on under a local name": (
-        {"m": "def t():\n    import p.n as n\n    return vars(n)", "n": "def a(): return 11", "k": "X = 33"}, ["k: 33 → 34"], ["n: 11 → 12"]
+        {"m": "def t():\n    import p.n as n\n    return vars(n)", "n": "def a(): return 11", "k": "X = 33"},
+        ["k: 33 → 34"],
+        ["n: 11 → 12"],
     ),
-    "name that a module does not show": ({"m": "from p import n\ndef t(): return n.shadow", "n": "X = 11", "k": "X = 33"}, ["k: 33 → 34"], ["n: 11 → 12"]),
+    "name that a module does not show": (
+        {"m": "from p import n\ndef t(): return n.shadow", "n": "X = 11", "k": "X = 33"},
+        ["k: 33 → 34"],
+        ["n: 11 → 12"],
+    ),
     "__getattr__ of a module": (
-        {"m": "from p.n import shadow\ndef t(): return shadow", "n": "def __getattr__(name): return 11\nX = 22"}, ["n: 22 → 23"], ["n: 11 → 12"]
+        {"m": "from p.n import shadow\ndef t(): return shadow", "n": "def __getattr__(name): return 11\nX = 22"},
+        ["n: 22 → 23"],
+        ["n: 11 → 12"],
     ),
-    "globals()": ({"m": "def t(k): return globals()[k]\ndef a(): return 11\nfrom p.n import b", "n": "def b(): return 22\ndef c(): return 33"},
-                  ["n: 33 → 34"], ["m: 11 → 12"]),
+    "globals()": (
+        {
+            "m": "def t(k): return globals()[k]\ndef a(): return 11\nfrom p.n import b",
+            "n": "def b(): return 22\ndef c(): return 33",
+        },
+        ["n: 33 → 34"],
+        ["m: 11 → 12"],
+    ),
     "exec and eval": ({"m": "def t(k): return eval(k)\ndef a(): return 11", "k": "X = 2"}, ["k: 2 → 3"], ["m: 11 → 12"]),
     "module imported by a computed name": (
-        {"m": "from importlib import import_module\ndef t(k): return import_module(f'p.sub.{k}')\ndef a(): return 11", "sub.__init__": "", "sub.x": "X = 22", "k": "X = 33"},
+        {
+            "m": "from importlib import import_module\ndef t(k): return import_module(f'p.sub.{k}')\ndef a(): return 11",
+            "sub.__init__": "",
+            "sub.x": "X = 22",
+            "k": "X = 33",
+        },
         ["k: 33 → 34"],
         ["m: 11 → 12", "sub.x: 22 → 23"],
     ),
     "import *": (
-        {"m": "from p.n import *\ndef t(): return a()", "n": "from p.k import *\ndef b(): return 22", "k": "def a(): return 11", "o": "X = 33"},
+        {
+            "m": "from p.n import *\ndef t(): return a()",
+            "n": "from p.k import *\ndef b(): return 22",
+            "k": "def a(): return 11",
+            "o": "X = 33",
+        },
         ["o: 33 → 34"],
         ["k: 11 → 12", "n: 22 → 23"],
     ),
     "re-export": (
-        {"m": "from p.sub import a\nimport p.sub\ndef t(): return a() + p.sub.c()", "sub.__init__": "from .n import a, b\nfrom .n import d as c\nX = 44",
-         "sub.n": "def a(): return 11\ndef b(): return 22\ndef d(): return 33"},
+        {
+            "m": "from p.sub import a\nimport p.sub\ndef t(): return a() + p.sub.c()",
+            "sub.__init__": "from .n import a, b\nfrom .n import d as c\nX = 44",
+            "sub.n": "def a(): return 11\ndef b(): return 22\ndef d(): return 33",
+        },
         ["sub.n: 22 → 23", "sub.__init__: 44 → 45"],
         ["sub.n: 11 → 12", "sub.n: 33 → 34", "sub.__init__: d as c → b as c", "sub.__init__: import a, b → import b as a"],
     ),
     "package and module of one name": (
-        {"m": "from p.sub import n\ndef t(): return n()", "sub.__init__": "from .n import n", "sub.n": "def n(): return 11\ndef b(): return 22"},
+        {
+            "m": "from p.sub import n\ndef t(): return n()",
+            "sub.__init__": "from .n import n",
+            "sub.n": "def n(): return 11\ndef b(): return 22",
+        },
         ["sub.n: 22 → 23"],
         ["sub.n: 11 → 12"],
     ),
     "imported within a function": (
-        {"m": "def t():\n    from p.n import a\n    import p.k as k\n    return a(k.c)\ndef b(): 33", "n": "def a(x): return 11\ndef b(): return 22", "k": "c, d = 44, 55"},
+        {
+            "m": "def t():\n    from p.n import a\n    import p.k as k\n    return a(k.c)\ndef b(): 33",
+            "n": "def a(x): return 11\ndef b(): return 22",
+            "k": "c, d = 44, 55",
+        },
         ["n: 22 → 23", "m: 33 → 34", "k: 55 → 56"],
         ["n: 11 → 12", "k: 44 → 45"],
     ),
     "nested functions and classes": (
-        {"m": "A, B, C = 11, 22, 33\ndef t():\n    def f():\n        class K:\n            x = A\n            def g(self): return lambda: B\n        return K\n    return f"},
+        {
+            "m": "A, B, C = 11, 22, 33\ndef t():\n    def f():\n        class K:\n            x = A\n            def g(self): return lambda: B\n        return K\n    return f"
+        },
         ["m: 33 → 34"],
         ["m: 11 → 12", "m: 22 → 23"],
     ),
     "comprehensions have scopes": (
-        {"m": "def f(): return 11\ndef x(): return 22\nY = [33]\ndef t(): return [x for x in Y for _ in x if x], [f for f in Y], f()"},
+        {
+            "m": "def f(): return 11\ndef x(): return 22\nY = [33]\ndef t(): return [x for x in Y for _ in x if x], [f for f in Y], f()"
+        },
         ["m: 22 → 23"],
         ["m: 11 → 12", "m: 33 → 34"],
     ),
     "locals hide": (
-        {"m": "def a(): return 11\ndef b(): return 22\ndef c(): return 33\ndef t(a):\n    b = a\n    for c in b: pass\n    return a, b, c"},
+        {
+            "m": "def a(): return 11\ndef b(): return 22\ndef c(): return 33\ndef t(a):\n    b = a\n    for c in b: pass\n    return a, b, c"
+        },
         ["m: 11 → 12", "m: 22 → 23", "m: 33 → 34"],
         ["m: b = a → b = 1"],
     ),
     "class bodies hide nothing from methods": (
-        {"m": "def a(): return 11\nclass K:\n    a = 1\n    b = a\n    def f(self): return a()\ndef t(): return K"}, [], ["m: 11 → 12"]
+        {"m": "def a(): return 11\nclass K:\n    a = 1\n    b = a\n    def f(self): return a()\ndef t(): return K"},
+        [],
+        ["m: 11 → 12"],
     ),
     "compiled functions that call compiled functions": (
-        {"m": "from p.n import outer\ndef t(): return outer(1)", "c": "import numba\ndef compiled(f): return numba.njit(f)",
-         "n": "from p.c import compiled\nfrom p.k import inner\n@compiled\ndef outer(x): return inner(x)\n@compiled\ndef other(x): return 11",
-         "k": "from p.c import compiled\nLIMIT = 22\n@compiled\ndef inner(x): return LIMIT\n@compiled\ndef loose(x): return 33"},
+        {
+            "m": "from p.n import outer\ndef t(): return outer(1)",
+            "c": "import numba\ndef compiled(f): return numba.njit(f)",
+            "n": "from p.c import compiled\nfrom p.k import inner\n@compiled\ndef outer(x): return inner(x)\n@compiled\ndef other(x): return 11",
+            "k": "from p.c import compiled\nLIMIT = 22\n@compiled\ndef inner(x): return LIMIT\n@compiled\ndef loose(x): return 33",
+        },
         ["n: 11 → 12", "k: 33 → 34"],
         ["k: 22 → 23", "n: inner(x) → inner(x + 1)", "c: njit(f) → jit(f)"],
     ),
@@ -322,10 +458,14 @@ CASES: dict[str, tuple[Package, list[str], list[str]]] = {
         ["m: 11 → 12", "m: A = int → A = str"],
     ),
     "rings": (
-        {"m": "from p.n import f\ndef t(n): return f(n)\ndef u(): 22", "n": "from p import m\ndef f(n): return 11 or m.t(n)"}, ["m: 22 → 23"], ["n: 11 → 12"]
+        {"m": "from p.n import f\ndef t(n): return f(n)\ndef u(): 22", "n": "from p import m\ndef f(n): return 11 or m.t(n)"},
+        ["m: 22 → 23"],
+        ["n: 11 → 12"],
     ),
     "code that counts for nothing": (
-        {"m": "import json\nfrom elsewhere.x import y\ndef t(): return json, y\ndef u(): 22"}, ["m: 22 → 23"], ["m: import y → import z as y"]
+        {"m": "import json\nfrom elsewhere.x import y\ndef t(): return json, y\ndef u(): 22"},
+        ["m: 22 → 23"],
+        ["m: import y → import z as y"],
     ),
 }
 
@@ -370,7 +510,9 @@ def packages(draw):
         {
             "module": draw(st.sampled_from(modules)),
             "kind": draw(st.sampled_from(KINDS)),
-            "refers": draw(st.lists(st.tuples(st.integers(0, count - 1), st.sampled_from("nafl")), max_size=3, unique_by=lambda r: r[0])),
+            "refers": draw(
+                st.lists(st.tuples(st.integers(0, count - 1), st.sampled_from("nafl")), max_size=3, unique_by=lambda r: r[0])
+            ),
         }
         for _ in range(count)
     ]

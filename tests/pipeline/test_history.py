@@ -48,7 +48,8 @@ def test_a_changed_input_is_named(toys):
 def test_changed_code_is_named_by_definition(toys):
     toys.run()
     toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
-    assert why(toys, "points[0]") == f"points[frame=0]: stale (code: {toys.name}.toy_sums:parity)"
+    assert why(toys, "cones[0]") == f"cones[interval=0]: stale (code: {toys.name}.toy_sums:parity)"
+    assert why(toys, "points[0]") == "points[frame=0]: fresh"
 
 
 def test_much_changed_code_of_one_module_is_told_in_short():
@@ -68,10 +69,10 @@ def recorded(code):
 
 def test_all_that_changed_is_told(toys):
     toys.run()
-    toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
+    toys.edit("return Points(x=params.scale", "return Points(x=1.0 * params.scale")
     toys.write(11)
     assert why(toys, "points[0]", points={"scale": 2.0}) == (
-        f"points[frame=0]: stale (params: scale 1.0 → 2.0; code: {toys.name}.toy_sums:parity; input: source[frame=0] changed)"
+        f"points[frame=0]: stale (params: scale 1.0 → 2.0; code: {toys.name}.toys:points; input: source[frame=0] changed)"
     )
 
 
