@@ -78,7 +78,7 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     key, equals, value = text.partition("=")
     task, dot, name = key.strip().partition(".")
     if not equals or not task or task == "extends":
-        raise ConfigError(f"--set {text}: write task.name=value; kinetree tasks lists all of them")
+        raise ConfigError(f"--set {text}: write task.name=value; kinetree tasks lists every parameter")
     bare = value.strip()
     given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
     if not dot:

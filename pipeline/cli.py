@@ -62,7 +62,11 @@ class CommandLine(TyperGroup):
         """Completes names of commands, with their summaries, and options of the whole."""
         names = copy.copy(self)
         names.commands = {c.name: TyperCommand(c.name, short_help=c.summary) for c in self.application.commands.values()}
-        return TyperGroup.shell_complete(names, ctx, incomplete)
+        ctx.command = names  # which typer asks for the commands, whatever `self` is
+        try:
+            return TyperGroup.shell_complete(names, ctx, incomplete)
+        finally:
+            ctx.command = self
 
 
 class _Imported(UserDict[str, Any]):

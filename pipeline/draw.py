@@ -26,7 +26,7 @@ def _mermaid(graph: "nx.DiGraph[str]") -> str:
 
 
 def _dot(graph: "nx.DiGraph[str]") -> str:
-    lines = ["digraph kinetree {", "    node [shape=box];"]
+    lines = ["digraph tasks {", "    node [shape=box];"]
     lines += [f"    {_quoted(node)} [label={_quoted(_node_text(node, data))}];" for node, data in graph.nodes(data=True)]
     for a, b, data in graph.edges(data=True):
         style = "dashed" if data.get("previous") else "bold" if data.get("form") in GATHERS else ""

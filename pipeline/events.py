@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, TextIO
 
 from kinetree.pipeline.execute import Result
-from kinetree.pipeline.schedule import Entry
+from kinetree.pipeline.schedule import Entry, State
 
 
 class Listener(Protocol):
@@ -60,9 +60,9 @@ class Watch:
         for other in skipped:
             self._tell("skipped", node=other.label, task=other.node.task, because=entry.label)
 
-    def damaged(self, entry: Entry, what: str) -> None:
+    def damaged(self, entry: Entry, was: State, what: str) -> None:
         """The artifact of a node that was done lost bytes: what was told of the node is taken back, it runs again."""
-        self._tell("damaged", node=entry.label, task=entry.node.task, was=entry.state, what=what)
+        self._tell("damaged", node=entry.label, task=entry.node.task, was=was, what=what)
 
     def end(self, status: str, seconds: float) -> None:
         """The run is over."""

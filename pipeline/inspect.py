@@ -147,7 +147,7 @@ class Pipeline:
         if lacking:
             more = f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""
             first = next((node for node in todo if node.state == "stale"), todo[0])
-            where = f"{name} is made from {lacking[0]}{more}, which this configuration has not computed yet"
+            where = f"{name} is made from {lacking[0]}{more}, which has no up-to-date result"
             raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
         account = Account()
         self._go(schedule, Watch((account,)), None)

@@ -81,7 +81,7 @@ def write_elsewhere(path: Path, schedule: Schedule, task: str, inputs: Collectio
     raises : as `write_results`; ConfigError where that would overwrite or join what the input is read from, or a device
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise ConfigError(f"{path}: neither a file nor a folder, and would be replaced; name another place with --output")
+        raise ConfigError(f"{path}: neither a file nor a folder, and would be overwritten; name another path with --output")
     done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
@@ -120,7 +120,7 @@ def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> No
         schedule.value(entry.node).arrays()  # checks every byte against its digest
         files = schedule.store.group(digest)
     if place.tree(name) and there.get("schema") != head["schema"]:
-        raise StoreError(f"output folder {place.url}: {name} is there and is not kinetree's; remove it or name another place")
+        raise StoreError(f"output folder {place.url}: {name} was written by another program; remove it or name another path")
     place.remove(name)
     place.put_all(name, files)
 
@@ -150,7 +150,7 @@ def _refuse_input(targets: list[Path], schedule: Schedule, inputs: Collection[st
     for target in targets:
         beside = sum(place.parent == target.resolve().parent for place in places)
         if target.resolve() in places:
-            raise ConfigError(f"{target}: the input is read from it; name another place with --output")
+            raise ConfigError(f"{target}: the input is read from it; name another path with --output")
         if beside > 1 and target.suffix.lower() in inputs:
             raise ConfigError(f"{target}: the input is all files of this kind in this folder; name another with --output")
 

@@ -5,10 +5,17 @@ if __name__ != "kinetree.tasks":
 
 from typing import TYPE_CHECKING, Any
 
+from kinetree.pipeline.views import provide
+
 if TYPE_CHECKING:
     from kinetree.tasks.methods import METHODS
 
-__all__ = ["METHODS"]
+__all__ = ["METHODS", "VIEWS"]
+VIEWS = tuple(
+    f"kinetree.tasks.views.{shelf}" for shelf in ("input", "topology", "registration", "structure", "paper_2014", "results")
+)
+"""What people see of results, a module a shelf; each is imported when somebody looks."""
+provide(*VIEWS)
 
 
 def __getattr__(name: str) -> Any:

@@ -5,19 +5,12 @@ what was measured to be better in place of some of its steps. mesoscopic-2014: t
 """
 
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.views import provide
 from kinetree.tasks.input import INPUT
 from kinetree.tasks.paper_2014 import PAPER_2014
 from kinetree.tasks.registration import REGISTRATION
 from kinetree.tasks.results import FIGURES, FIGURES_2014, RESULTS
 from kinetree.tasks.structure import STRUCTURE
 from kinetree.tasks.topology import TOPOLOGY
-
-VIEWS = tuple(
-    f"kinetree.tasks.views.{shelf}" for shelf in ("input", "topology", "registration", "structure", "paper_2014", "results")
-)
-"""What people see of results, a module a shelf; each is imported when somebody looks."""
-provide(*VIEWS)
 
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),

@@ -356,7 +356,7 @@ def test_show_of_what_was_not_computed_tells_its_schema(kinetree, scans):
 
 @pytest.mark.parametrize("form", ["mermaid", "dot", "json"])
 def test_graph_of_the_method_and_of_a_sequence(kinetree, walked, form):
-    begins = {"mermaid": "flowchart TD\n", "dot": "digraph kinetree {\n", "json": "{"}[form]
+    begins = {"mermaid": "flowchart TD\n", "dot": "digraph tasks {\n", "json": "{"}[form]
     for arguments in ([], [walked], [walked, "--expanded"]):
         code, printed, _ = kinetree("graph", *arguments, "--format", form)
         assert code == 0

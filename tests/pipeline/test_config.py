@@ -253,7 +253,7 @@ def test_target_that_is_nothing_is_refused_with_the_presets(tmp_path):
 
 @pytest.mark.parametrize("text", ["", "=", "=1", "mesh.merge", ".merge=1", "extends=default"])
 def test_set_that_sets_nothing_says_how_it_is_written(text):
-    assert refusal(None, text) == f"--set {text}: write task.name=value; kinetree tasks lists all of them"
+    assert refusal(None, text) == f"--set {text}: write task.name=value; kinetree tasks lists every parameter"
 
 
 @pytest.mark.parametrize(

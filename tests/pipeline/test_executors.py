@@ -75,7 +75,7 @@ def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, clus
 def parcel(toys, **blocks):
     """The first parcel of a run, as it would travel."""
     schedule = toys.pipeline(**blocks).schedule()
-    return schedule, _steps(schedule, schedule.travelling_with(next(schedule.ready())))
+    return schedule, _steps(schedule, schedule.send(next(schedule.ready())))
 
 
 def test_a_worker_with_other_code_refuses(toys):

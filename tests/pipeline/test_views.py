@@ -8,7 +8,8 @@ from kinetree.errors import GraphError
 from kinetree.pipeline import output, views
 from kinetree.pipeline.key import code_closure
 from kinetree.schemas.array import Artifact
-from kinetree.tasks.methods import METHODS, VIEWS
+from kinetree.tasks import VIEWS
+from kinetree.tasks.methods import METHODS
 
 WORDED = {"report", "paper_figures"}
 """Tasks whose artifacts hold sentences for people."""
