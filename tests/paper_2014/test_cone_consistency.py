@@ -14,7 +14,7 @@ def test_cone_that_an_interval_does_not_see_is_recovered_there() -> None:
     told = made().consistency
     assert told.leaf.tolist() == [[0, 1, 2], [0, -1, 1]]
     assert (told.ring[1, told.rows(1)] == told.ring[1, told.rows(0)]).all()
-    assert views.remarks(told) == ("cone 1 is not seen in interval 1 and was recovered from its neighbours",)
+    assert views.remarks(told) == ("cone 1 is missing in interval 1; it was recovered from the neighbouring intervals",)
 
 
 def test_every_interval_has_the_same_members_each_behind_the_one_before() -> None:
