@@ -29,7 +29,7 @@ from kinetree.pipeline import Pipeline
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2014.arap import Arap
-from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.paper_2014.geodesic_mapping import GeodesicMapping, GeodesicMappingParams
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.topology.extrema import Extrema
@@ -82,9 +82,9 @@ class Sequence:
         leaves: Any = pipeline.artifact("leaves")
         frames = intervals.frames
         mesh, extrema = every("mesh", frames), every("extrema", frames)
-        geodesic_coordinates(mesh[frames[0]], extrema[frames[0]], GeodesicCoordinatesParams())
+        geodesic_coordinates(mesh[frames[0]], extrema[frames[0]])
         begun = time.process_time()
-        X = {t: geodesic_coordinates(mesh[t], extrema[t], GeodesicCoordinatesParams()) for t in mesh}
+        X = {t: geodesic_coordinates(mesh[t], extrema[t]) for t in mesh}
         spent.coordinates = (time.process_time() - begun) / len(mesh)
         return cls(mesh, every("geodesics", frames), extrema, X, intervals, leaves)
 

@@ -11,7 +11,7 @@ from shapes import flat_grid, folded
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
-from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.topology.extrema import Extrema
@@ -53,7 +53,7 @@ def frame(t: int, *, hidden: tuple[int, ...] = (), bend: float = 0.15, anew: boo
     )  # fmt: skip
     area = np.full(len(V), 13 * 8 / len(V))
     geodesics = Geodesics(mu=np.ones(len(V)), area=area, bases=np.zeros(0, np.int64), share=1.0)
-    return Frame(mesh, extrema, geodesics, geodesic_coordinates(mesh, extrema, GeodesicCoordinatesParams()), number)
+    return Frame(mesh, extrema, geodesics, geodesic_coordinates(mesh, extrema), number)
 
 
 def leaves_of(frames: dict[int, Frame], *ends: int) -> Leaves:

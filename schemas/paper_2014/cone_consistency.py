@@ -37,15 +37,3 @@ class ConeConsistency(Artifact):
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The cones, numbered from 0, the same in all intervals."""
         return range(len(self.annulus))
-
-    def remarks(self) -> tuple[str, ...]:
-        """Which cones had to be recovered, and that there are none."""
-        if not len(self.annulus):
-            return ("no cones: no interval has a leaf; the body is taken as one rigid part",)
-        lost = [
-            f"cone {cone} is not seen in interval {i} and was recovered from its neighbours"
-            for i, row in enumerate(self.leaf)
-            for cone, leaf in enumerate(row.tolist())
-            if leaf < 0
-        ]
-        return tuple(lost)

@@ -58,14 +58,3 @@ class CutCorrespondence(Artifact):
         """Leaves of an interval, rows of its `IntervalReference.leaf`, without a partner across the cut at its end or begin."""
         matched = self.leaf_before[self.cut == interval] if at_end else self.leaf_after[self.cut == interval - 1]
         return sorted(set(range(int(self.leaf_count[interval]))) - set(matched.tolist()))
-
-    def remarks(self) -> tuple[str, ...]:
-        """Said where there are too few leaves to tell places apart."""
-        few = ("no leaf", "one leaf", "two leaves")
-        closed = "as a ring has or limbs that touch: a tree of joints cannot close it"
-        rings = tuple(f"interval {i} has {n} handle{'s' * (n > 1)}, {closed}" for i, n in enumerate(self.genus) if n > 0)
-        return rings + tuple(
-            f"interval {i} has {few[n]}: the geodesic mapping cannot tell places apart there"
-            for i, n in enumerate(self.leaf_count.tolist())
-            if n < len(few)
-        )

@@ -17,9 +17,3 @@ class Integration(Artifact):
     """Whether annulus k of each cone is rigid; true beyond a cone's last annulus."""
     clusters: Annotated[Ints, Array("int32", RUNG)]
     """Number of rigid areas in all cones together at each threshold (Fig. 11)."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """The threshold, where it was chosen."""
-        if len(self.clusters) < 2:
-            return ()
-        return (f"merge-error threshold {self.theta:g}: it gives the most rigid areas, {self.clusters.max()}",)

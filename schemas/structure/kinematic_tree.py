@@ -41,7 +41,3 @@ class KinematicTree(Skeleton):
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The runs of frames in doubt, numbered from 0, and the source frames of one."""
         return range(len(self.runs())) if space == "doubt" else self.runs()[index[0]]
-
-    def remarks(self) -> tuple[str, ...]:
-        """None: the skeleton says it."""
-        return ()

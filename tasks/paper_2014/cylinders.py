@@ -1,22 +1,19 @@
 """The whole surface as areas of kinematic cones and cylinders."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Bools, Floats
 from kinetree.schemas.paper_2014.arap import Arap, by_interval
 from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.cylinders import Cylinders
 from kinetree.schemas.paper_2014.integration import Integration
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2014 import cylinders as numerics
 from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters
 from kinetree.tasks.numerics.paper_2014.integration import integrated
 from kinetree.tasks.numerics.paper_2014.transfer import composed_map
-
-Ints = NDArray[np.int64]
 
 
 @task()
@@ -39,7 +36,7 @@ def cylinders(
     floors = [integration.floor * r.size for r in interval_references]
     at_rest = [all(a.is_rigid for a in group) for group in groups]
 
-    def clustering(annuli: list[Ints]) -> Bools:
+    def clustering(annuli: list[Ints]) -> Flags:
         label = _labelled(annuli, count)
         seen, rigid = [], []
         for x, image, floor, rests in zip(moving, model_vertex, floors, at_rest, strict=True):
@@ -48,7 +45,7 @@ def cylinders(
             rigid.append(annulus_clusters([x[:, here == k] for k in seen[-1]], integration.theta, floor).rigid | rests)
         return integrated(seen, rigid, len(annuli))
 
-    distance = _leaf_distance(reference, cone_consistency.leaf[model])
+    distance = _leaf_distance(reference, cone_consistency.leaf[model].astype(np.int64))
     extensions = numerics.cylinders(cones, distance, reference.area, F, clustering, cone_consistency.annuli)
     annulus = np.full(count, -1)
     for cylinder in (*cones, *extensions):
@@ -71,7 +68,7 @@ def _labelled(annuli: list[Ints], count: int) -> Ints:
     return label
 
 
-def _leaf_distance(reference: IntervalReference, leaf: NDArray[np.integer]) -> Floats:
+def _leaf_distance(reference: IntervalReference, leaf: Ints) -> Floats:
     """(cone, vertex) distance from each cone's leaf; NaN for a cone that was recovered."""
     if not len(leaf):
         return np.zeros((0, len(reference.vertices)))

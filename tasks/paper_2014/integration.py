@@ -1,13 +1,12 @@
 """Kinematic cones that hold in all intervals."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Bools
 from kinetree.schemas.paper_2014.annuli import Annuli
 from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency
 from kinetree.schemas.paper_2014.integration import Integration
+from kinetree.tasks.numerics.arrays import Flags
 from kinetree.tasks.numerics.paper_2014.integration import integrated, most_clusters, rigid_areas
 
 
@@ -27,7 +26,7 @@ def integration(cone_consistency: ConeConsistency, annuli: tuple[Annuli, ...]) -
     return Integration(floor=annuli[0].floor, theta=float(theta[rung]), rigid=rigid[rung], clusters=clusters)
 
 
-def _integrated(intervals: list[Annuli], rung: int, length: int) -> Bools:
+def _integrated(intervals: list[Annuli], rung: int, length: int) -> Flags:
     """(annulus,) whether each annulus of one cone is rigid in all intervals, at one threshold."""
-    annulus: list[NDArray[np.int64]] = [a.annulus.astype(np.int64) for a in intervals]
+    annulus = [a.annulus.astype(np.int64) for a in intervals]
     return integrated(annulus, [a.rigid[rung] for a in intervals], length)

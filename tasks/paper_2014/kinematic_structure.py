@@ -1,10 +1,8 @@
 """The articulated body of the 2014 paper, as the skeleton that every method ends with."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Floats
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2014.arap import Arap, by_interval
 from kinetree.schemas.paper_2014.bones import Bones
@@ -14,12 +12,11 @@ from kinetree.schemas.paper_2014.cylinders import Cylinders
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.paper_2014.kinematic_structure import KinematicStructureParams
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.paper_2014 import kinematic_structure as numerics
 from kinetree.tasks.numerics.paper_2014.bones import adjacent, joint_adjacency
 from kinetree.tasks.numerics.paper_2014.joint_tree import JointTree, joint_tree
 from kinetree.tasks.numerics.paper_2014.transfer import composed_map, mapped_positions
-
-Ints = NDArray[np.int64]
 
 
 @task()

@@ -1,14 +1,13 @@
 """The mesh of the skeleton in one frame, as the alignment that every method ends with."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Floats
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2014.transfer import Transfer
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.geometry.normals import face_areas
 from kinetree.tasks.numerics.paper_2014.alignment_quality import alignment_quality
 from kinetree.tasks.numerics.paper_2014.transferred_alignment import completed
 
@@ -24,7 +23,8 @@ def transferred_alignment(transfers: tuple[Transfer, ...], mesh: Mesh, skeleton:
     rest, F = np.array(skeleton.vertices), np.array(skeleton.faces, np.int64)
     x = completed(rest, np.array(transfer.model_position))
     frame_V, frame_F = np.array(mesh.vertices), mesh.faces.astype(np.int64)
-    quality = alignment_quality(rest, x, F, frame_V, frame_F, _size(rest, F), tracked=transfer.tracked)
+    size = float(np.sqrt(face_areas(rest, F).sum()))
+    quality = alignment_quality(rest, x, F, frame_V, frame_F, size, tracked=transfer.tracked)
     confidence = quality.confidence * known
     return Alignment(
         vertices=x,
@@ -35,9 +35,3 @@ def transferred_alignment(transfers: tuple[Transfer, ...], mesh: Mesh, skeleton:
         distance=float(np.median(quality.residual)),
         doubted=float((confidence < 0.5).mean()),
     )
-
-
-def _size(V: Floats, F: NDArray[np.int64]) -> float:
-    """Root of the area, mesh unit."""
-    a, b, c = V[F].transpose(1, 0, 2)
-    return float(np.sqrt(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2))

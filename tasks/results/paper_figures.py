@@ -17,6 +17,7 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.page.chapters import Drawn, Written, evidence_of
 from kinetree.tasks.results.plots.mesoscopic import cones, lengths, merging, structure
+from kinetree.tasks.views.paper_2014 import cone_consistency_remarks, integration_remarks
 
 
 @task()
@@ -60,7 +61,7 @@ def paper_figures(
         ),
         Drawn(lengths(fetch, frames, up), "Variation of the lengths of bones before they are fixed; afterwards there is none."),
     ]
-    words = (*cone_consistency.remarks(), *integration.remarks())
+    words = (*cone_consistency_remarks(cone_consistency), *integration_remarks(integration))
     return evidence_of(
         [
             Written("cones", "Cones and annuli", annulus_figures, words),

@@ -12,6 +12,7 @@ from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.structure.traces import Traces, TracesParams
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.geometry.normals import vertex_areas
 from kinetree.tasks.numerics.structure import traces as found
 from kinetree.tasks.numerics.structure.frame_poses import seen_share
 from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
@@ -35,7 +36,7 @@ def traces(
     aligned = list(alignment.values())
     trust, tips, cut = trust_of(aligned), tips_of(leaves, reference), RigidPartsSettings().cut
     V, F, x = np.array(reference.vertices), np.array(reference.faces, np.int64), np.stack([a.vertices for a in aligned])
-    body = Surfaces(V, F, x, found.vertex_areas(V, F))
+    body = Surfaces(V, F, x, vertex_areas(V, F))
     cones = found.traced_cones(V, F, x, trust, tips, params.rings, cut)
     carried = _carried(parts, body, trust)
     graph = found.parts_graph(body, carried)

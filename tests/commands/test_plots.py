@@ -10,7 +10,8 @@ from rigs import spider
 from traced import traces_of
 
 from kinetree.errors import ConfigError
-from kinetree.tasks.results.plots import WHAT, draw
+from kinetree.tasks.commands import plot
+from kinetree.tasks.results.plots import OF, WHAT, draw
 from kinetree.tasks.results.plots.drawing import view
 from kinetree.tasks.results.plots.motion import turns
 
@@ -21,6 +22,10 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 def fetch() -> Any:
     told = artifacts() | {"evaluation": judged(spider()), "traces": traces_of(spider())}
     return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+
+
+def test_help_of_the_command_names_every_picture() -> None:
+    assert all(sorted(pictures) == sorted(plot.WHAT) for pictures in OF.values())
 
 
 @pytest.mark.parametrize("what", sorted(WHAT))

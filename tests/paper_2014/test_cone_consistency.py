@@ -3,6 +3,7 @@
 import numpy as np
 from mesoscopic import mesoscopic
 
+from kinetree.pipeline import views
 from kinetree.schemas.paper_2014.cone_consistency import ConeConsistencyParams
 from kinetree.schemas.paper_2014.cones import Cones
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
@@ -13,7 +14,7 @@ def test_cone_that_an_interval_does_not_see_is_recovered_there() -> None:
     consistent = mesoscopic().cone_consistency
     assert consistent.leaf.tolist() == [[0, 1, 2], [0, -1, 1]]
     assert (consistent.annulus[1, consistent.rows(1)] == consistent.annulus[1, consistent.rows(0)]).all()
-    assert consistent.remarks() == ("cone 1 is not seen in interval 1 and was recovered from its neighbours",)
+    assert views.remarks(consistent) == ("cone 1 is not seen in interval 1 and was recovered from its neighbours",)
 
 
 def test_every_interval_has_the_same_cones() -> None:
@@ -35,4 +36,4 @@ def test_body_without_leaves_has_no_cones_and_says_so() -> None:
     unmatched_cuts = CutCorrespondence(**{**here.cut_correspondence.arrays(), **unmatched, "leaf_count": np.zeros(2, int)})
     consistent = cone_consistency(bare, (none, none), unmatched_cuts, ConeConsistencyParams())
     assert list(consistent.members("interval/cone", (0,))) == []
-    assert "one rigid part" in consistent.remarks()[0]
+    assert "one rigid part" in views.remarks(consistent)[0]

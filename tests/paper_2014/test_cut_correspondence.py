@@ -3,6 +3,7 @@
 import numpy as np
 from sheets import CORNERS, Frame, exact, frame, reference_of
 
+from kinetree.pipeline import views
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.tasks.paper_2014.cut_correspondence import cut_correspondence
@@ -48,7 +49,7 @@ def test_leaves_are_paired_and_the_one_that_disappeared_is_surplus() -> None:
     np.testing.assert_allclose(cuts.leaf_distance, np.linalg.norm(ends[0] - ends[1], axis=1)[[0, 2]])
     assert cuts.surplus(0, at_end=True) == [1]
     assert cuts.surplus(1, at_end=False) == []
-    assert cuts.remarks() == ("interval 1 has two leaves: the geodesic mapping cannot tell places apart there",)
+    assert views.remarks(cuts) == ("interval 1 has two leaves: the geodesic mapping cannot tell places apart there",)
 
 
 def test_one_interval_has_no_cut() -> None:
@@ -57,4 +58,4 @@ def test_one_interval_has_no_cut() -> None:
     assert (cuts.to_previous == -1).all()
     assert len(cuts.cut) == 0
     assert cuts.maps() == ([], [])
-    assert cuts.remarks() == ()
+    assert views.remarks(cuts) == ()

@@ -3,6 +3,7 @@
 import numpy as np
 from mesoscopic import mesoscopic
 
+from kinetree.pipeline import views
 from kinetree.tasks.paper_2014.integration import integration
 
 
@@ -11,7 +12,7 @@ def test_all_cones_have_the_joint_of_their_intervals() -> None:
     assert here.integration.rigid.shape[0] == 3
     assert ((~here.integration.rigid).sum(axis=1) == 1).all()
     assert (here.integration.clusters == 6).all()
-    assert "6" in here.integration.remarks()[0]
+    assert "6" in views.remarks(here.integration)[0]
 
 
 def test_joint_that_only_one_interval_shows_is_kept() -> None:
@@ -28,7 +29,7 @@ def test_single_threshold_is_taken_without_a_remark() -> None:
     ]
     joined = integration(here.cone_consistency, tuple(single))
     assert joined.theta == 1.2
-    assert joined.remarks() == ()
+    assert views.remarks(joined) == ()
 
 
 def test_order_of_the_annuli_does_not_matter() -> None:

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from mesoscopic import leaf_vertices, mesoscopic
 
+from kinetree.pipeline import views
+
 
 def test_three_arms_are_children_of_the_middle_and_end_at_their_leaves() -> None:
     here = mesoscopic()
@@ -30,4 +32,4 @@ def test_lengths_are_fixed_and_degrees_are_those_of_the_arms() -> None:
 def test_body_at_rest_has_no_joint() -> None:
     skeleton = mesoscopic(at_rest=True).skeleton
     assert skeleton.kinds == ("root", "leaf", "leaf", "leaf")
-    assert "no joints" in skeleton.remarks()[0]
+    assert "no joints" in views.remarks(skeleton)[0]

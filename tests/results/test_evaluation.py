@@ -5,6 +5,7 @@ import pytest
 from known import generated, observed, perfect
 
 from kinetree.errors import InputError
+from kinetree.pipeline import views
 from kinetree.schemas.results.evaluation import EvaluationParams
 from kinetree.schemas.results.truth import TruthParams
 from kinetree.tasks.results.evaluation import evaluation
@@ -54,7 +55,7 @@ def test_without_truth_there_is_nothing_to_say():
     told = evaluated(true=NOBODY)
     assert told.summary is None
     assert told.joints == ()
-    assert told.remarks() == ()
+    assert views.remarks(told) == ()
 
 
 def test_perfect_skeleton_is_found_whole():
@@ -70,7 +71,7 @@ def test_perfect_skeleton_is_found_whole():
     assert s.overlap_moving.iou == pytest.approx(100.0)
     assert s.length_variation < 60
     assert told.height == HEIGHT
-    assert told.remarks() == (f"{s.scored} of {s.scored} joints found at 0.00 % of the height",)
+    assert views.remarks(told) == (f"{s.scored} of {s.scored} joints found at 0.00 % of the height",)
 
 
 def test_generated_sequence_brings_its_own_truth_and_its_true_parts():
@@ -111,8 +112,8 @@ def test_joint_that_is_too_far_off_is_missing_and_spurious():
     lost = next(j for j in told.joints if j.name == PERFECT.names[FIRST])
     assert lost.found is None
     assert lost.nearest > 5.0
-    assert f"missing: {lost.name}" in told.remarks()
-    assert "1 spurious" in told.remarks()[0]
+    assert f"missing: {lost.name}" in views.remarks(told)
+    assert "1 spurious" in views.remarks(told)[0]
 
 
 def test_joint_too_many_is_spurious_and_one_edit_of_the_tree():
@@ -198,7 +199,7 @@ def test_frames_are_compared_by_their_numbers():
             some[field] = some[field][1::2]
     told = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **some, "frames": (1, 3, 5)}))
     assert told.summary.percent == 0.0
-    assert told.remarks()[-1] == "synth has 6 frames, of which 3 are compared"
+    assert views.remarks(told)[-1] == "synth has 6 frames, of which 3 are compared"
 
 
 def test_bvh_of_a_skeleton_is_its_truth(tmp_path):

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 
 
-class RigidMotion(NamedTuple):
+class FrameMotion(NamedTuple):
     """Rigid motion of a sub-surface from each frame to the next, D_{t→t+1}: x(t + 1) ≈ R x(t) + T.
 
     R : (transition, 3, 3)
@@ -49,7 +50,7 @@ def annulus_clusters(annuli: list[Floats], threshold: float, floor: float) -> An
         if first == k:
             cluster[k] = number
             continue
-        error[k] = merge_error(annuli[k], rigid_motion(np.concatenate(annuli[first:k], axis=1)), floor)
+        error[k] = merge_error(annuli[k], frame_motion(np.concatenate(annuli[first:k], axis=1)), floor)
         if error[k] < threshold:
             cluster[k] = number
         else:
@@ -58,7 +59,7 @@ def annulus_clusters(annuli: list[Floats], threshold: float, floor: float) -> An
     return AnnulusClusters(np.unique(cluster, return_inverse=True)[1].astype(np.int64), error)
 
 
-def merge_error(x: Floats, motion: RigidMotion, floor: float) -> float:
+def merge_error(x: Floats, motion: FrameMotion, floor: float) -> float:
     """Mean over the transitions of cast-error / self-error (Eqs. 11 and 12); 1 for a single frame.
 
     Eq. 11 is 0 / 0 for an annulus that keeps its shape exactly: both errors are taken as `floor` a vertex at least (ours).
@@ -70,25 +71,19 @@ def merge_error(x: Floats, motion: RigidMotion, floor: float) -> float:
     if len(x) < 2:
         return 1.0
     least = max(floor * x.shape[1], 1e-300)
-    cast, own = residual_sums(x, motion), residual_sums(x, rigid_motion(x))
+    cast, own = residual_sums(x, motion), residual_sums(x, frame_motion(x))
     return float((np.maximum(cast, least) / np.maximum(own, least)).mean())
 
 
-def rigid_motion(x: Floats) -> RigidMotion:
+def frame_motion(x: Floats) -> FrameMotion:
     """The rigid motion of a sub-surface from frame to frame, D_{t→t+1}, by least squares (Eq. 9; Kabsch 1976).
 
     x : (frame, vertex, xyz) mesh unit
     """
-    centre = x.mean(axis=1)
-    y = x - centre[:, None]
-    U, _, Vt = np.linalg.svd(y[:-1].transpose(0, 2, 1) @ y[1:])
-    mirrored = np.linalg.det(U) * np.linalg.det(Vt) < 0
-    Vt[mirrored, 2] *= -1
-    R = np.asarray((U @ Vt).transpose(0, 2, 1), dtype=np.float64)
-    return RigidMotion(R, centre[1:] - np.einsum("txy,ty->tx", R, centre[:-1]))
+    return FrameMotion(*rigid_motion(x[:-1], x[1:]))
 
 
-def residual_sums(x: Floats, motion: RigidMotion) -> Floats:
+def residual_sums(x: Floats, motion: FrameMotion) -> Floats:
     """(transition,) Σ_v |R v(t) + T − v(t + 1)|, mesh unit: self-error for its own motion (Eq. 9), else cast-error (Eq. 10).
 
     x      : (frame, vertex, xyz) mesh unit

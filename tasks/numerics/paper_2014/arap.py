@@ -20,7 +20,7 @@ from scipy.sparse.linalg import splu
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.cotangents import Links, cotangent_links
-from kinetree.tasks.numerics.geometry.polar import turn_all, turn_towards
+from kinetree.tasks.numerics.geometry.rigid_fit import turn_all, turn_towards
 
 
 class Deformed(NamedTuple):

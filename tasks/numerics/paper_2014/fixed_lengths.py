@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, fitted, placed, sums
 
 
@@ -52,10 +53,7 @@ def rotations(V: Floats, x: Floats, vertices: Flags) -> Floats:
     for t, here in enumerate(x):
         seen = vertices & np.isfinite(here[:, 0])
         if seen.sum() >= 3:
-            P, Q = V[seen] - V[seen].mean(axis=0), here[seen] - here[seen].mean(axis=0)
-            U, _, Vt = np.linalg.svd(P.T @ Q)
-            Vt[2] *= np.sign(np.linalg.det(U @ Vt))
-            R[t] = (U @ Vt).T
+            R[t] = rigid_motion(V[seen], here[seen])[0]
             if last < 0:
                 R[:t] = R[t]
             last = t

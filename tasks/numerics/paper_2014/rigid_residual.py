@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 
 
 class RigidResidualSettings(NamedTuple):
@@ -44,7 +45,8 @@ def rigid_residual(
     bound = settings.noise * size + settings.edge_share * edge
     least = np.inf
     for _ in range(settings.rounds):
-        moved = _rigidly_moved(P, goal, w)
+        R, t = rigid_motion(P, goal, w)
+        moved = P @ R.T + t
         nearest = projected(moved, V, F)
         residual = float(np.quantile(nearest.distance, settings.quantile)) / bound
         least = min(least, residual)
@@ -52,11 +54,3 @@ def rigid_residual(
             break
         goal = np.einsum("vk,vkx->vx", nearest.share, V[F[nearest.face]])
     return least
-
-
-def _rigidly_moved(P: Floats, Q: Floats, w: Floats) -> Floats:
-    """P by the rigid motion that takes it nearest to Q, weighted least squares (Kabsch 1976)."""
-    p, q = w @ P, w @ Q
-    U, _, Vt = np.linalg.svd((P - p).T @ (w[:, None] * (Q - q)))
-    Vt[2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))
-    return np.asarray((P - p) @ U @ Vt + q)

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 
 
 class TransferredAlignmentSettings(NamedTuple):
@@ -31,9 +32,6 @@ def completed(rest: Floats, x: Floats, settings: TransferredAlignmentSettings | 
         there = np.flatnonzero(known)
         nearest = cKDTree(rest[there]).query(rest[missing], k=min(neighbours, len(there)))[1]
         near = there[nearest.reshape(len(missing), -1)]
-        P, Q = rest[near], x[near]
-        p, q = P.mean(axis=1, keepdims=True), Q.mean(axis=1, keepdims=True)
-        U, _, Vt = np.linalg.svd((P - p).transpose(0, 2, 1) @ (Q - q))
-        Vt[:, 2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))[:, None]
-        out[missing] = ((rest[missing][:, None] - p) @ U @ Vt + q)[:, 0]
+        R, t = rigid_motion(rest[near], x[near])
+        out[missing] = np.einsum("vxy,vy->vx", R, rest[missing]) + t
     return out

@@ -4,6 +4,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotation
+
 Floats = npt.NDArray[np.float64]
 
 POSES = 96
@@ -27,9 +29,7 @@ def turning_range(turns: Floats) -> float:
 
 def mean_rotation(turns: Floats) -> Floats:
     """(3, 3) the rotation nearest to the mean of those given (frame, 3, 3)."""
-    U, _, Vt = np.linalg.svd(turns.mean(axis=0))
-    U[:, 2] *= np.sign(np.linalg.det(U @ Vt))
-    return U @ Vt
+    return nearest_rotation(turns.mean(axis=0))
 
 
 def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool, N: Floats | None = None) -> float:

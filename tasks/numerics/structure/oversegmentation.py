@@ -5,9 +5,9 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from kinetree.tasks.numerics.geometry.covering import covering
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
+from kinetree.tasks.numerics.geometry.sampling import farthest_points
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.leaf_cones import cones
 from kinetree.tasks.numerics.structure.optimal_runs import runs
@@ -38,7 +38,7 @@ def cone_runs(
     label = np.full(len(V), -1, np.int64)
     if not len(leaves):
         return label
-    away = geodesic_distance(surface, leaves, exact=0.0)
+    away = geodesic_distance(surface, leaves)
     C = cones(away, surface.area, leaves, start, ring, count)
     nearest = _whose(away, C)
     total = 0
@@ -73,7 +73,7 @@ def _whose(distance: Floats, cone: Ints) -> Ints:
 
 def patches(surface: Surface, V: Floats, start: Ints, ring: Ints, count: int) -> Ints:
     """(vertex,) patch of the surface, of about equal size: the nearest of farthest points."""
-    node = covering(surface, np.ones(len(V)), count)
+    node = farthest_points(surface, np.ones(len(V)), count)
     tail = np.repeat(np.arange(len(V)), np.diff(start))
     length = np.linalg.norm(V[tail] - V[ring], axis=1)
     way = csr_array((length, ring, start), shape=(len(V), len(V)))

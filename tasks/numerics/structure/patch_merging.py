@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, residual
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, residual
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

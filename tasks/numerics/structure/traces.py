@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, moments, residual
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, moments, residual
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.leaf_cones import cones
@@ -85,7 +85,7 @@ def traced_cones(
     if not len(rows):
         return found
     surface, at = Surface.of(V[kept], body), number[tips[rows]]
-    distance = geodesic_distance(surface, at, exact=0.0)
+    distance = geodesic_distance(surface, at)
     found.ring[np.ix_(rows, kept)] = cones(distance, surface.area, at, *rings(body, len(kept)), count)
     size = float(np.sqrt(surface.area.sum()))
     q = (V[kept] - surface.centre) / size
@@ -108,12 +108,6 @@ def _cut(M: Floats, count: int, cut: float) -> tuple[Ints, Floats]:
     known = (held[1:] > 0.0) & (held[:-1] > 0.0) & (mass > 0.0)
     error = np.sqrt(growth(M, max(count // 10, LEAST)) / (mass or 1.0))
     return run, np.asarray(np.where(known, error, np.nan), np.float64)
-
-
-def vertex_areas(V: Floats, F: npt.NDArray[np.integer[Any]]) -> Floats:
-    """(vertex,) a third of the faces around, mesh unit²."""
-    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    return np.asarray(np.bincount(F.ravel(), np.repeat(np.linalg.norm(n, axis=1) / 6, 3), len(V)), np.float64)
 
 
 def most(ring: Ints, label: Ints, area: Floats, count: int) -> Ints:

@@ -7,6 +7,7 @@ import numpy as np
 from kinetree.errors import ConfigError
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, blank
+from kinetree.tasks.views.results import evaluation_remarks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +55,7 @@ def drawn(told: Evaluation) -> "Figure":
 
 
 def _title(told: Evaluation) -> str:
-    return told.remarks()[0] if told.summary is not None else "no truth"
+    return evaluation_remarks(told)[0] if told.summary is not None else "no truth"
 
 
 def _length(told: Evaluation, j: int) -> str:

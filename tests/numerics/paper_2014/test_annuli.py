@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from articulated import chain, swings
 
-from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters, merge_error, residual_sums, rigid_motion
+from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters, frame_motion, merge_error, residual_sums
 
 BODY = chain((0.0,), swings(12, 2, degrees=60.0, axes=1))
 ANNULUS = np.minimum(((BODY.V[:, 2] + 5.0) / 0.8).astype(int), 11)
@@ -17,7 +17,7 @@ def annuli(x, of_vertex=ANNULUS):
 
 def test_motion_of_a_rigid_part_is_found_and_leaves_no_error():
     part = BODY.x[:, BODY.label == 1]
-    motion = rigid_motion(part)
+    motion = frame_motion(part)
     assert residual_sums(part, motion).max() < 1e-9
     rotation = BODY.R[1:, 1] @ BODY.R[:-1, 1].transpose(0, 2, 1)
     np.testing.assert_allclose(motion.R, rotation, atol=1e-9)
@@ -25,7 +25,7 @@ def test_motion_of_a_rigid_part_is_found_and_leaves_no_error():
 
 def test_motion_of_a_flat_part_is_a_rotation_and_no_mirror():
     flat = BODY.x[:, :3].copy()
-    assert np.linalg.det(rigid_motion(flat).R) == pytest.approx(1.0)
+    assert np.linalg.det(frame_motion(flat).R) == pytest.approx(1.0)
 
 
 def test_rigid_body_is_one_cluster_without_error():
@@ -46,13 +46,13 @@ def test_two_links_are_two_rigid_areas_parted_by_one_annulus_at_the_joint():
 def test_merge_error_is_one_for_an_annulus_that_moves_along_and_large_for_one_that_turns_away():
     noisy = BODY.x + np.random.default_rng(0).normal(0.0, 0.02, BODY.x.shape)
     low, adjacent, high = (noisy[:, k == ANNULUS] for k in (1, 2, 9))
-    assert merge_error(adjacent, rigid_motion(low), FLOOR) == pytest.approx(1.0, abs=0.1)
-    assert merge_error(high, rigid_motion(low), FLOOR) > 10.0
+    assert merge_error(adjacent, frame_motion(low), FLOOR) == pytest.approx(1.0, abs=0.1)
+    assert merge_error(high, frame_motion(low), FLOOR) > 10.0
 
 
 def test_errors_below_the_floor_are_none():
     x = BODY.V + np.random.default_rng(0).normal(0.0, 1e-6, BODY.x.shape)
-    assert merge_error(x[:, ANNULUS == 5], rigid_motion(x[:, ANNULUS == 4]), FLOOR) == 1.0
+    assert merge_error(x[:, ANNULUS == 5], frame_motion(x[:, ANNULUS == 4]), FLOOR) == 1.0
 
 
 def test_one_frame_shows_no_joint():

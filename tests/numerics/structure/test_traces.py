@@ -5,7 +5,7 @@ import pytest
 from articulated import chain, swings, three_arms
 from limbs import rotation
 
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.optimal_runs import runs
 from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
@@ -17,7 +17,6 @@ from kinetree.tasks.numerics.structure.traces import (
     parts_graph,
     survivors,
     traced_cones,
-    vertex_areas,
 )
 
 BENT = chain((0.0,), swings(12, 2))
@@ -106,10 +105,6 @@ def test_vertices_of_two_cones_belong_to_neither():
 def test_a_ring_is_of_the_label_that_has_most_of_it():
     ring, area = np.array([[0, 0, 0, 2, -1]]), np.array([1.0, 1.0, 3.0, 1.0, 9.0])
     np.testing.assert_array_equal(most(ring, np.array([4, 4, 2, 1, 0]), area, 4), [[2, -1, 1, -1]])
-
-
-def test_areas_add_up_to_the_surface():
-    assert vertex_areas(BENT.V, BENT.F) == pytest.approx(BENT.area)
 
 
 def test_a_tree_of_parts_keeps_all_its_borders():
