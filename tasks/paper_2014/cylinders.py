@@ -11,8 +11,6 @@ from kinetree.schemas.paper_2014.integration import Integration
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2014 import cylinders as numerics
-from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters
-from kinetree.tasks.numerics.paper_2014.integration import integrated
 from kinetree.tasks.numerics.paper_2014.transfer import composed_map
 
 
@@ -28,22 +26,12 @@ def cylinders(
     model = _model_interval(interval_references, cone_consistency)
     reference = interval_references[model]
     count, F = len(reference.vertices), reference.faces.astype(np.int64)
-    own = cone_consistency.annulus[:, cone_consistency.rows(model)].astype(np.int64)
-    cones = numerics.kinematic_cones(own, integration.rigid)
-    maps, groups = cut_correspondence.maps(), by_interval(alignments, interval_references)
-    model_vertex = [composed_map(*maps, i, model, len(r.vertices)) for i, r in enumerate(interval_references)]
-    moving = [np.stack([a.vertices for a in group]) for group in groups]
-    floors = [integration.floor * r.size for r in interval_references]
-    at_rest = [all(a.is_rigid for a in group) for group in groups]
+    of_cones = cone_consistency.annulus[:, cone_consistency.rows(model)].astype(np.int64)
+    cones = numerics.kinematic_cones(of_cones, integration.rigid)
+    intervals = _motions(model, interval_references, alignments, cut_correspondence, integration.floor)
 
     def clustering(annuli: list[Ints]) -> Flags:
-        label = _labelled(annuli, count)
-        seen, rigid = [], []
-        for x, image, floor, rests in zip(moving, model_vertex, floors, at_rest, strict=True):
-            here = np.where(image >= 0, label[image], -1)
-            seen.append(np.unique(here[here >= 0]))
-            rigid.append(annulus_clusters([x[:, here == k] for k in seen[-1]], integration.theta, floor).rigid | rests)
-        return integrated(seen, rigid, len(annuli))
+        return numerics.rigid_annuli(annuli, intervals, integration.theta, count)
 
     distance = _leaf_distance(reference, cone_consistency.leaf[model].astype(np.int64))
     extensions = numerics.cylinders(cones, distance, reference.area, F, clustering, cone_consistency.annuli)
@@ -60,12 +48,20 @@ def _model_interval(references: tuple[IntervalReference, ...], cone_consistency:
     return max(range(len(references)), key=lambda i: (seen[i], len(references[i].frames), -i))
 
 
-def _labelled(annuli: list[Ints], count: int) -> Ints:
-    """(vertex,) the position of the annulus that a vertex is in, −1 for none."""
-    label = np.full(count, -1)
-    for k, vertices in enumerate(annuli):
-        label[vertices] = k
-    return label
+def _motions(
+    model: int,
+    references: tuple[IntervalReference, ...],
+    alignments: tuple[Arap, ...],
+    cut_correspondence: CutCorrespondence,
+    floor: float,
+) -> list[numerics.IntervalMotion]:
+    """Every interval's reference in its frames, and the vertices of the model mesh that correspond to its own."""
+    maps, out = cut_correspondence.maps(), []
+    for i, (reference, group) in enumerate(zip(references, by_interval(alignments, references), strict=True)):
+        x = np.stack([a.vertices for a in group])
+        model_vertex = composed_map(*maps, i, model, len(reference.vertices))
+        out.append(numerics.IntervalMotion(x, model_vertex, floor * reference.size, all(a.is_rigid for a in group)))
+    return out
 
 
 def _leaf_distance(reference: IntervalReference, leaf: Ints) -> Floats:

@@ -135,7 +135,7 @@ def _local_step(p: Floats, start: Ints, ring: Ints, weight: Floats, soft: Floats
     energy, H = 0.0, np.empty((3, 3))
     e, f = np.empty(3), np.empty(3)
     for i in range(len(p)):
-        lengths = away = 0.0
+        lengths = distance = 0.0
         H[:] = 0.0
         for k in range(start[i], start[i + 1]):
             for a in range(3):
@@ -145,8 +145,8 @@ def _local_step(p: Floats, start: Ints, ring: Ints, weight: Floats, soft: Floats
                 for b in range(3):
                     H[a, b] += weight[k] * e[a] * f[b]
         for a in range(3):
-            away += (x[i, a] - q[i, a]) ** 2
-        energy += 0.5 * lengths - turn_towards(H, R[i]) + soft[i] * away
+            distance += (x[i, a] - q[i, a]) ** 2
+        energy += 0.5 * lengths - turn_towards(H, R[i]) + soft[i] * distance
     return energy
 
 

@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters
 from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown, neighbours
+from kinetree.tasks.numerics.paper_2014.integration import integrated
 
 Clustering = Callable[[list[Ints]], Flags]
 """From the vertices of each annulus to whether each annulus belongs to a rigid area, all intervals considered."""
@@ -31,6 +33,21 @@ class Cylinder(NamedTuple):
     cone: int
     annulus: Ints
     rigid: Flags
+
+
+class IntervalMotion(NamedTuple):
+    """One interval's reference in all of its frames.
+
+    x            : (frame, own vertex, xyz) mesh unit
+    model_vertex : (own vertex,) the corresponding vertex of the model mesh, −1 for none
+    floor        : see `merge_error`, mesh unit
+    at_rest      : whether no part of the body moved against another
+    """
+
+    x: Floats
+    model_vertex: Ints
+    floor: float
+    at_rest: bool
 
 
 class Areas(NamedTuple):
@@ -113,6 +130,25 @@ def cylinders(
         rigid = clustering([np.flatnonzero(annulus == k) for k in range(len(used))])
         out.append(Cylinder(n, annulus, rigid))
         cone_of[annulus >= 0] = n
+
+
+def rigid_annuli(annuli: list[Ints], intervals: list[IntervalMotion], theta: float, vertices: int) -> Flags:
+    """(annulus,) whether each annulus of an extension is rigid in all intervals (Sec. 6.2.3, as Sec. 6.1.2 and 6.1.3).
+
+    annuli    : of each, its vertices on the model mesh
+    intervals : in any order
+    theta     : θ_r, threshold of Eq. 12
+    vertices  : of the model mesh
+    """
+    of_model = np.full(vertices, -1)
+    for k, inside in enumerate(annuli):
+        of_model[inside] = k
+    annulus, rigid = [], []
+    for x, model_vertex, floor, at_rest in intervals:
+        own = np.where(model_vertex >= 0, of_model[model_vertex], -1)
+        annulus.append(np.unique(own[own >= 0]))
+        rigid.append(annulus_clusters([x[:, own == k] for k in annulus[-1]], theta, floor).rigid | at_rest)
+    return integrated(annulus, rigid, len(annuli))
 
 
 def areas(cylinders: list[Cylinder], vertices: int, F: Ints) -> Areas:

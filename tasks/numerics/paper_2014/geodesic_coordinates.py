@@ -16,8 +16,8 @@ def geodesic_coordinates(V: Floats, F: npt.NDArray[np.integer], leaf: npt.ArrayL
     leaf    : (leaf,) vertices of the largest component; may be none
     returns : (leaf, vertex) mesh unit; NaN outside the largest component
     """
-    kept, inner, _ = largest_component(V, np.asarray(F, np.int32))
+    inside, inner, _ = largest_component(V, np.asarray(F, np.int32))
     out = np.full((np.size(leaf), len(V)), np.nan)
     if np.size(leaf):
-        out[:, kept] = geodesic_distance(Surface.of(V[kept], inner), np.searchsorted(kept, leaf))
+        out[:, inside] = geodesic_distance(Surface.of(V[inside], inner), np.searchsorted(inside, leaf))
     return out

@@ -1,10 +1,17 @@
 """Laws of the undefined area: a pipe of three arms, each with a cone that reaches past the middle of the body."""
 
 import numpy as np
+from articulated import chain, swings
 from shapes import y_pipe
 
 from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown
-from kinetree.tasks.numerics.paper_2014.cylinders import CylindersSettings, cylinders, kinematic_cones
+from kinetree.tasks.numerics.paper_2014.cylinders import (
+    CylindersSettings,
+    IntervalMotion,
+    cylinders,
+    kinematic_cones,
+    rigid_annuli,
+)
 
 V, F, _ = y_pipe()
 DIRECTION = np.stack([[np.cos(a), np.sin(a), 0.0] for a in (0.0, 2 * np.pi / 3, 4 * np.pi / 3)])
@@ -22,7 +29,7 @@ def test_cones_overlap_at_the_branch_and_what_they_share_is_cut_off():
     rigid[:, 4] = False
     assert ((ANNULUS >= 0).sum(axis=0) > 1).any()
     cut = kinematic_cones(ANNULUS, rigid)
-    assert [p.annulus.max() for p in cut] == [4, 4, 4], "the rigid area beyond the joint goes, the joint stays"
+    assert [p.annulus.max() for p in cut] == [4, 4, 4], "the rigid area beyond the joint is cut off, the joint is not"
     assert (sum((p.annulus >= 0).astype(int) for p in cut) <= 1).all()
 
 
@@ -65,7 +72,7 @@ def test_annuli_of_a_cylinder_are_numbered_from_its_near_end():
         kinematic_cones(ANNULUS, rigid), DISTANCE, AREA, F, lambda a: clustered.append(a) or all_rigid(a), 25
     )
     for cylinder, annuli in zip(extensions, clustered, strict=True):
-        reach = [DISTANCE[cylinder.cone][mine].mean() for mine in annuli]
+        reach = [DISTANCE[cylinder.cone][inside].mean() for inside in annuli]
         assert reach == sorted(reach)
 
 
@@ -86,3 +93,15 @@ def test_undefined_components_that_are_small_are_not_extended_into():
     cones = kinematic_cones(ANNULUS, np.ones((3, 25), bool))
     assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
     assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25, CylindersSettings(least_area=1.1)) == []
+
+
+def test_annulus_is_rigid_only_if_it_is_so_in_all_intervals_that_have_it():
+    body = chain((0.0,), swings(12, 2, degrees=60.0, axes=1))
+    of_vertex = np.minimum(((body.V[:, 2] + 5.0) / 0.8).astype(int), 11)
+    annuli, every = [np.flatnonzero(of_vertex == k) for k in range(12)], np.arange(len(body.V))
+    bending = IntervalMotion(body.x, every, 1e-4, False)
+    at_rest = bending._replace(at_rest=True)
+    elsewhere = bending._replace(model_vertex=np.full(len(every), -1))
+    (joint,) = np.flatnonzero(~rigid_annuli(annuli, [at_rest, bending, elsewhere], 1.5, len(every)))
+    assert abs(body.V[annuli[joint], 2].mean()) < 0.9
+    assert rigid_annuli(annuli, [at_rest, elsewhere], 1.5, len(every)).all()

@@ -25,16 +25,16 @@ def fixed(noise=0.0):
     R, t = BODY.R[:, order], BODY.t[:, order]
     X = np.einsum("txy,ny->tnx", R[:, 0], joints) + t[:, :1]
     X = X + np.random.default_rng(0).normal(0, noise, X.shape)
-    tip = np.array([np.argmin(BODY.V[:, 2]), np.argmax(BODY.V[:, 2])])
+    leaf = np.array([np.argmin(BODY.V[:, 2]), np.argmax(BODY.V[:, 2])])
     node = np.argsort(order)[BODY.label]
-    body = posed(BODY.V, BODY.x, node, PARENTS, Observed(X, R, BODY.x[:, tip]), joints[0], np.array([1, 2]))
-    return body, X, tip
+    body = posed(BODY.V, BODY.x, node, PARENTS, Observed(X, R, BODY.x[:, leaf]), joints[0], np.array([1, 2]))
+    return body, X, leaf
 
 
 def test_lengths_that_are_fixed_already_are_left_and_fit_exactly():
-    body, X, tip = fixed()
+    body, X, leaf = fixed()
     np.testing.assert_allclose(body.positions, X, atol=1e-6)
-    np.testing.assert_allclose(body.leaf_positions, BODY.x[:, tip], atol=1e-6)
+    np.testing.assert_allclose(body.leaf_positions, BODY.x[:, leaf], atol=1e-6)
     assert body.drift.max() < 1e-6
 
 

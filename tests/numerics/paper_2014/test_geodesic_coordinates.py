@@ -37,7 +37,7 @@ def test_outside_the_largest_component_there_are_no_coordinates():
 
 def test_coordinates_turn_with_a_body_of_three_equal_arms():
     V, F, turned = y_pipe(12, 3)
-    tips = [int(np.linalg.norm(V, axis=1).argmax())]
-    tips += [int(turned[tips[0]]), int(turned[turned[tips[0]]])]
-    X = geodesic_coordinates(V, F, tips)
+    leaves = [int(np.linalg.norm(V, axis=1).argmax())]
+    leaves += [int(turned[leaves[0]]), int(turned[turned[leaves[0]]])]
+    X = geodesic_coordinates(V, F, leaves)
     np.testing.assert_allclose(X[[1, 2, 0]][:, turned], X, atol=0.02 * X.max())
