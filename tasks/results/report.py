@@ -21,7 +21,7 @@ from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.numerics.results.scene import spread
+from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.page.chapters import sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.heed import counted, heeded, off
@@ -64,7 +64,7 @@ def report(
 
     limits = Limits(params.frames, params.vertices, params.input_vertices)
     up = up_direction.axis
-    frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
+    frames = [skeleton.frames[t] for t in evenly_spread(len(skeleton.frames), params.views)]
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment),

@@ -117,7 +117,7 @@ def test_what_is_wrong_with_the_truth_is_an_error_of_input(run: str, truth: Path
     truth.write_text(json.dumps({**told, "positions": told["positions"][:2]}))
     error = refused(run, truth)
     assert type(error) is InputError
-    assert str(error).startswith("truth.json: it has frames 0 to 1, but not 4 of the 6 of the sequence")
+    assert str(error).startswith("truth.json: it has frames 0 to 1, but 4 of the 6 frames of the sequence are missing")
     truth.write_text(json.dumps({**told, "positions": [[[1e7, 0, 0]] * len(told["joints"])] * 6}))
     assert "truth of another sequence" in str(refused(run, truth))
 

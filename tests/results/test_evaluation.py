@@ -219,17 +219,17 @@ def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
 
 def test_truth_with_too_few_frames_is_refused():
     short = TRUTH.model_copy(update={"frames": (0, 1, 2), "positions": TRUTH.positions[:3]})
-    with pytest.raises(InputError, match=r"synth: it has frames 0 to 2, but not 3 of the 6 of the sequence, the first 3"):
+    with pytest.raises(InputError, match=r"frames 0 to 2, but 3 of the 6 frames of the sequence are missing, the first is 3"):
         evaluated(true=short)
 
 
 def test_truth_of_other_frames_altogether_is_refused():
-    with pytest.raises(InputError, match="but not 6 of the 6 of the sequence"):
+    with pytest.raises(InputError, match="but 6 of the 6 frames of the sequence are missing"):
         evaluated(true=TRUTH.model_copy(update={"frames": tuple(range(100, 106))}))
 
 
 def test_truth_of_another_sequence_is_refused():
-    with pytest.raises(InputError, match="do not lie in the body as joints do: it is the truth of another sequence"):
+    with pytest.raises(InputError, match="do not lie in the body: it is the truth of another sequence"):
         evaluated(true=TRUTH.model_copy(update={"positions": TRUTH.positions + 10 * HEIGHT}))
 
 
@@ -237,9 +237,9 @@ def test_truth_in_another_unit_is_converted_if_both_say_so_and_refused_if_it_can
     metres = TRUTH.model_copy(update={"positions": TRUTH.positions / 1000, "height": HEIGHT / 1000, "unit": "m"})
     assert PERFECT.unit == "mm"
     assert evaluated(true=metres).summary.percent == pytest.approx(0.0, abs=1e-9)
-    with pytest.raises(InputError, match=r"true joints span .* and the body .*; say the unit with truth\.unit"):
+    with pytest.raises(InputError, match=r"true joints measure .*, but the body .*; if the unit differs, set truth\.unit"):
         evaluated(true=metres.model_copy(update={"unit": None}))
-    with pytest.raises(InputError, match="synth is in ell and the sequence in mm; ell is none of"):
+    with pytest.raises(InputError, match="synth is in ell and the sequence in mm, but 'ell' cannot be converted"):
         evaluated(true=metres.model_copy(update={"unit": "ell"}))
 
 

@@ -9,7 +9,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.results.scene import spread
+from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.formats.rig import skinned
 from kinetree.tasks.views.structure import skeleton_remarks
 from kinetree.tasks.views.topology import leaves_remarks
@@ -36,7 +36,7 @@ def heeded(
 def off(skeleton: Skeleton, aligned: Mapping[int, Alignment]) -> float:
     """Root mean square distance between the skin and the aligned meshes of some frames, share of the body's diagonal."""
     size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
-    shown = spread(len(skeleton.frames), LOOKED_AT)
+    shown = evenly_spread(len(skeleton.frames), LOOKED_AT)
     squared = [np.sum((skinned(skeleton, int(t)) - aligned[skeleton.frames[t]].vertices) ** 2, axis=1).mean() for t in shown]
     return float(np.sqrt(np.mean(squared))) / max(size, 1e-300)
 
