@@ -62,19 +62,19 @@ def follow(
     alone = (settings or LeavesSettings()).unmatched * gate
     shape = stems[0].shape[1:] if len(stems) else (1, 3)
     rows, last = np.zeros((0, len(stems)), dtype=np.int64), np.zeros((0, *shape))
-    height, seen = np.zeros(0), np.zeros(0, dtype=np.int64)
+    height, last_seen = np.zeros(0), np.zeros(0, dtype=np.int64)
     for t, S in enumerate(stems):
         here, log = (S - centre[t]) / size[t], np.log(value[t])
         away = np.linalg.norm(here[None] - last[:, None], axis=3).mean(axis=2)
         unlike = np.abs(log[None] - height[:, None])
         cost = np.where((away <= gate) & (unlike <= likeness), away, np.inf)
-        track, leaf = _matched(cost, seen == t - 1, alone, margin)
-        rows[track, t], last[track], height[track], seen[track] = leaf, here[leaf], log[leaf], t
+        track, leaf = _matched(cost, last_seen == t - 1, alone, margin)
+        rows[track, t], last[track], height[track], last_seen[track] = leaf, here[leaf], log[leaf], t
         born = np.setdiff1d(np.arange(len(here)), leaf)
         entry = np.full((len(born), len(stems)), -1, dtype=np.int64)
         entry[:, t] = born
         rows, last = np.concatenate([rows, entry]), np.concatenate([last, here[born]])
-        height, seen = np.concatenate([height, log[born]]), np.concatenate([seen, np.full(len(born), t)])
+        height, last_seen = np.concatenate([height, log[born]]), np.concatenate([last_seen, np.full(len(born), t)])
     return rows
 
 
