@@ -12,10 +12,8 @@ in all frames because the model has no others.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 DAMPING = 1e-7
 STILL = 1e-7  # radians

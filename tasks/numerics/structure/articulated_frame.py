@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
@@ -17,10 +18,6 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, turned
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.frame_poses import some
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 
 class Body(NamedTuple):

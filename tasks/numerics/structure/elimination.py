@@ -3,16 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.structure.part_labels import connected, neighbouring
 from kinetree.tasks.numerics.structure.part_motion import fit, members, squared
 from kinetree.tasks.numerics.structure.removal_cost import candidates, removal_cost
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 ENOUGH, MOST = 120, 250  # vertices of a part that are asked, and that it is fitted to
 

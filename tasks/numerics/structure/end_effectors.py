@@ -1,15 +1,12 @@
 """Where bones end: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:

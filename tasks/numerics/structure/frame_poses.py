@@ -7,13 +7,10 @@ in the frames around in which it was seen, on the shortest way from the one to t
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Expected, Motion, fitted, predicted, sums
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 SEEN = 0.5
 """Share of a part's surface that must be trusted for its pose to serve other frames."""
@@ -90,7 +87,7 @@ def seen_share(label: Ints, area: Floats, trust: Floats | None, frames: int, par
     return np.clip(_by_part(trust, label, area, parts) / np.maximum(np.bincount(label, area, parts), 1e-300), 0.0, 1.0)
 
 
-def between(turn: Floats, known: npt.NDArray[np.bool_]) -> Floats:
+def between(turn: Floats, known: Flags) -> Floats:
     """Rotations (frame, 3, 3), where not known on the shortest way between the nearest known; at the ends the nearest.
 
     Where none is known all stay as they are.

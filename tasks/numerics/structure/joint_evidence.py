@@ -11,16 +11,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import turns
 from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 Faces = Callable[[int], tuple[Floats, Ints]]
 
 CLEAR = 5.0

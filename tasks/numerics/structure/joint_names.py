@@ -8,10 +8,8 @@ is decided, again and again, at the widest gap: two limbs change letters only if
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
 class Named(NamedTuple):
@@ -24,7 +22,7 @@ class Named(NamedTuple):
     names: tuple[str, ...]
 
 
-def named(rest: Floats, parents: Ints, ends: npt.NDArray[np.bool_]) -> Named:
+def named(rest: Floats, parents: Ints, ends: Flags) -> Named:
     """Order and name all joints.
 
     rest    : (joint, xyz) in the reference, parents : (joint,) −1 for the root, which is the first
@@ -76,7 +74,7 @@ def widest_gaps(features: Floats) -> list[int]:
     return [int(half[k]) for half in (high, low) for k in widest_gaps(features[half])]
 
 
-def _outwards(rest: Floats, parents: Ints, ends: npt.NDArray[np.bool_]) -> tuple[Floats, Ints, npt.NDArray[np.bool_]]:
+def _outwards(rest: Floats, parents: Ints, ends: Flags) -> tuple[Floats, Ints, Flags]:
     """Per joint: the longest way along bones from its parent through it, where that leads, and whether joints branch beyond."""
     length, tip = np.zeros(len(parents)), np.arange(len(parents))
     branching = np.zeros(len(parents), dtype=bool)

@@ -1,10 +1,9 @@
 """How far parts turn against each other: ranges of angles, the ways of a surface, turnings that lie between turnings."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Floats
 
 POSES = 96
 """Frames whose rotations are compared each with each."""

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.centre_lines import towards_axes
 from kinetree.tasks.numerics.structure.end_effectors import bone_ends
@@ -17,9 +17,6 @@ from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
 from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 NOISE = 0.002
 """Error of a vertex below which its motion says nothing of its weights, share of the root of the area."""

@@ -1,12 +1,9 @@
 """Cones: the part of the surface around a leaf up to where the body branches, in rings (2014, Sec. 6.1.1.1; Fig. 4)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def cones(distance: Floats, area: Floats, leaves: Ints, start: Ints, ring: Ints, rings: int = 50, pocket: float = 0.1) -> Ints:
@@ -41,9 +38,7 @@ def cones(distance: Floats, area: Floats, leaves: Ints, start: Ints, ring: Ints,
 
 
 @compiled
-def _parting(
-    d: Floats, order: Ints, area: Floats, leaf: npt.NDArray[np.bool_], start: Ints, ring: Ints, enough: float
-) -> float:
+def _parting(d: Floats, order: Ints, area: Floats, leaf: Flags, start: Ints, ring: Ints, enough: float) -> float:
     """The smallest distance beyond which two branches lie apart, each with a leaf or of enough area; infinite if none.
 
     order : (vertex,) farthest first

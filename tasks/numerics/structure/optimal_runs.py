@@ -1,13 +1,10 @@
 """The optimal cut of a chain of rings into rigid runs (after 2014, Sec. 6.1.2; by dynamic programming, not by growth)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, residual
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @compiled

@@ -1,10 +1,10 @@
 """Deliberately too many parts, to eliminate from: optimal runs of rings in the cones, merged patches elsewhere."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.covering import covering
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.rigid_moments import moments
@@ -12,9 +12,6 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.leaf_cones import cones
 from kinetree.tasks.numerics.structure.optimal_runs import runs
 from kinetree.tasks.numerics.structure.patch_merging import merged
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 LEAST = 2  # rings in a run
 NEAR = 0.7

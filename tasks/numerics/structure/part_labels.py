@@ -1,13 +1,10 @@
 """Which part each vertex follows: the one whose motion explains its surroundings, all of a part in one piece."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.structure.part_motion import squared
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @compiled

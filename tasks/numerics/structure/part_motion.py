@@ -1,14 +1,10 @@
 """How parts move: rigid motions from clearly rigid vertices, and what they leave unexplained."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, added, motion
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 ROUNDS = 3  # of fitting and weighting anew
 

@@ -3,17 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.joint_rotations import swing, turning_range
 from kinetree.tasks.numerics.structure.rotation_centres import SPREAD, Borders, Joints, blend_error, borders, rotation_centres
 from kinetree.tasks.numerics.structure.spanning_tree import Tree, rooted, spanning
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 NOISE = 0.001
 """Drift that is none, share of the root of the area."""

@@ -3,13 +3,10 @@
 import heapq
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, residual
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:

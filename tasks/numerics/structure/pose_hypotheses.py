@@ -1,17 +1,13 @@
 """Where a limb may be that surface calls for: as it was in other frames, or between them."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, against_parents, chained, limbs, surface
 from kinetree.tasks.numerics.structure.frame_poses import between
 from kinetree.tasks.numerics.structure.surface_matches import Matches, unexplained
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 TRIED = 24  # frames from which a limb's turning is tried
 REACH = 0.1  # distance from which on a point explains nothing at all, share of the body's size

@@ -8,18 +8,14 @@ nothing is seen is held where it was expected; the more its surface says, the le
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.articulated_fit import turns
 from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, against_parents, chained, joints, pulled
 from kinetree.tasks.numerics.structure.frame_poses import SEEN
 from kinetree.tasks.numerics.structure.pose_hypotheses import guess
 from kinetree.tasks.numerics.structure.surface_matches import Matches, Rows, followed, rows, shown, sought, unexplained
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 DOUBT = 0.7  # confidence of a part below which a frame is fitted
 GAIN = 0.03  # share of what was left unexplained that a fit must explain

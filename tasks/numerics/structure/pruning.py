@@ -8,16 +8,13 @@ would be worse.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, against, part_tree
 from kinetree.tasks.numerics.structure.vertex_reassignment import handed_over
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 LEAST_DEGREES = 6.0
 LEAST_RATIO = 0.8

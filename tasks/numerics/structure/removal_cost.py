@@ -1,13 +1,10 @@
 """By how much a part would be missed: what its neighbours, single or blended in pairs, leave of its motion."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.structure.part_motion import middle
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 TOUCHING, BEYOND = 6, 3
 """Neighbours that are tried: those with the longest borders, and the largest of those behind them."""

@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.geometry.neighbours import rings
@@ -18,9 +19,6 @@ from kinetree.tasks.numerics.structure.part_labels import connected, relabelled
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, unevenness
 from kinetree.tasks.numerics.topology.extrema import extrema as tips
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class RigidParts(NamedTuple):

@@ -7,10 +7,8 @@ with a weight that grows with the noise and shrinks with the border's width.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 SPREAD = 0.5  # standard deviation of a joint about the middle of its border, in radii of the border
 ROUNDS = 4

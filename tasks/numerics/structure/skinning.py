@@ -5,13 +5,10 @@ Least squares over the part of the vertex and its neighbours in the tree, held n
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import rings
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 INFLUENCES = 4
 FAINT = 0.01  # a smaller weight is none

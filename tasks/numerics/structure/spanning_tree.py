@@ -3,10 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
 class Tree(NamedTuple):

@@ -9,16 +9,12 @@ draws the nearest point of the body, whichever that is: surface that nothing exp
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.registration.correspondence import COVERED, Target, walked
 from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, surface
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 ALIKE = 0.3  # cosine of two normals below which two points are not one
 SIDEWAYS = 0.2  # what a way along the surface counts against one across it when matches are weighed

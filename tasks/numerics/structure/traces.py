@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.neighbours import rings
@@ -19,9 +20,6 @@ from kinetree.tasks.numerics.structure.leaf_cones import cones
 from kinetree.tasks.numerics.structure.optimal_runs import runs
 from kinetree.tasks.numerics.structure.oversegmentation import LEAST
 from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces, against, part_tree
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class ConesTraced(NamedTuple):
@@ -57,7 +55,7 @@ class PartsGraph(NamedTuple):
     rest: Floats
     drift: Floats
     degrees: Floats
-    kept: npt.NDArray[np.bool_]
+    kept: Flags
 
 
 def traced_cones(

@@ -1,12 +1,9 @@
 """To which parts the vertices of a part go that is none."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def handed_over(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
