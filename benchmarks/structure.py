@@ -36,7 +36,7 @@ from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 from kinetree.tasks.numerics.results.evaluation.matching import errors, matching
 from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
-from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.topology.extrema import extrema
@@ -145,7 +145,7 @@ def score(case: Case, X: Floats) -> Score:
     return Score(int(hit.sum()), int(scored.sum()), float(error), len(found.spurious), missed)
 
 
-def carried(held: Carried, tree: PartTree) -> Floats:
+def carried(held: MovingParts, tree: PartTree) -> Floats:
     """(frame, joint, xyz) the joints of a tree as the parts above them carry them."""
     order, rows = tree.tree.order, tree.tree.border[1:]
     above = order[tree.tree.parents[1:]]
@@ -164,7 +164,7 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     parted = time.process_time()
     made = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
     done = time.process_time()
-    body, held = Surfaces(case.V, case.F, case.x, area), Carried(found.label, found.R, found.t, found.residual)
+    body, held = MovingSurface(case.V, case.F, case.x, area), MovingParts(found.label, found.R, found.t, found.residual)
     kept_parts = pruned(body, held, tips)
     turning = np.array([kind == "joint" for kind in made.kinds])
     joints = {
@@ -185,8 +185,8 @@ def peer(case: Case, bones: int) -> tuple[Floats, float]:
     label = np.asarray(solved.weights).argmax(axis=0)
     used, label = np.unique(label, return_inverse=True)
     moved = np.asarray(solved.transforms)[:, used]
-    held = Carried(label.astype(np.int64), moved[..., :3, :3].copy(), moved[..., :3, 3].copy(), np.zeros(moved.shape[:2]))
-    body = Surfaces(case.V, case.F, case.x, Surface.of(case.V, case.F).area)
+    held = MovingParts(label.astype(np.int64), moved[..., :3, :3].copy(), moved[..., :3, 3].copy(), np.zeros(moved.shape[:2]))
+    body = MovingSurface(case.V, case.F, case.x, Surface.of(case.V, case.F).area)
     return carried(held, part_tree(body, held)), seconds
 
 

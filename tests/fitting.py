@@ -8,7 +8,7 @@ from limbs import rotation
 
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, surface
+from kinetree.tasks.numerics.structure.articulated_frame import Body, FramePose, surface
 
 Floats = npt.NDArray[np.float64]
 FRAMES = 16
@@ -24,9 +24,9 @@ def arms(degrees: float = 30.0) -> tuple[Known, Body]:
     return known, Body.of(known.V, known.F, bound, weight, known.joints, known.parents)
 
 
-def true(known: Known, frame: int) -> Posture:
+def true(known: Known, frame: int) -> FramePose:
     """The posture that a frame was made with."""
-    return Posture(known.R[frame].copy(), known.R[frame, 0] @ known.joints[0] + known.t[frame, 0])
+    return FramePose(known.R[frame].copy(), known.R[frame, 0] @ known.joints[0] + known.t[frame, 0])
 
 
 def seen(known: Known, body: Body, frame: int, lost: int = -1) -> Target:
@@ -36,14 +36,14 @@ def seen(known: Known, body: Body, frame: int, lost: int = -1) -> Target:
     return Target.of(V[order], np.argsort(order)[F], body.size)
 
 
-def turned(at: Posture, part: int, turn: Floats) -> Posture:
+def turned(at: FramePose, part: int, turn: Floats) -> FramePose:
     """The same with one part turned otherwise."""
     R = at.R.copy()
     R[part] = turn @ R[part]
-    return Posture(R, at.x)
+    return FramePose(R, at.x)
 
 
-def tip(body: Body, at: Posture, part: int) -> Floats:
+def tip(body: Body, at: FramePose, part: int) -> Floats:
     """Where the middle of a part's far half is: how it turns about itself, which a round arm does not show, moves nothing."""
     mine = np.flatnonzero(body.label == part)
     far = mine[np.argsort(np.linalg.norm(body.V[mine] - body.rest[part], axis=1))[len(mine) // 2 :]]

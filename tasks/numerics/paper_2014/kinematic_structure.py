@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.paper_2014.assembly import Fitted, Hung, posed, rotations
-from kinetree.tasks.numerics.structure.joint_names import named
+from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.kinematic_tree import KinematicTree
 
@@ -91,7 +91,7 @@ def _named(
     above = np.concatenate([tree.parents, on])
     rest = np.concatenate([found.motion.rest, found.end_rest])
     is_end = np.arange(len(above)) >= nodes
-    order, names = named(rest, above, is_end)
+    order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
     R = found.motion.R
     turns = np.einsum("tpxy,tpxz->tpyz", R[:, np.maximum(tree.parents, 0)], R)

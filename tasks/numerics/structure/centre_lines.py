@@ -33,7 +33,9 @@ class Line(NamedTuple):
     bent: float
 
 
-def towards_axes(V: Floats, area: Floats, label: Ints, W: Floats, parents: Ints, expected: Floats, radius: Floats) -> Floats:
+def towards_centre_lines(
+    V: Floats, area: Floats, label: Ints, W: Floats, parents: Ints, expected: Floats, radius: Floats
+) -> Floats:
     """(joint, xyz) the places where joints are expected, moved onto the lines of the long parts that they join.
 
     Only parts of limbs have one, on which one other hangs: a hand or a foot may lie across its joint, a trunk has no axis.

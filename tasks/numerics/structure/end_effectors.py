@@ -1,15 +1,18 @@
 """Where bones end: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
 
 
-def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
+def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
     """(end, 2) part and vertex of every end of a bone, by part, a part's most distant first.
 
     Every leaf is one. A part on which nothing hangs and that has no leaf ends where its surface is farthest, along its edges,
@@ -32,8 +35,16 @@ def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> I
     return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
 
-def nearest_vertices(V: Floats, points: Floats) -> Ints:
-    """(point,) the vertex nearest to each point (point, xyz)."""
+def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer[Any]], counts: Flags) -> Ints:
+    """Vertices of the reference at the leaves that are seen in its frame and count in some interval.
+
+    V         : (vertex, xyz) reference, mesh unit
+    positions : (leaf, xyz) of the leaves in the reference's frame, mesh unit; NaN where a leaf is not seen
+    extremum  : (leaf,) extremum of that frame that is the leaf, −1 where it is not seen
+    counts    : (interval, leaf) whether a leaf counts in an interval
+    returns   : (seen leaf,) the nearest vertex to each
+    """
+    points = positions[(extremum >= 0) & counts.any(axis=0)]
     return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
-class Named(NamedTuple):
+class JointNames(NamedTuple):
     """An order of joints, a parent before what hangs on it, branch by branch, and their names.
 
     order : (joint,) the given joint at each place, names : of each place
@@ -22,7 +22,7 @@ class Named(NamedTuple):
     names: tuple[str, ...]
 
 
-def named(rest: Floats, parents: Ints, ends: Flags) -> Named:
+def joint_names(rest: Floats, parents: Ints, ends: Flags) -> JointNames:
     """Order and name all joints.
 
     rest    : (joint, xyz) in the reference, parents : (joint,) −1 for the root, which is the first
@@ -59,7 +59,7 @@ def named(rest: Floats, parents: Ints, ends: Flags) -> Named:
         ranked = [turning[k] for k in widest_gaps(features)]
         ranked.sort(key=lambda c: not branching[c])
         waiting += [*reversed([*ranked, *(int(c) for c in children[j] if ends[c])])]
-    return Named(np.array(order), tuple(name[j] for j in order))
+    return JointNames(np.array(order), tuple(name[j] for j in order))
 
 
 def widest_gaps(features: Floats) -> list[int]:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 POSES = 96
 """Frames whose rotations are compared each with each."""
@@ -22,6 +22,17 @@ def turning_range(turns: Floats) -> float:
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     third = np.sort(angle, axis=1)[:, -rank]
     return float(np.degrees(np.sort(third)[-rank]))
+
+
+def joint_degrees(R: Floats, parents: Ints, turns: Flags) -> Floats:
+    """(joint,) range of turning of every joint against its parent, degrees; 0 where it does not turn.
+
+    R       : (frame, joint, 3, 3)
+    parents : (joint,) −1 for the root
+    turns   : (joint,) whether a joint turns: not the root, and no leaf
+    """
+    against = (np.einsum("txy,txz->tyz", R[:, p], R[:, j]) for j, p in enumerate(parents))
+    return np.array([turning_range(r) if turn else 0.0 for r, turn in zip(against, turns, strict=True)])
 
 
 def mean_rotation(turns: Floats) -> Floats:

@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.part_motion import squared
+from kinetree.tasks.numerics.structure.part_motion import squared_distance
 
 
 @compiled
@@ -22,7 +22,7 @@ def relabelled(
     returns     : (vertex,) part; what is cut off from the bulk of its part goes to those around it
     """
     parts = R.shape[1]
-    near = neighbouring(label, parts, start, ring)
+    near = border_edges(label, parts, start, ring)
     E = _misfits(V, x, weight, R, t, label, near)
     other = np.empty_like(E)
     for _ in range(steps):
@@ -42,7 +42,7 @@ def relabelled(
 
 
 @compiled
-def neighbouring(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
+def border_edges(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
     """(part, part) edges of the mesh between any two parts; each counted once from either side."""
     near = np.zeros((parts, parts), np.int64)
     for v in range(len(label)):
@@ -124,7 +124,7 @@ def _misfits(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: 
             if p == label[v] or near[label[v], p] > 0:
                 total = 0.0
                 for f in range(x.shape[0]):
-                    total += weight[f, v] * squared(V, x, R, t, v, f, p)
+                    total += weight[f, v] * squared_distance(V, x, R, t, v, f, p)
                 E[v, p] = total / mass
                 away = max(away, E[v, p])
     for v in range(len(label)):

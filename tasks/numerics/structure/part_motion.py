@@ -10,7 +10,7 @@ ROUNDS = 3  # of fitting and weighting anew
 
 
 @compiled
-def squared(V: Floats, x: Floats, R: Floats, t: Floats, v: int, f: int, p: int) -> float:
+def squared_distance(V: Floats, x: Floats, R: Floats, t: Floats, v: int, f: int, p: int) -> float:
     """|R q + t − x|² of vertex v in frame f under the motion of part p, mesh unit²."""
     total = 0.0
     for i in range(3):
@@ -33,7 +33,7 @@ def misfit(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: In
     for v in range(len(label)):
         mass = 0.0
         for f in range(x.shape[0]):
-            e[v] += weight[f, v] * squared(V, x, R, t, v, f, label[v])
+            e[v] += weight[f, v] * squared_distance(V, x, R, t, v, f, label[v])
             mass += weight[f, v]
         if mass > 0.0:
             e[v] /= mass
@@ -50,7 +50,7 @@ def residuals(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label:
     total, mass = np.zeros(t.shape[:2]), np.zeros(t.shape[:2])
     for f in range(x.shape[0]):
         for v in range(len(label)):
-            total[f, label[v]] += weight[f, v] * squared(V, x, R, t, v, f, label[v])
+            total[f, label[v]] += weight[f, v] * squared_distance(V, x, R, t, v, f, label[v])
             mass[f, label[v]] += weight[f, v]
         for p in range(t.shape[1]):
             total[f, p] = np.sqrt(total[f, p] / mass[f, p]) if mass[f, p] > 0.0 else 0.0
@@ -156,16 +156,16 @@ def _weigh(
         v = member[k]
         mass = 1e-6
         for f in range(x.shape[0]):
-            e[k] += weight[f, v] * squared(V, x, R, t, v, f, p)
+            e[k] += weight[f, v] * squared_distance(V, x, R, t, v, f, p)
             mass += weight[f, v]
         e[k] /= mass
-    scale = max(middle(e, count), floor)
+    scale = max(median_of(e, count), floor)
     for k in range(count):
         sure[k] = (scale / (scale + e[k])) ** 2
 
 
 @compiled
-def middle(values: Floats, count: int) -> float:
+def median_of(values: Floats, count: int) -> float:
     """Median of the first few of an array of numbers not negative, by halving; not of a sorted copy: it compiles slowly."""
     low, high = 0.0, 0.0
     for k in range(count):

@@ -6,7 +6,7 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 
 
-def handed_over(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
+def reassigned(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
     """Labels after a part is gone: its vertices go, from its borders inwards, to the part that moves most like them.
 
     Each vertex goes to a part that lies next to it, so that every part stays in one piece.

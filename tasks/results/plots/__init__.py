@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinetree.errors import ConfigError
 from kinetree.tasks.results.plots.alignment import alignment
+from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 from kinetree.tasks.results.plots.drawing import FORMATS, Fetch, written
 from kinetree.tasks.results.plots.evaluation import evaluation
 from kinetree.tasks.results.plots.macroscopic import correlation, mu
@@ -15,7 +16,6 @@ from kinetree.tasks.results.plots.mesoscopic import merging as merging_2014
 from kinetree.tasks.results.plots.mesoscopic import structure as structure_2014
 from kinetree.tasks.results.plots.motion import angles
 from kinetree.tasks.results.plots.structure import confidence, skeleton, tree
-from kinetree.tasks.results.plots.traces import cones, lengths, merging, structure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +31,7 @@ WHAT: StructureFigures = {
     "confidence": confidence,
     "cones": cones,
     "merging": merging,
+    "elimination": elimination,
     "structure": structure,
     "lengths": lengths,
     "angles": angles,
@@ -39,7 +40,8 @@ WHAT: StructureFigures = {
 """What can be drawn of the default method, by the word of the command line."""
 
 _LETTER: StructureFigures = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-OF: Mapping[str, StructureFigures] = {"mesoscopic": WHAT, "mesoscopic-2014": {**WHAT, **_LETTER}}
+_SHARED = {name: drawn for name, drawn in WHAT.items() if name != "elimination"}
+OF: Mapping[str, StructureFigures] = {"mesoscopic": WHAT, "mesoscopic-2014": {**_SHARED, **_LETTER}}
 """What can be drawn of each method."""
 
 

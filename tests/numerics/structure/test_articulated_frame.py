@@ -9,8 +9,8 @@ from limbs import rotation
 from kinetree.tasks.numerics.structure.articulated_fit import turns
 from kinetree.tasks.numerics.structure.articulated_frame import (
     Body,
-    Posture,
-    against_parents,
+    FramePose,
+    relative_rotations,
     chained,
     joints,
     limbs,
@@ -19,7 +19,7 @@ from kinetree.tasks.numerics.structure.articulated_frame import (
 )
 
 
-def bent_chain() -> tuple[Body, Posture]:
+def bent_chain() -> tuple[Body, FramePose]:
     known = chain((-2.0, 1.0), swings(4, 3), blend=1.5)
     order = np.argsort(-known.W, axis=1)
     bound = np.pad(order, ((0, 0), (0, 1)))
@@ -37,7 +37,7 @@ def test_surface_goes_where_the_motion_carries_it() -> None:
 
 def test_turns_against_parents_give_the_rotations_back() -> None:
     body, at = bent_chain()
-    assert chained(against_parents(at.R, body.parents), body.parents) == pytest.approx(at.R)
+    assert chained(relative_rotations(at.R, body.parents), body.parents) == pytest.approx(at.R)
 
 
 @pytest.mark.parametrize(("plane", "point"), [(1.0, 0.0), (0.0, 1.0), (0.7, 0.2)])
@@ -56,7 +56,7 @@ def test_normal_equations_are_those_of_small_turns(plane: float, point: float) -
     J = np.empty((m, 40, 3))
     for k in range(m):
         move = np.eye(m)[k] * step
-        other = Posture(turns(move[:-3].reshape(-1, 3)) @ at.R, at.x + move[-3:])
+        other = FramePose(turns(move[:-3].reshape(-1, 3)) @ at.R, at.x + move[-3:])
         J[k] = (surface(body, other)[0][vertex] - x) / step
     across = np.einsum("kvx,vx->kv", J, n)
     assert g == pytest.approx(plane * across @ (n * d).sum(axis=1) + point * np.einsum("kvx,vx->k", J, d), abs=1e-4)

@@ -8,7 +8,7 @@ from limbs import rotation
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.structure import joint_evidence as shown
 from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
-from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
 
 FRAMES = 4
@@ -24,14 +24,14 @@ def turned(axis: tuple[float, float, float], degrees: float) -> np.ndarray:
     return turn
 
 
-def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> tuple[Surfaces, Carried, Seen]:
+def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> tuple[MovingSurface, MovingParts, Seen]:
     """The aligned body before frames that show the true one, both moved as a whole."""
     M = np.eye(3) if moved is None else moved
     x, goal = aligned.x @ M.T, true.x @ M.T
     residual = np.stack([projected(a, b, true.F).distance for a, b in zip(x, goal, strict=True)])
-    parts = Carried(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
+    parts = MovingParts(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
     seen = Seen(np.ones(residual.shape), residual, lambda t: (goal[t], true.F))
-    return Surfaces(aligned.V, aligned.F, x, aligned.area), parts, seen
+    return MovingSurface(aligned.V, aligned.F, x, aligned.area), parts, seen
 
 
 def least(aligned: Known, true: Known, moved: np.ndarray | None = None) -> int:

@@ -4,15 +4,15 @@ import numpy as np
 from fitting import FRAMES, arms, seen, tip, true, turned
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.articulated_frame import Posture, against_parents
-from kinetree.tasks.numerics.structure.pose_hypotheses import guess
-from kinetree.tasks.numerics.structure.surface_matches import sought
+from kinetree.tasks.numerics.structure.articulated_frame import FramePose, relative_rotations
+from kinetree.tasks.numerics.structure.pose_hypotheses import pose_hypothesis
+from kinetree.tasks.numerics.structure.surface_matches import searched
 
 AWAY = rotation((0.0, 0.0, 1.0), 2.1)
 """An arm on the next arm."""
 
 
-def guessed(start_away: bool) -> tuple[Posture | None, Posture, float]:
+def guessed(start_away: bool) -> tuple[FramePose | None, FramePose, float]:
     known, body = arms()
     frame, at = 5, true(known, 5)
     start = turned(at, 1, AWAY) if start_away else at
@@ -20,8 +20,8 @@ def guessed(start_away: bool) -> tuple[Posture | None, Posture, float]:
     is_known = np.ones((FRAMES, 4), bool)
     is_known[frame, 1] = False
     doubted = np.array([False, True, False, False])
-    turn = against_parents(known.R, body.parents)
-    found = guess(body, start, target, sought(body, start, target), turn, is_known, frame, doubted)
+    turn = relative_rotations(known.R, body.parents)
+    found = pose_hypothesis(body, start, target, searched(body, start, target), turn, is_known, frame, doubted)
     off = np.linalg.norm(tip(body, found or start, 1) - tip(body, at, 1)) / body.size
     return found, start, float(off)
 

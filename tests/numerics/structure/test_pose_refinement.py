@@ -7,13 +7,13 @@ from limbs import rotation
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure import pose_refinement as numerics
-from kinetree.tasks.numerics.structure.articulated_frame import Posture, joints, surface
-from kinetree.tasks.numerics.structure.pose_refinement import Fitted, Known, doubtful, refined_pose
+from kinetree.tasks.numerics.structure.articulated_frame import FramePose, joints, surface
+from kinetree.tasks.numerics.structure.pose_refinement import Fitted, Known, needs_refinement, refined_pose
 
 FRAME, ARM = 5, 1
 
 
-def spoilt(angle: float, lost: int = -1, *, touched: bool = True, trust: float = 0.05) -> tuple[Fitted, Posture, Posture]:
+def spoilt(angle: float, lost: int = -1, *, touched: bool = True, trust: float = 0.05) -> tuple[Fitted, FramePose, FramePose]:
     """A frame in which one arm's vertices and its pose are off by an angle and little trusted, and the true posture."""
     known, body = arms()
     at = true(known, FRAME)
@@ -80,4 +80,4 @@ def test_bones_keep_their_lengths() -> None:
 
 
 def test_one_part_in_doubt_is_enough_for_a_frame() -> None:
-    assert doubtful(np.array([[1.0, 0.9], [1.0, 0.2], [0.5, 0.1]])).tolist() == [False, True, True]
+    assert needs_refinement(np.array([[1.0, 0.9], [1.0, 0.2], [0.5, 0.1]])).tolist() == [False, True, True]

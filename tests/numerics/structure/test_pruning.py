@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from articulated import Known, chain, moved, swings, three_arms
 
-from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Pruned, pruned
 
 
 def of(body: Known, leaves: tuple[int, ...] = ()) -> Pruned:
-    parts = Carried(body.label, body.R, body.t, body.residual)
-    return pruned(Surfaces(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    return pruned(MovingSurface(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
 
 
 @pytest.mark.parametrize("body", [chain((-2.0, 2.0)), chain((0.0,)), three_arms()], ids=["three links", "two links", "arms"])
