@@ -36,7 +36,7 @@ from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 from kinetree.tasks.numerics.results.evaluation.matching import errors, matching
 from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.topology.extrema import extrema

@@ -115,7 +115,7 @@ def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: 
 def _weak_parts(
     body: MovingSurface, parts: MovingParts, found: PartTree, leaves: Ints, chosen: PruningSettings
 ) -> dict[int, str]:
-    """Parts that may be none and why, the weakest first: flesh, what turns too little, what drifts too much."""
+    """Parts that may be none, the weakest first, and why: flesh, else what turns too little, else what drifts too much."""
     tree, mass = found.tree, np.bincount(parts.label, body.area, parts.R.shape[1])
     has_leaf = np.isin(np.arange(len(mass)), parts.label[leaves])
     scores = [(_flesh_score(parts.R, found, k, chosen), int(part), FLESH) for k, part in enumerate(tree.order)]
@@ -131,11 +131,9 @@ def _weak_parts(
         least = chosen.leaf_ratio / DEFAULT_RATIO * chosen.ratio if last else chosen.ratio
         spare = [p for p in (smaller, part + above - smaller) if not _has_clear_joint(found, p, k, chosen.clear_ratio)]
         scores += [(found.ratio[k] / max(least, 1e-9), p, SLIDING) for p in spare[:1]]
-    weak: dict[int, str] = {}
-    for score, part, reason in sorted(scores):
-        if score < 1.0:
-            weak.setdefault(part, reason)
-    return weak
+    failed = [entry for entry in scores if entry[0] < 1.0]
+    reasons = {part: reason for kind in (SLIDING, STILL, FLESH) for _, part, reason in failed if reason == kind}
+    return {part: reasons[part] for _, part, _ in sorted(failed)}
 
 
 def _has_clear_joint(found: PartTree, part: int, k: int, clear_ratio: float) -> bool:

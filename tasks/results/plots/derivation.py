@@ -76,7 +76,7 @@ def elimination(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     for axes, label, of in ((before, parts.initial, None), (after, parts.label, parts.origin)):
         surface(axes, skeleton.vertices @ axis, skeleton.faces, _part_colours(label, skeleton.faces, of))
     before.set_title(f"first cut: {int(parts.initial.max()) + 1} parts", fontsize=9)
-    after.set_title(f"{len(parts.origin)} parts left", fontsize=9)
+    after.set_title(f"{len(parts.origin)} parts left, {len(parts.removed)} removed", fontsize=9)
     number = np.arange(1, len(parts.cost) + 1)
     curve.plot(number, 100 * parts.cost, ".-", color=COLOURS[0], lw=1.2, ms=4, label="removal cost")
     curve.axhline(100 * parts.cost_threshold, color=COLOURS[1], lw=1.0, ls="--", label="threshold")
@@ -109,7 +109,7 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     lost = (tree.centre @ axis)[_lost(tree)]
     after.plot(*lost[:, :2].T, "x", color="black", ms=7, mew=1.8, zorder=6)
     joints = skeleton.kinds.count("joint")
-    after.set_title(f"{joints} joints left; crossed: {len(lost)} borders that are none", fontsize=9)
+    after.set_title(f"{joints} joints left; crossed: {len(lost)} borders of dropped parts or outside the tree", fontsize=9)
     return figure
 
 

@@ -5,7 +5,7 @@ import pytest
 from articulated import chain, swings, three_arms
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.articulated_fit import PosePrior, Motion, beyond, fitted, placed, predicted, sums
+from kinetree.tasks.numerics.structure.articulated_fit import Motion, PosePrior, beyond, fitted, placed, predicted, sums
 
 
 def lengths(motion: Motion, parents: np.ndarray) -> np.ndarray:

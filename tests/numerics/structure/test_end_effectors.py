@@ -3,7 +3,7 @@
 import numpy as np
 from articulated import chain
 
-from kinetree.tasks.numerics.structure.end_effectors import end_effectors, nearest_vertices
+from kinetree.tasks.numerics.structure.end_effectors import end_effectors, leaf_vertices
 
 NONE = np.zeros(0, dtype=np.int64)
 
@@ -30,7 +30,9 @@ def test_body_of_one_part_ends_nowhere_but_in_its_leaves() -> None:
     assert end_effectors(body.V, body.F, one, root, np.array([5])).tolist() == [[0, 5]]
 
 
-def test_nearest_vertices_of_no_points_are_none() -> None:
+def test_leaves_that_are_seen_and_count_are_at_the_nearest_vertices() -> None:
     V = np.eye(3)
-    assert nearest_vertices(V, np.zeros((0, 3))).tolist() == []
-    assert nearest_vertices(V, np.array([[0.9, 0.0, 0.1]])).tolist() == [0]
+    positions = np.array([[0.9, 0.0, 0.1], [np.nan] * 3, [0.0, 0.0, 1.1], [0.0, 1.0, 0.0]])
+    extremum, counts = np.array([0, -1, 2, 1]), np.array([[True, True, False, False], [False, True, False, True]])
+    assert leaf_vertices(V, positions, extremum, counts).tolist() == [0, 1]
+    assert leaf_vertices(V, positions[:0], extremum[:0], counts[:, :0]).tolist() == []

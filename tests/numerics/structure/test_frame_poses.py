@@ -6,20 +6,20 @@ from articulated import chain, swings
 from limbs import rotation
 
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
-from kinetree.tasks.numerics.structure.frame_poses import FramePoses, between, frame_poses, confident_share, some
+from kinetree.tasks.numerics.structure.frame_poses import FramePoses, confident_share, fit_sample, frame_poses, interpolated
 
 
 def test_rotations_not_known_lie_on_the_shortest_way_between_those_known() -> None:
     turn = np.stack([rotation((0.0, 0.0, 1.0), a) for a in (0.0, 9.0, 9.0, 9.0, 0.8)])
     known = np.array([True, False, False, False, True])
-    for k, filled in enumerate(between(turn, known)):
+    for k, filled in enumerate(interpolated(turn, known)):
         assert filled == pytest.approx(rotation((0.0, 0.0, 1.0), 0.2 * k), abs=1e-9)
-    assert between(turn, ~known)[0] == pytest.approx(turn[1])
-    assert between(turn, np.zeros(5, bool)) is turn
+    assert interpolated(turn, ~known)[0] == pytest.approx(turn[1])
+    assert interpolated(turn, np.zeros(5, bool)) is turn
 
 
 def hidden(frames: slice) -> tuple[FramePoses, np.ndarray]:
-    """A tube whose upper link swings slowly and is seen nowhere in some frames, where it is told to be elsewhere."""
+    """A tube whose upper link swings slowly and is seen nowhere in fit_sample frames, where it is told to be elsewhere."""
     turn = np.stack([np.tile(np.eye(3), (20, 1, 1)), np.stack([rotation((1.0, 0.0, 0.0), 0.05 * f) for f in range(20)])], 1)
     body = chain((0.0,), turn)
     trust = np.ones(body.x.shape[:2])
@@ -55,9 +55,9 @@ def test_share_of_a_part_that_was_seen() -> None:
 def test_vertices_asked_stand_for_the_whole_area_of_their_part() -> None:
     label = np.arange(3000) % 7 // 6
     area = np.random.default_rng(0).uniform(1.0, 2.0, 3000)
-    asked, mass = some(label, area, 2)
+    asked, mass = fit_sample(label, area, 2)
     assert len(asked) < 500
     assert np.bincount(label[asked], mass) == pytest.approx(np.bincount(label, area))
-    few, all_of_it = some(label[:90], area[:90], 2)
+    few, all_of_it = fit_sample(label[:90], area[:90], 2)
     assert few.tolist() == list(range(90))
     assert all_of_it == pytest.approx(area[:90])

@@ -6,7 +6,7 @@ import trimesh
 from articulated import Known, chain, moved, swings, three_arms
 from limbs import tube
 
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 
 
 def of(body: Known) -> PartTree:
