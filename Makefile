@@ -9,7 +9,7 @@ DATA   ?=
 .PHONY: demo test lint types tests benchmarks accuracy clean
 
 demo: $(READY)
-	$(BIN)/kinetree run demo --output demo-output
+	$(BIN)/kinetree demo --output demo-output
 
 test: lint types tests
 

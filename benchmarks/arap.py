@@ -29,7 +29,7 @@ from kinetree.pipeline import Pipeline
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2014.arap import Arap
-from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.paper_2014.geodesic_mapping import GeodesicMapping, GeodesicMappingParams
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.topology.extrema import Extrema
@@ -81,9 +81,9 @@ class Sequence:
         cuts: Any = pipeline.artifact("intervals")
         found: Any = pipeline.artifact("leaves")
         mesh, tip = every("mesh", cuts.frames), every("extrema", cuts.frames)
-        geodesic_coordinates(mesh[cuts.frames[0]], tip[cuts.frames[0]], GeodesicCoordinatesParams())
+        geodesic_coordinates(mesh[cuts.frames[0]], tip[cuts.frames[0]])
         begun = time.process_time()
-        X = {t: geodesic_coordinates(mesh[t], tip[t], GeodesicCoordinatesParams()) for t in mesh}
+        X = {t: geodesic_coordinates(mesh[t], tip[t]) for t in mesh}
         spent.coordinates = (time.process_time() - begun) / len(mesh)
         return cls(mesh, every("geodesics", cuts.frames), tip, X, cuts, found)
 

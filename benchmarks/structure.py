@@ -34,7 +34,7 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.trees import random_tree
-from kinetree.tasks.numerics.results.evaluation.matching import errors, matching
+from kinetree.tasks.numerics.results.evaluation.matching import joint_errors, matching
 from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
@@ -138,9 +138,9 @@ def score(case: Case, X: Floats) -> Score:
     scored = np.array([bool(told[i]["scored"]) for i in true])
     may = np.ones((X.shape[1], len(true)), dtype=bool)
     claims = np.ones(X.shape[1], dtype=bool)
-    found = matching(X, Y, may, scored=scored, may_be_spurious=claims, limit=0.05 * case.height)
+    found = matching(X, Y, may, scored=scored, can_be_spurious=claims, limit=0.05 * case.height)
     hit = scored & (found.partner >= 0)
-    error = 100.0 * np.nanmean(errors(X, Y, found.partner)[:, hit]) / case.height if hit.any() else np.nan
+    error = 100.0 * np.nanmean(joint_errors(X, Y, found.partner)[:, hit]) / case.height if hit.any() else np.nan
     missed = [str(told[i]["name"]) for i, s, h in zip(true, scored, hit, strict=True) if s and not h]
     return Score(int(hit.sum()), int(scored.sum()), float(error), len(found.spurious), missed)
 

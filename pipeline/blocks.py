@@ -2,6 +2,8 @@
 
 import importlib.resources
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
@@ -10,42 +12,75 @@ from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.yaml_text import parsed
 
-PRESETS = importlib.resources.files("kinetree.configs")
 SAVED = "config.yaml"
 """Name under which a run leaves its configuration in its output folder."""
 Paths = Mapping[str, frozenset[tuple[str, ...]]]
-"""The parameters that are paths, by task, each as the keys that lead to it."""
 
 
-def path_fields(methods: Mapping[str, Graph]) -> Paths:
-    tasks = [task for graph in methods.values() for task in graph.tasks]
-    return {task.name: task.params.path_fields() for task in tasks if task.params is not None}
+@dataclass(frozen=True)
+class Reading:
+    """What the text of a configuration is read with."""
+
+    paths: Paths
+    """The parameters that are paths, by task, each as the keys that lead to it."""
+    presets: Traversable | None
+    """The folder of presets; None where the application has none."""
+
+    @staticmethod
+    def of(methods: Mapping[str, Graph], presets: str | None) -> "Reading":
+        """For the graphs of an application and its package of presets."""
+        tasks = [task for graph in methods.values() for task in graph.tasks]
+        paths = {task.name: task.params.path_fields() for task in tasks if task.params is not None}
+        return Reading(paths, importlib.resources.files(presets) if presets is not None else None)
+
+    @property
+    def preset_names(self) -> list[str]:
+        """Names of the presets, sorted."""
+        return _yaml_names(self.presets)
+
+    def preset(self, name: str) -> Traversable | None:
+        """The file of a preset; None where there is no such preset."""
+        return self.presets / f"{name}.yaml" if self.presets is not None and name in self.preset_names else None
+
+    def compute(self, name: str) -> Traversable:
+        """The file of named compute settings; raises ConfigError with the nearest name."""
+        folder = self.presets / "compute" if self.presets is not None else None
+        names = _yaml_names(folder)
+        if folder is None or name not in names:
+            raise ConfigError(f"compute {name!r}: no such compute settings; {nearest(name, names)}")
+        return folder / f"{name}.yaml"
 
 
-def blocks_at(target: str | Path | Mapping[str, Any] | None, paths: Paths) -> tuple[dict[str, Any], str]:
+def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -> tuple[dict[str, Any], str]:
+    """The blocks at a YAML file, an output folder, a preset's name or in a mapping, and where they come from, for messages.
+
+    raises : ConfigError
+    """
     if target is None:
         return {}, "config"
     if isinstance(target, Mapping):
-        return _extended(dict(target), Path.cwd(), "config", (), paths)
+        return _extended(dict(target), Path.cwd(), "config", (), reading)
     path = expanded(target)
     if path.is_dir():
         if not (path / SAVED).is_file():
             raise ConfigError(f"{path}: no {SAVED} in this folder, so it is not the output of a run; give a YAML file")
         path = path / SAVED
     if path.is_file():
-        return _file(path, (), paths)
-    if str(target) in preset_names():
-        return _file(PRESETS / f"{target}.yaml", (), paths)
-    raise ConfigError(f"{target}: no such file, output folder or preset; presets: {', '.join(preset_names())}")
+        return _file(path, (), reading)
+    preset = reading.preset(str(target))
+    if preset is not None:
+        return _file(preset, (), reading)
+    raise ConfigError(f"{target}: no such file, output folder or preset; presets: {', '.join(reading.preset_names) or 'none'}")
 
 
 def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
+    """Sets one parameter, written task.name=value, the value in YAML; raises ConfigError where it is not written so."""
     key, equals, value = text.partition("=")
     task, dot, name = key.strip().partition(".")
     if not equals or not task or task == "extends":
-        raise ConfigError(f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1")
+        raise ConfigError(f"--set {text}: write task.name=value; kinetree tasks lists every parameter")
     bare = value.strip()
-    given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # all frames are written ":"
+    given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
     if not dot:
         blocks.update(_absolute({task: given}, Path.cwd(), paths))
         return
@@ -57,24 +92,15 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     blocks[task] = _merged(block or {}, _absolute({task: given}, Path.cwd(), paths)[task])
 
 
-def preset_names() -> list[str]:
-    """Names of the presets that ship with kinetree."""
-    return sorted(f.name.removesuffix(".yaml") for f in PRESETS.iterdir() if f.name.endswith(".yaml"))
-
-
 def block(blocks: Mapping[str, Any], name: str) -> Any:
+    """The block of that name; an empty one where there is none or nothing stands in it."""
     return {} if blocks.get(name) is None else blocks[name]
 
 
-def compute_block(blocks: Mapping[str, Any]) -> Any:
-    """The compute block, or the named one of configs/compute."""
-    found = blocks.get("compute")
-    if not isinstance(found, str):
-        return block(blocks, "compute")
-    names = sorted(f.name.removesuffix(".yaml") for f in (PRESETS / "compute").iterdir() if f.name.endswith(".yaml"))
-    if found not in names:
-        raise ConfigError(f"compute {found!r}; {nearest(found, names)}")
-    return _file(PRESETS / "compute" / f"{found}.yaml", (), {})[0]
+def compute_block(blocks: Mapping[str, Any], reading: Reading) -> Any:
+    """The compute block, or the one of the presets that it names."""
+    name = blocks.get("compute")
+    return _file(reading.compute(name), (), reading)[0] if isinstance(name, str) else block(blocks, "compute")
 
 
 def expanded(path: str | Path) -> Path:
@@ -85,7 +111,11 @@ def expanded(path: str | Path) -> Path:
         return Path(path)
 
 
-def _file(path: Any, seen: tuple[str, ...], paths: Paths) -> tuple[dict[str, Any], str]:
+def _yaml_names(folder: Traversable | None) -> list[str]:
+    return sorted(f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")) if folder else []
+
+
+def _file(path: Any, seen: tuple[str, ...], reading: Reading) -> tuple[dict[str, Any], str]:
     if str(path) in seen:
         raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
     try:
@@ -95,21 +125,22 @@ def _file(path: Any, seen: tuple[str, ...], paths: Paths) -> tuple[dict[str, Any
     if blocks is not None and not isinstance(blocks, dict):
         raise ConfigError(f"{path}: expected keys with values at the top, got {type(blocks).__name__}")
     base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
-    return _extended(blocks or {}, base, str(path), (*seen, str(path)), paths)
+    return _extended(blocks or {}, base, str(path), (*seen, str(path)), reading)
 
 
 def _extended(
-    blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...], paths: Paths
+    blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...], reading: Reading
 ) -> tuple[dict[str, Any], str]:
     """The blocks with their paths made absolute, over those of the preset or file they extend."""
-    blocks = _absolute(blocks, base, paths)
+    blocks = _absolute(blocks, base, reading.paths)
     parent = blocks.pop("extends", None)
     if parent is None:
         return blocks, where
-    found = PRESETS / f"{parent}.yaml" if str(parent) in preset_names() else (base / expanded(str(parent))).resolve()
-    if not found.is_file():
-        raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({', '.join(preset_names())}) nor a file")
-    below, _ = _file(found, seen, paths)
+    source = reading.preset(str(parent)) or (base / expanded(str(parent))).resolve()
+    if not source.is_file():
+        presets = ", ".join(reading.preset_names) or "there are none"
+        raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({presets}) nor a file")
+    below, _ = _file(source, seen, reading)
     return _merged(below, blocks), where
 
 
@@ -123,22 +154,23 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
 
 def _absolute(blocks: dict[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
     """Paths are relative to the file that names them."""
-    told = dict(blocks)
+    absolute = dict(blocks)
     for key in ("output", "store"):
-        if isinstance(told.get(key), str) and told[key] and "://" not in told[key]:
-            told[key] = str(base / expanded(told[key]))
+        path = absolute.get(key)
+        if isinstance(path, str) and path and "://" not in path:
+            absolute[key] = str(base / expanded(path))
     for task, fields in paths.items():
         for keys in fields:
-            told = _with_path(told, (task, *keys), base)
-    return told
+            absolute = _with_path(absolute, (task, *keys), base)
+    return absolute
 
 
 def _with_path(blocks: Mapping[str, Any], keys: Sequence[str], base: Path) -> dict[str, Any]:
     """The blocks with the path at the end of the keys, if there is one, made absolute."""
-    told = dict(blocks)
-    value = told.get(keys[0])
+    absolute = dict(blocks)
+    value = absolute.get(keys[0])
     if len(keys) > 1 and isinstance(value, Mapping):
-        told[keys[0]] = _with_path(value, keys[1:], base)
+        absolute[keys[0]] = _with_path(value, keys[1:], base)
     elif len(keys) == 1 and isinstance(value, str) and value:
-        told[keys[0]] = str(base / expanded(value))
-    return told
+        absolute[keys[0]] = str(base / expanded(value))
+    return absolute

@@ -16,8 +16,8 @@ from typing import Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.blocks import block, blocks_at, compute_block, expanded, override, path_fields
-from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.application import Application
+from kinetree.pipeline.blocks import Reading, block, blocks_at, compute_block, expanded, override
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 
@@ -41,10 +41,10 @@ class Compute(BaseModel):
 
     @field_validator("memory")
     @classmethod
-    def _is_a_size(cls, told: str | None) -> str | None:
-        if told is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", told):
+    def _is_a_size(cls, size: str | None) -> str | None:
+        if size is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", size):
             raise ValueError("expected a size such as 4GB or 512MiB")
-        return told
+        return size
 
     @property
     def worker_count(self) -> int:
@@ -64,45 +64,47 @@ class Config:
 
     def saved(self) -> dict[str, Any]:
         """What differs from the defaults, as the YAML a run leaves in its output folder; paths are absolute."""
-        told: dict[str, Any] = {"method": self.method, "output": str(self.output), "store": str(self.store)}
+        saved: dict[str, Any] = {"method": self.method, "output": str(self.output), "store": str(self.store)}
         for name, params in self.params.items():
             changed = params.model_dump(mode="json", exclude_defaults=True)
             if changed:
-                told[name] = changed
+                saved[name] = changed
         compute = self.compute.model_dump(mode="json", exclude_defaults=True)
-        return {**told, "compute": compute} if compute else told
+        return {**saved, "compute": compute} if compute else saved
 
 
-def load(target: str | Path | Mapping[str, Any] | None, methods: Mapping[str, Graph], sets: Iterable[str] = ()) -> Config:
+def load(target: str | Path | Mapping[str, Any] | None, application: Application, sets: Iterable[str] = ()) -> Config:
     """The configuration at `target`: a YAML file, a preset's name, an earlier run's output folder, a mapping, or nothing.
 
+    application : whose graphs, presets and default output folder they are
     sets   : overrides as task.name=value, the value in YAML
     raises : ConfigError, naming file and key, with the nearest known key
     """
-    paths = path_fields(methods)
-    blocks, where = blocks_at(target, paths)
+    methods = application.methods()
+    reading = Reading.of(methods, application.presets)
+    blocks, where = blocks_at(target, reading)
     sets = tuple(sets)
     for text in sets:
-        override(blocks, text, paths)
-    said = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
-    method = blocks.get("method", "mesoscopic")
+        override(blocks, text, reading.paths)
+    options = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
+    method = blocks.get("method", next(iter(methods)))
     if not isinstance(method, str) or method not in methods:
-        raise ConfigError(f"{where}: method {method!r}; {nearest(str(method), methods)}")
+        raise ConfigError(f"{where}: method {method!r}: no such method; {nearest(str(method), methods)}")
     graph = methods[method]
     known = {task.name: task.params for task in graph.tasks if task.params is not None}
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, where)
-    params = {name: checked(cls, block(blocks, name), f"{where}: {name}", said) for name, cls in known.items()}
-    output = _folder(blocks, "output", where) or Path("kinetree-output").absolute()
+    params = {name: checked(cls, block(blocks, name), f"{where}: {name}", options) for name, cls in known.items()}
+    output = _folder(blocks, "output", where) or Path(f"{application.name}-output").absolute()
     store = _folder(blocks, "store", where) or output / "store"
     _refuse_own_input(params, output, where)
-    return Config(method, params, output, store, checked(Compute, compute_block(blocks), f"{where}: compute", said))
+    return Config(method, params, output, store, checked(Compute, compute_block(blocks, reading), f"{where}: compute", options))
 
 
 def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) -> None:
-    """Results among the user's own files would be lost in them, and a glob would read them as frames."""
-    for name, told in params.items():
-        for keys in told.path_fields():
-            value: Any = told
+    """Results among the user's own files would be lost in them, and a glob would read them as input."""
+    for name, block_params in params.items():
+        for keys in block_params.path_fields():
+            value: Any = block_params
             for key in keys:
                 value = getattr(value, key, None)
             if value and Path(value).absolute() == output:
@@ -114,35 +116,35 @@ def with_compute(config: Config, **changes: Any) -> Config:
     given = {k: v for k, v in changes.items() if v is not None}
     if "executor" in given:
         given.setdefault("scheduler", None)  # a scheduler that only the file names gives way to what is asked for now
-    told = {**config.compute.model_dump(), **given}
-    return replace(config, compute=checked(Compute, told, "compute"))
+    return replace(config, compute=checked(Compute, {**config.compute.model_dump(), **given}, "compute"))
 
 
-def checked(cls: type[M], values: Any, where: str, said: Mapping[str, str] = MappingProxyType({})) -> M:
+def checked(cls: type[M], values: Any, where: str, options: Mapping[str, str] = MappingProxyType({})) -> M:
     """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key.
 
-    where : the file and the block, which is blamed but for the keys that the command line `said`, by the block's name
+    where   : the file and the block, which the message names
+    options : --set options by the parameter they set; the message names one of these where it set the wrong value
     """
     if not isinstance(values, Mapping):
         raise ConfigError(f"{where}: expected keys with values, got {_short(values)}")
     try:
         return cls.model_validate(dict(values))
     except ValidationError as error:
-        told = [_told(_blamed(where, fault, said), cls, fault) for fault in error.errors()]
-        raise ConfigError("\n".join(told)) from None
+        lines = [_message(_origin(where, fault, options), cls, fault) for fault in error.errors()]
+        raise ConfigError("\n".join(lines)) from None
 
 
-def _blamed(where: str, fault: Any, said: Mapping[str, str]) -> str:
-    """The words of the command line that set the faulty key, or the file."""
+def _origin(where: str, fault: Any, options: Mapping[str, str]) -> str:
+    """The option of the command line that set the faulty key, or the file."""
     name = where.rpartition(": ")[2]
     keys = [str(part) for part in fault["loc"]]
     prefixes = [".".join([name, *keys[:depth]]) for depth in range(len(keys), -1, -1)]
-    origin = next((said[prefix] for prefix in prefixes if prefix in said), None)
-    origin = origin or next((text for key, text in said.items() if key.startswith(prefixes[0] + ".")), None)
+    origin = next((options[prefix] for prefix in prefixes if prefix in options), None)
+    origin = origin or next((text for key, text in options.items() if key.startswith(prefixes[0] + ".")), None)
     return where if origin is None else f"{origin}: {name}"
 
 
-def _told(where: str, cls: type[BaseModel], fault: Any) -> str:
+def _message(where: str, cls: type[BaseModel], fault: Any) -> str:
     key = ".".join(str(part) for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
         return f"{where}.{key}: no such key; {nearest(str(fault['loc'][-1]), _keys_at(cls, fault['loc'][:-1]))}"
@@ -164,14 +166,14 @@ def _keys_at(cls: type[BaseModel], place: Iterable[str | int]) -> Iterable[str]:
 
 
 def _folder(blocks: Mapping[str, Any], key: str, where: str) -> Path | None:
-    told = blocks.get(key)
-    if told is None:
+    path = blocks.get(key)
+    if path is None:
         return None
-    if not isinstance(told, str) or not told:
-        raise ConfigError(f"{where}: {key}: expected the path of a folder, got {_short(told)}; put it in quotes if it is one")
-    if "://" in told:
-        raise ConfigError(f"{where}: {key}: {told} is the address of a service, which is not supported yet; give a folder")
-    return expanded(told).absolute()
+    if not isinstance(path, str) or not path:
+        raise ConfigError(f"{where}: {key}: expected the path of a folder, got {_short(path)}; put it in quotes if it is one")
+    if "://" in path:
+        raise ConfigError(f"{where}: {key}: {path} is the address of a service, which is not supported yet; give a folder")
+    return expanded(path).absolute()
 
 
 def _short(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""What differs between two runs, and from where: the difference is told at the nodes where it begins."""
+"""What differs between two runs, and from where: named are the nodes at which the difference starts."""
 
 from typing import Any
 
@@ -15,9 +15,9 @@ def difference(store: Store, a: dict[str, Any], b: dict[str, Any]) -> dict[str, 
     changed = [n for n in after if n in before and before[n].get("artifact") != after[n].get("artifact")]
     begins: dict[str, list[str]] = {}
     for label in [n for n in after if n in before and before[n].get("key") != after[n].get("key")] + changed:
-        told = _begins(store, label, before[label], after[label])
-        if told:
-            begins[label] = told
+        reasons = _begins(store, label, before[label], after[label])
+        if reasons:
+            begins[label] = reasons
     return {
         "a": a["name"],
         "b": b["name"],
@@ -31,14 +31,14 @@ def difference(store: Store, a: dict[str, Any], b: dict[str, Any]) -> dict[str, 
 def _begins(store: Store, label: str, before: dict[str, Any], after: dict[str, Any]) -> list[str]:
     if "values" in before or "values" in after:
         return [f"input: {_content(before)} → {_content(after)}"]
-    then, now = (store.record(told["key"]) if told.get("key") else None for told in (before, after))
+    then, now = (store.record(node["key"]) if node.get("key") else None for node in (before, after))
     if then is None or now is None:
         return [f"{'not computed' if not after.get('key') else 'its record was removed'} in one of the runs"]
-    told = differences(Work(now.params, now.code, now.inputs, now.index if now.asks_index else None), then)
-    own = [str(reason) for reason in told if reason.kind in ("params", "code", "index")]
-    return own or ([] if told else [f"{label} gave another result from the same inputs"] * (then.artifact != now.artifact))
+    reasons = differences(Work(now.params, now.code, now.inputs, now.index if now.asks_index else None), then)
+    own = [str(reason) for reason in reasons if reason.kind in ("params", "code", "index")]
+    return own or ([] if reasons else [f"{label} gave another result from the same inputs"] * (then.artifact != now.artifact))
 
 
-def _content(told: dict[str, Any]) -> str:
-    values = told.get("values") or {}
+def _content(node: dict[str, Any]) -> str:
+    values = node.get("values") or {}
     return str(values.get("content") or values or "nothing")[:12]

@@ -19,15 +19,15 @@ def draw(graph: "nx.DiGraph[str]", form: Format) -> str:
 def _mermaid(graph: "nx.DiGraph[str]") -> str:
     names = {node: f"n{number}" for number, node in enumerate(graph.nodes)}
     lines = ["flowchart TD"]
-    lines += [f'    {names[node]}["{_told(node, data)}"]' for node, data in graph.nodes(data=True)]
+    lines += [f'    {names[node]}["{_node_text(node, data)}"]' for node, data in graph.nodes(data=True)]
     for a, b, data in graph.edges(data=True):
         lines.append(f"    {names[a]} {_arrow(data)} {names[b]}")
     return "\n".join(lines)
 
 
 def _dot(graph: "nx.DiGraph[str]") -> str:
-    lines = ["digraph kinetree {", "    node [shape=box];"]
-    lines += [f"    {_quoted(node)} [label={_quoted(_told(node, data))}];" for node, data in graph.nodes(data=True)]
+    lines = ["digraph tasks {", "    node [shape=box];"]
+    lines += [f"    {_quoted(node)} [label={_quoted(_node_text(node, data))}];" for node, data in graph.nodes(data=True)]
     for a, b, data in graph.edges(data=True):
         style = "dashed" if data.get("previous") else "bold" if data.get("form") in GATHERS else ""
         lines.append(f"    {_quoted(a)} -> {_quoted(b)}{f' [style={style}]' if style else ''};")
@@ -53,7 +53,7 @@ def _plain(graph: "nx.DiGraph[str]") -> dict[str, Any]:
     return {"nodes": nodes, "edges": edges}
 
 
-def _told(node: str, data: dict[str, Any]) -> str:
+def _node_text(node: str, data: dict[str, Any]) -> str:
     """E.g. "geodesics ×412: 409 fresh, 3 stale" for a task with a plan, "mesh · per frame" without one."""
     row = data.get("data")
     if row is None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, TextIO
 
 from kinetree.pipeline.execute import Result
-from kinetree.pipeline.schedule import Entry
+from kinetree.pipeline.schedule import Entry, State
 
 
 class Listener(Protocol):
@@ -43,8 +43,8 @@ class Watch:
         """A node has its artifact, computed or found."""
         peak = result.record.peak_bytes if result.record else 0
         if result.status == "ran":
-            told = {"seconds": round(result.seconds, 6), "peak_bytes": peak, "artifact": result.artifact}
-            self._tell("finish", node=entry.label, task=entry.node.task, **told)
+            measured = {"seconds": round(result.seconds, 6), "peak_bytes": peak, "artifact": result.artifact}
+            self._tell("finish", node=entry.label, task=entry.node.task, **measured)
         else:
             self.fresh([entry])
 
@@ -55,23 +55,23 @@ class Watch:
 
     def fail(self, entry: Entry, result: Result, skipped: Iterable[Entry]) -> None:
         """A node failed, and those below it are skipped."""
-        told = {"error": result.error, "message": result.message, "seconds": round(result.seconds, 6), "trace": result.trace}
-        self._tell("failed", node=entry.label, task=entry.node.task, **told)
+        cause = {"error": result.error, "message": result.message, "seconds": round(result.seconds, 6), "trace": result.trace}
+        self._tell("failed", node=entry.label, task=entry.node.task, **cause)
         for other in skipped:
             self._tell("skipped", node=other.label, task=other.node.task, because=entry.label)
 
-    def damaged(self, entry: Entry, what: str) -> None:
+    def damaged(self, entry: Entry, was: State, what: str) -> None:
         """The artifact of a node that was done lost bytes: what was told of the node is taken back, it runs again."""
-        self._tell("damaged", node=entry.label, task=entry.node.task, was=entry.state, what=what)
+        self._tell("damaged", node=entry.label, task=entry.node.task, was=was, what=what)
 
     def end(self, status: str, seconds: float) -> None:
         """The run is over."""
         self._tell("end", status=status, seconds=round(seconds, 3))
 
     def _tell(self, event: str, **rest: Any) -> None:
-        told = {"event": event, "time": round(time.time(), 3), **rest}
+        message = {"event": event, "time": round(time.time(), 3), **rest}
         for listener in self.listeners:
-            listener.hear(told)
+            listener.hear(message)
 
 
 @dataclass
@@ -112,5 +112,5 @@ class Account:
 
     def nodes(self) -> dict[str, int]:
         """Total counts."""
-        told = {kind: sum(row[kind] for row in self.tasks.values()) for kind in ("ran", "fresh", "failed")}
-        return {**told, "skipped": self.skipped}
+        counts = {kind: sum(row[kind] for row in self.tasks.values()) for kind in ("ran", "fresh", "failed")}
+        return {**counts, "skipped": self.skipped}

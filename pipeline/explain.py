@@ -13,7 +13,7 @@ WIDTH = 118
 
 
 def explained(config: Config, graph: Graph) -> str:
-    """The configuration as YAML: a block per task in the order of the graph, its paper's section above it."""
+    """The configuration as YAML: a block per task in the order of the graph, its source above it."""
     lines = [f"method: {config.method}"]
     for task in graph.tasks:
         if task.params is not None:
@@ -25,14 +25,14 @@ def explained(config: Config, graph: Graph) -> str:
 def _block(values: BaseModel, depth: int) -> Iterator[str]:
     indent = "  " * depth
     for name, field in type(values).model_fields.items():
-        told = " ".join((field.description or "").split())
+        meaning = " ".join((field.description or "").split())
         value = getattr(values, name)
         if isinstance(value, BaseModel):
-            yield f"{indent}{name}:  # {told}"
+            yield f"{indent}{name}:  # {meaning}"
             yield from _block(value, depth + 1)
             continue
         line = f"{indent}{name}: {_value(value)}"
-        yield f"{line}  # {told}" if len(line) + len(told) < WIDTH else f"{indent}# {told}\n{line}"
+        yield f"{line}  # {meaning}" if len(line) + len(meaning) < WIDTH else f"{indent}# {meaning}\n{line}"
 
 
 def _value(value: Any) -> str:

@@ -41,7 +41,7 @@ class Files:
     def digests(self, paths: Sequence[Path]) -> list[str]:
         """Digest of the bytes of each file; "unreadable: …" for one that cannot be read, so that its node can say so."""
         with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)) * 2)) as pool:
-            return [found[0] for found in pool.map(lambda path: self._remembered(path, "bytes", _bytes), paths)]
+            return [parts[0] for parts in pool.map(lambda path: self._remembered(path, "bytes", _bytes), paths)]
 
     def parts(self, path: Path, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
         """Digests of the parts of one file (or of a folder of files) as `read` makes them; `kind` names how."""
@@ -57,14 +57,14 @@ class Files:
         name = f"{kind}:{path}"
         entry = self._known.get(name)
         if stamp is not None and isinstance(entry, list) and len(entry) == 2 and entry[0] == stamp:
-            found: list[str] = entry[1]
-            return found
-        told = list(read(path))
-        lasting = not told or not told[0].startswith(UNREADABLE)
+            digests: list[str] = entry[1]
+            return digests
+        digests = list(read(path))
+        lasting = not digests or not digests[0].startswith(UNREADABLE)
         if lasting and stamp is not None and stamp == _stamp(path) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS:
-            self._known[name] = [stamp, told]
+            self._known[name] = [stamp, digests]
             self._learnt = True
-        return told
+        return digests
 
 
 def _bytes(path: Path) -> list[str]:

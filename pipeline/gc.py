@@ -23,7 +23,7 @@ class Garbage:
         mib = self.bytes / 2**20
         return (
             f"{len(self.artifacts)} artifacts, {len(self.records)} records, {len(self.runs)} runs,"
-            f" {len(self.leftovers)} half-written leftovers: {mib:.1f} MiB"
+            f" {len(self.leftovers)} incomplete files: {mib:.1f} MiB"
         )
 
     def json(self) -> dict[str, Any]:
@@ -46,11 +46,11 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
         store.run(name)
     count = last if last is not None else (0 if keep else 1)
     unfinished = [run for run in _latest(runs) if not run["nodes"]] + [run for run in runs.values() if is_under_way(run)]
-    kept = {*keep, *_last(runs, count), *(run["name"] for run in unfinished)}
-    keys = {told["key"] for name in kept for told in runs[name]["nodes"].values() if told.get("key")}
-    keys.update(key for name in kept for key in runs[name].get("uses", ()))
+    needed = {*keep, *_last(runs, count), *(run["name"] for run in unfinished)}
+    keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
+    keys.update(key for name in needed for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
-    garbage = _garbage(store, tuple(name for name in runs if name not in kept), keys, since)
+    garbage = _garbage(store, tuple(name for name in runs if name not in needed), keys, since)
     if not dry:
         _free(store, garbage)
     return garbage

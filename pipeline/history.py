@@ -55,7 +55,7 @@ class History:
             mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]
             self._nodes = {}
             for run in mine or runs:
-                self._nodes |= {name: told for name, told in run.get("nodes", {}).items() if told.get("key")}
+                self._nodes |= {name: node for name, node in run.get("nodes", {}).items() if node.get("key")}
         return self._nodes
 
 
@@ -98,25 +98,25 @@ def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
 
 
 def closing(
-    opened: dict[str, Any], schedule: Schedule, before: dict[str, Any], account: Account, told: dict[str, Any]
+    opened: dict[str, Any], schedule: Schedule, before: dict[str, Any], account: Account, summed: dict[str, Any]
 ) -> dict[str, Any]:
     """The record of a run that is over; nodes of tasks that it was not asked for are carried on as "left".
 
     before : the nodes on record before it began
-    told   : what run.json holds
+    summed : what run.json holds
     """
     nodes: dict[str, dict[str, Any]] = {
         e.label: {"state": e.state, "key": e.key, "artifact": e.artifact} for e in schedule.entries.values()
     }
-    for task, found in schedule.given.items():
+    for task, members in schedule.given.items():
         over = schedule.graph.by_name[task].over
-        for index, artifact in found.items():
+        for index, artifact in members.items():
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()
     asked = {task.name for task in schedule.graph.tasks}
     left = {name: {**node, "state": "left"} for name, node in before.items() if name.partition("[")[0] not in asked}
     nodes = {**left, **nodes}
-    more = {"tasks": account.tasks, "failures": account.failures, "counts": told["nodes"], "nodes": nodes}
-    return {**{name: value for name, value in opened.items() if name != "uses"}, **told, **more}
+    more = {"tasks": account.tasks, "failures": account.failures, "counts": summed["nodes"], "nodes": nodes}
+    return {**{name: value for name, value in opened.items() if name != "uses"}, **summed, **more}
 
 
 def summary(account: Account, status: str, seconds: float) -> dict[str, Any]:

@@ -3,13 +3,13 @@
 pipeline = Pipeline.of("walk.yaml")
 pipeline.plan()                           what a run would do; computes nothing
 pipeline.run()                            does it
-pipeline.artifact("mesh", frame=3)        typed, arrays read when asked for
+pipeline.artifact("task", frame=3)        typed, arrays read when asked for
 """
 
 import html
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ import networkx as nx
 
 from kinetree.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline import config as configuration
+from kinetree.pipeline import views
+from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
 from kinetree.pipeline.events import Account, Listener, Watch
@@ -24,12 +26,12 @@ from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
 from kinetree.pipeline.layout import Given
+from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.node import Node, label, parse
 from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
-from kinetree.pipeline.told import Difference, RunsTold, RunTold, html_table
 from kinetree.schemas.array import Artifact, Index
 
 
@@ -46,17 +48,22 @@ class Pipeline:
         config: str | Path | Mapping[str, Any] | Config | None = None,
         *,
         sets: Iterable[str] = (),
+        application: Application | None = None,
         methods: Mapping[str, Graph] | None = None,
     ) -> "Pipeline":
         """The pipeline of a YAML file, a preset's name, an earlier run's output folder, a mapping or a checked Config.
 
-        sets    : overrides as task.name=value
-        methods : the graphs there are by name; None takes those of `kinetree.tasks`
-        raises  : ConfigError, StoreError
+        sets        : overrides as task.name=value
+        application : the product; None takes the one whose command line is running or else the one that is installed
+        methods     : graphs by name in place of the application's, the default first
+        raises      : ConfigError, StoreError
         """
-        known = methods if methods is not None else _methods()
-        checked = config if isinstance(config, Config) else configuration.load(config, known, sets)
-        return Pipeline(checked, known[checked.method], Store.at(checked.store))
+        product = application or current()
+        if methods is not None:
+            graphs = methods
+            product = replace(product, methods=lambda: graphs)
+        checked = config if isinstance(config, Config) else configuration.load(config, product, sets)
+        return Pipeline(checked, product.methods()[checked.method], Store.at(checked.store))
 
     def __repr__(self) -> str:
         """What it runs on and where it leaves things."""
@@ -90,8 +97,8 @@ class Pipeline:
         until: Iterable[str] = (),
         force: Iterable[str] = (),
         listeners: Iterable[Listener] = (),
-    ) -> RunTold:
-        """Runs what is not fresh; returns the content of run.json and the run's name. Failed nodes are told, not raised.
+    ) -> RunSummary:
+        """Runs what is out of date; returns the content of run.json and the run's name, in which failed nodes are listed.
 
         client : a `distributed.Client` to run on; None runs where the configuration says
         raises : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
@@ -118,13 +125,13 @@ class Pipeline:
         finally:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
-            told = {**summary(account, status, seconds), "files": left}
-            self._close(opened, schedule, account, told)
-        write_pages(self.config.output, schedule, {"run": opened["name"], **told, **self._told()})
-        return RunTold({"run": opened["name"], **told})
+            summed = {**summary(account, status, seconds), "files": left}
+            self._close(opened, schedule, account, summed)
+        write_pages(self.config.output, schedule, {"run": opened["name"], **summed, **self._described()})
+        return RunSummary({"run": opened["name"], **summed})
 
-    def _told(self) -> dict[str, Any]:
-        """The graph and the configuration, for a page that tells of a run."""
+    def _described(self) -> dict[str, Any]:
+        """The graph and the configuration, for a page about a run."""
         graph = {t.name: {"over": "/".join(t.over), "reads": [r.name for r in self.tasks.reads(t)]} for t in self.tasks.tasks}
         return {"graph": graph, "config": as_yaml(self.config.saved())}
 
@@ -140,13 +147,13 @@ class Pipeline:
         if lacking:
             more = f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""
             first = next((node for node in todo if node.state == "stale"), todo[0])
-            where = f"{name} is made from {lacking[0]}{more}, not there for this configuration"
+            where = f"{name} is made from {lacking[0]}{more}, which has no up-to-date result"
             raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
         account = Account()
         self._go(schedule, Watch((account,)), None)
         if account.failures:
-            told = account.failures[0]
-            raise NodesFailedError(f"{told['node']}: {told['error']}: {told['message']}")
+            failure = account.failures[0]
+            raise NodesFailedError(f"{failure['node']}: {failure['error']}: {failure['message']}")
         return schedule
 
     def graph(self, *, expanded: bool = False) -> "nx.DiGraph[str]":
@@ -162,15 +169,15 @@ class Pipeline:
     def why(self, node: str) -> Planned:
         """The state of one node and the reason for it."""
         schedule = self.schedule()
-        return Plan.of(schedule)[schedule.entries[found(schedule, node)].label]
+        return Plan.of(schedule)[schedule.entries[node_named(schedule, node)].label]
 
     def lineage(self, node: str) -> "nx.DiGraph[str]":
         """The part of the expanded graph from which this node is made and which is made from it."""
         schedule = self.schedule()
         nodes = _expanded(schedule)
-        name = schedule.entries[found(schedule, node)].label
-        kept = nx.ancestors(nodes, name) | nx.descendants(nodes, name) | {name}
-        return nx.DiGraph(nodes.subgraph(kept))
+        name = schedule.entries[node_named(schedule, node)].label
+        related = nx.ancestors(nodes, name) | nx.descendants(nodes, name) | {name}
+        return nx.DiGraph(nodes.subgraph(related))
 
     def artifact(self, name: str, *, within: Schedule | None = None, **index: int) -> Artifact:
         """The artifact of a task at an index, with arrays that are read when asked for.
@@ -181,22 +188,23 @@ class Pipeline:
         schedule = within or self.schedule(until=[name])
         over = self.tasks.task(name).over
         if set(index) != set(over):
-            raise UnknownNodeError(f"{name} runs over {'/'.join(over) or 'nothing'}; got {', '.join(index) or 'no index'}")
-        node = found(schedule, label(Node(name, tuple(index[d] for d in over)), over))
+            given = ", ".join(index) or "no index"
+            raise UnknownNodeError(f"{name} runs over {'/'.join(over) or 'nothing'}; got {given}")
+        node = node_named(schedule, label(Node(name, tuple(index[d] for d in over)), over))
         if schedule.entries[node].artifact is None:
             planned = Plan.of(schedule)[schedule.entries[node].label]
-            raise UnknownNodeError(f"{planned}; it has no artifact until kinetree run computes it")
+            raise UnknownNodeError(f"{planned}; it has no result until kinetree run computes it")
         return schedule.value(node)
 
     def remarks(self) -> list[tuple[str, str]]:
         """What the results that stand for the whole sequence have to say, as (node, sentence)."""
         schedule = self.schedule()
         whole = [e for e in schedule.entries.values() if not e.task.over and e.artifact is not None and not e.task.is_origin]
-        return [(e.label, text) for e in whole for text in schedule.value(e.node).remarks()]
+        return [(e.label, text) for e in whole for text in views.remarks(schedule.value(e.node))]
 
-    def runs(self) -> RunsTold:
+    def runs(self) -> RunList:
         """Every run on record in this store, oldest first."""
-        return RunsTold(History(self.store, str(self.config.output)).runs())
+        return RunList(History(self.store, str(self.config.output)).runs())
 
     def diff(self, run_a: str, run_b: str) -> Difference:
         """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
@@ -211,27 +219,27 @@ class Pipeline:
         with launcher(self.config.compute, client) as launch:
             run(schedule, launch, watch)
 
-    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, told: dict[str, Any]) -> None:
+    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, summed: dict[str, Any]) -> None:
         before = History(self.store, str(self.config.output)).last_nodes()
-        write_run_json(self.config, told)
-        self.store.write_run(opened["name"], closing(opened, schedule, before, account, told))
+        write_run_json(self.config, summed)
+        self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
 
     def _given(self, graph: Graph, files: Files) -> Given:
         given: dict[str, dict[Index, Artifact]] = {}
         for task in graph.tasks:
             if task.is_origin:
-                told = task(params=self.config.params[task.name], files=files)
-                given[task.name] = {(member,): value for member, value in told.items()} if task.over else {(): told}
+                listed = task(params=self.config.params[task.name], files=files)
+                given[task.name] = {(member,): value for member, value in listed.items()} if task.over else {(): listed}
         return given
 
 
-def found(schedule: Schedule, text: str) -> Node:
+def node_named(schedule: Schedule, text: str) -> Node:
     """The node of a schedule that a text names; raises UnknownNodeError, with what there is."""
     node = parse(text, schedule.graph)
     if node not in schedule.entries:
         unknown = schedule.blocked.get(node.task, ())
         known = sum(1 for n in schedule.entries if n.task == node.task)
-        later = f"; more may appear when {schedule.entries[unknown[0]].label} is computed" if unknown else ""
+        later = f"; there may be more once {schedule.entries[unknown[0]].label} is computed" if unknown else ""
         raise UnknownNodeError(f"{text}: no such node; {node.task} has {known} nodes{later}")
     return node
 
@@ -246,10 +254,3 @@ def _expanded(schedule: Schedule) -> "nx.DiGraph[str]":
                 told = {"argument": argument.name, "form": argument.form, "previous": argument.previous}
                 nodes.add_edge(schedule.entries[node].label, entry.label, **told)
     return nodes
-
-
-def _methods() -> Mapping[str, Graph]:
-    """The graphs of kinetree; the only place where the loom knows that there are tasks."""
-    from kinetree.tasks import METHODS
-
-    return METHODS

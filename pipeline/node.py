@@ -25,11 +25,11 @@ def label(node: Node, over: Space) -> str:
 
 def parse(text: str, graph: Graph) -> Node:
     """The node that a text names: mesh[frame=3], or shorter mesh[3]; raises UnknownNodeError."""
-    found = re.fullmatch(r"\s*(\w+)\s*(?:\[(.*)\])?\s*", text)
-    if found is None:
-        raise UnknownNodeError(f"{text!r} is no node; write a task, or a task with its index: mesh[frame=3]")
-    task = graph.task(found.group(1))
-    parts = [p.strip() for p in (found.group(2) or "").split(",") if p.strip()]
+    written = re.fullmatch(r"\s*(\w+)\s*(?:\[(.*)\])?\s*", text)
+    if written is None:
+        raise UnknownNodeError(f"{text!r}: not a node; write a task, or a task with its index: {_example(graph)}")
+    task = graph.task(written.group(1))
+    parts = [p.strip() for p in (written.group(2) or "").split(",") if p.strip()]
     expected = f"{task.name}[{','.join(f'{d}=…' for d in task.over)}]" if task.over else task.name
     if len(parts) != len(task.over):
         raise UnknownNodeError(f"{text!r}: a node of {task.name} is written {expected}")
@@ -45,3 +45,9 @@ def parse(text: str, graph: Graph) -> Node:
 def project(index: Index, space: Space, onto: Space) -> Index:
     """The part of an index that belongs to the dimensions of `onto`, all of which `space` has."""
     return tuple(index[space.index(dim)] for dim in onto)
+
+
+def _example(graph: Graph) -> str:
+    """A node as a message can give it for an example: of the first task that has an index."""
+    task = next((task for task in graph.tasks if task.over), graph.tasks[0])
+    return label(Node(task.name, (3,) * len(task.over)), task.over)

@@ -2,13 +2,14 @@
 
 import contextlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
+from kinetree.pipeline import views
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.place import Folder
@@ -16,8 +17,6 @@ from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.schemas.array import Artifact
 
 RUN_JSON = "run.json"
-MESHES = {".ply", ".obj", ".off", ".stl", ".glb", ".gltf"}
-"""Endings that a folder of frames is read by."""
 
 
 def write_config(config: Config) -> None:
@@ -32,9 +31,9 @@ def as_yaml(saved: dict[str, Any]) -> str:
     return text if yaml.safe_load(text) == saved else yaml.safe_dump(saved, sort_keys=False)
 
 
-def write_run_json(config: Config, told: dict[str, Any]) -> None:
+def write_run_json(config: Config, summed: dict[str, Any]) -> None:
     """Leaves what ran, what was fresh, what failed."""
-    _write(config.output, RUN_JSON, json.dumps(told, indent=2, ensure_ascii=False) + "\n")
+    _write(config.output, RUN_JSON, json.dumps(summed, indent=2, ensure_ascii=False) + "\n")
 
 
 def write_results(folder: Path, schedule: Schedule) -> list[str]:
@@ -48,22 +47,24 @@ def write_results(folder: Path, schedule: Schedule) -> list[str]:
 
 
 def write_pages(folder: Path, schedule: Schedule, run: Mapping[str, Any]) -> None:
-    """Leaves the files that also tell of the run itself; raises as `write_results`."""
+    """Leaves the files that also describe the run itself; raises as `write_results`."""
     for entry in schedule.entries.values():
-        if entry.state in DONE and entry.task.returns.page_as:
+        name = views.page_name(entry.task.returns)
+        if entry.state in DONE and name:
             with _damage_discarded(schedule, entry):
-                data = schedule.value(entry.node).page(run)
-            Folder(folder, "output folder", beside="").put(entry.task.returns.page_as, data)
+                data = views.page(schedule.value(entry.node), run)
+            Folder(folder, "output folder", beside="").put(name, data)
 
 
 def pages(schedule: Schedule) -> list[str]:
     """The names of the files that `write_pages` leaves."""
-    return [e.task.returns.page_as for e in schedule.entries.values() if e.state in DONE and e.task.returns.page_as]
+    done = [views.page_name(e.task.returns) for e in schedule.entries.values() if e.state in DONE]
+    return [name for name in done if name]
 
 
 def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
     """Leaves the files and the group of one node that is done; see `write_results`."""
-    place, name = Folder(folder, "output folder", beside=""), entry.task.returns.left_as
+    place, name = Folder(folder, "output folder", beside=""), views.group_name(entry.task.returns)
     files = _files(schedule, entry)
     for path, data in files.items():
         if place.size(path) != len(data) or place.get(path) != data:
@@ -73,23 +74,24 @@ def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
     return [*files, *([name] if name else [])]
 
 
-def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
+def write_elsewhere(path: Path, schedule: Schedule, task: str, inputs: Collection[str] = ()) -> list[Path]:
     """Leaves what one task's artifacts leave at a path of the user's: one file or group is named so, several lie in it.
 
-    raises : as `write_results`; ConfigError where that would overwrite or join what the sequence is read from, or a device
+    inputs : endings of files, such as ".txt", all of which are read from a folder that is the input
+    raises : as `write_results`; ConfigError where that would overwrite or join what the input is read from, or a device
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise ConfigError(f"{path}: neither a file nor a folder, and would be replaced; name another place with --output")
+        raise ConfigError(f"{path}: neither a file nor a folder, and would be overwritten; name another path with --output")
     done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
-    if any(e.task.returns.left_as for e in done):
-        _refuse_input([path], schedule)
+    if any(views.group_name(e.task.returns) for e in done):
+        _refuse_input([path], schedule, inputs)
         _put_group(beside, path.name, schedule, done[0])
         return [path]
     is_folder = path.is_dir() or len(files) > 1
     targets = [path / name for name in files] if is_folder else [path]
-    _refuse_input([path, *targets], schedule)
+    _refuse_input([path, *targets], schedule, inputs)
     if is_folder and not path.exists():
         beside.put_all(path.name, files)
     else:
@@ -100,12 +102,12 @@ def write_elsewhere(path: Path, schedule: Schedule, task: str) -> list[Path]:
 
 def leaves(cls: type[Artifact]) -> bool:
     """Whether artifacts of this class leave anything in an output folder."""
-    return bool(cls.left_as) or cls.files is not Artifact.files
+    return bool(views.group_name(cls)) or views.leaves_files(cls)
 
 
 def _files(schedule: Schedule, entry: Entry) -> Mapping[str, bytes]:
     with _damage_discarded(schedule, entry):
-        return schedule.value(entry.node).files(entry.node.at)
+        return views.files(schedule.value(entry.node), entry.node.at)
 
 
 def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> None:
@@ -118,7 +120,7 @@ def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> No
         schedule.value(entry.node).arrays()  # checks every byte against its digest
         files = schedule.store.group(digest)
     if place.tree(name) and there.get("schema") != head["schema"]:
-        raise StoreError(f"output folder {place.url}: {name} is there and is not kinetree's; remove it or name another place")
+        raise StoreError(f"output folder {place.url}: {name} was written by another program; remove it or name another path")
     place.remove(name)
     place.put_all(name, files)
 
@@ -141,16 +143,16 @@ def _damage_discarded(schedule: Schedule, entry: Entry) -> Iterator[None]:
         raise
 
 
-def _refuse_input(targets: list[Path], schedule: Schedule) -> None:
-    """What the sequence is read from is the user's own and may be all there is."""
-    found = [artifact for given in schedule.given.values() for artifact in given.values()]
-    places = {Path(str(getattr(a, name))).resolve() for a in found for name in a.location_fields() if name == "path"}
+def _refuse_input(targets: list[Path], schedule: Schedule, inputs: Collection[str]) -> None:
+    """What the input is read from is the user's own and may be all there is."""
+    origins = [artifact for given in schedule.given.values() for artifact in given.values()]
+    places = {Path(str(getattr(a, name))).resolve() for a in origins for name in a.location_fields() if name == "path"}
     for target in targets:
         beside = sum(place.parent == target.resolve().parent for place in places)
         if target.resolve() in places:
-            raise ConfigError(f"{target}: the sequence is read from it; name another place with --output")
-        if beside > 1 and target.suffix.lower() in MESHES:
-            raise ConfigError(f"{target}: the sequence is read from this folder, as all its meshes; name another with --output")
+            raise ConfigError(f"{target}: the input is read from it; name another path with --output")
+        if beside > 1 and target.suffix.lower() in inputs:
+            raise ConfigError(f"{target}: the input is all files of this kind in this folder; name another with --output")
 
 
 def _write(folder: Path, name: str, text: str) -> None:

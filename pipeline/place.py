@@ -65,7 +65,7 @@ class Folder:
 
     def put(self, path: str, data: bytes) -> None:
         """Writes one object beside, then renames."""
-        with self._told(path):
+        with self._refusals(path):
             target = self.root / path
             target.parent.mkdir(parents=True, exist_ok=True)
             beside = self._beside()
@@ -77,7 +77,7 @@ class Folder:
 
     def put_all(self, path: str, files: Mapping[str, bytes]) -> None:
         """Writes a tree beside, then renames it whole; a tree that is there with the same sizes stays."""
-        with self._told(path):
+        with self._refusals(path):
             target = self.root / path
             beside = self._beside()
             try:
@@ -122,7 +122,7 @@ class Folder:
 
     def remove(self, path: str) -> None:
         """Renames away first, so that no reader meets half a tree, then deletes."""
-        with self._told(path):
+        with self._refusals(path):
             beside = self._beside()
             try:
                 (self.root / path).rename(beside)
@@ -152,7 +152,7 @@ class Folder:
                 target.rename(self._beside())
 
     @contextlib.contextmanager
-    def _told(self, path: str) -> Iterator[None]:
+    def _refusals(self, path: str) -> Iterator[None]:
         """Turns the file system's refusals into the two errors a user can act on."""
         try:
             yield

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+from kinetree.pipeline.look import html_table
 from kinetree.pipeline.reason import Reason
 from kinetree.pipeline.schedule import Entry, Schedule
-from kinetree.pipeline.told import html_table
 
 PlanState = Literal["fresh", "stale", "waits"]
 
@@ -28,7 +28,7 @@ class Planned:
     artifact: str | None
 
     def __str__(self) -> str:
-        why = "; ".join(map(str, self.reasons)) or (f"on {_some(self.waits)}" if self.waits else "")
+        why = "; ".join(map(str, self.reasons)) or (f"for {_some(self.waits)}" if self.waits else "")
         return f"{self.node}: {self.state}{f' ({why})' if why else ''}"
 
 
@@ -46,10 +46,10 @@ class TaskPlan:
     def __str__(self) -> str:
         total = sum(self.states.values())
         head = f"{self.task} ×{total}" if self.over else self.task
-        told = [f"{count} {state}" if self.over else state for state, count in self.states.items()]
-        told += [f"more when {_some(self.unknown)} is there"] if self.unknown else []
+        parts = [f"{count} {state}" if self.over else state for state, count in self.states.items()]
+        parts += [f"more once {_some(self.unknown)} is computed"] if self.unknown else []
         why = "; ".join(f"{reason} ×{n}" if n > 1 else reason for reason, n in list(self.reasons.items())[:3])
-        return f"{head}: {', '.join(told)}{f' — {why}' if why else ''}"
+        return f"{head}: {', '.join(parts)}{f' — {why}' if why else ''}"
 
 
 @dataclass(frozen=True)
@@ -126,19 +126,19 @@ def _tasks(schedule: Schedule, nodes: tuple[Planned, ...]) -> Iterator[TaskPlan]
     for task in schedule.graph.tasks:
         mine = tuple(n for n in nodes if n.task == task.name)
         reasons = Counter(str(r) for n in mine for r in n.reasons)
-        waits = Counter(f"waits on {_some(_tasks_of(n.waits) if task.over else n.waits)}" for n in mine if n.waits)
+        waits = Counter(f"waits for {_some(_tasks_of(n.waits) if task.over else n.waits)}" for n in mine if n.waits)
         unknown = tuple(schedule.entries[n].label for n in schedule.blocked.get(task.name, ()) if n in schedule.entries)
         yield TaskPlan(task.name, "/".join(task.over), _counted(mine), dict((reasons + waits).most_common()), unknown)
 
 
 def _tasks_of(labels: tuple[str, ...]) -> tuple[str, ...]:
-    """The tasks of nodes: thirty-six frames wait for thirty-six others, and that is one thing to say."""
+    """The tasks of nodes: that all nodes of one task wait for those of another is one thing to say."""
     return tuple(dict.fromkeys(label.partition("[")[0] for label in labels))
 
 
 def _counted(nodes: tuple[Planned, ...]) -> dict[str, int]:
-    found = Counter(n.state for n in nodes)
-    return {state: found[state] for state in ("fresh", "stale", "waits") if found[state]}
+    counts = Counter(n.state for n in nodes)
+    return {state: counts[state] for state in ("fresh", "stale", "waits") if counts[state]}
 
 
 def _some(names: tuple[str, ...]) -> str:

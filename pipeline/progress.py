@@ -42,7 +42,7 @@ class Row:
 
     @property
     def done(self) -> int:
-        """Nodes that need nothing more."""
+        """Nodes that are finished, whether computed, up to date, failed or skipped."""
         return self.ran + self.fresh + self.failed + self.skipped
 
 
@@ -66,7 +66,7 @@ class Rows:
                 row.fresh -= event["was"] == "fresh"
 
     def left(self, row: Row) -> float | None:
-        """Seconds until a task is through, from the mean of its nodes so far; None while none ran."""
+        """Seconds until a task is finished, from the mean of its nodes so far; None while none ran."""
         todo = row.total - row.done
         return todo * row.seconds / row.ran / self.workers if row.ran and todo else (0.0 if not todo else None)
 
@@ -91,23 +91,24 @@ class LiveProgress:
 
     def _table(self) -> Table:
         table = Table(box=None, pad_edge=False, header_style="bold")
-        for name, justify in (("task", "left"), ("done", "right"), ("fresh", "right"), ("failed", "right"), ("left", "right")):
-            table.add_column(name, justify=justify)  # type: ignore[arg-type]
+        table.add_column("task")
+        for name in ("done", "fresh", "failed", "time left"):
+            table.add_column(name, justify="right")
         for name, row in self._rows.rows.items():
             left = self._rows.left(row)
-            told = "" if row.total == row.done else ("…" if left is None else clock(left))
+            time_left = "" if row.total == row.done else ("…" if left is None else clock(left))
             failed = f"[red]{row.failed + row.skipped}[/red]" if row.failed + row.skipped else ""
-            table.add_row(name, f"{row.done}/{row.total}", str(row.fresh or ""), failed, told)
+            table.add_row(name, f"{row.done}/{row.total}", str(row.fresh or ""), failed, time_left)
         return table
 
 
 class PlainProgress:
-    """A line when a task is through, when something fails, and every few seconds in between."""
+    """A line when a task is finished, when something fails, and every few seconds in between."""
 
     def __init__(self, console: Console, workers: int) -> None:
         self._console = console
         self._rows = Rows(workers)
-        self._told = time.monotonic()
+        self._last_line = time.monotonic()
 
     def __enter__(self) -> "PlainProgress":
         return self
@@ -124,12 +125,12 @@ class PlainProgress:
             row = self._rows.rows[event["task"]]
             if row.done == row.total:
                 self._say(f"{event['task']}: {row.ran} ran, {row.fresh} fresh, {row.seconds:.1f} s")
-            elif time.monotonic() - self._told > PLAIN_SECONDS:
+            elif time.monotonic() - self._last_line > PLAIN_SECONDS:
                 left = self._rows.left(row)
                 self._say(f"{event['task']}: {row.done} of {row.total}{f', {clock(left)} left' if left else ''}")
 
     def _say(self, line: str) -> None:
-        self._told = time.monotonic()
+        self._last_line = time.monotonic()
         self._console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
 
 

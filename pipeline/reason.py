@@ -63,18 +63,18 @@ def _index(now: Mapping[str, int] | None, then: Mapping[str, int] | None) -> tup
 
 def _inputs(now: Sequence[Mapping[str, Any]], then: Sequence[Mapping[str, Any]]) -> tuple[Reason, ...]:
     before, after = _by_node(then), _by_node(now)
-    told: list[Reason] = []
+    reasons: list[Reason] = []
     for verb, nodes in (
         ("changed", [n for n in after if n in before and before[n] != after[n]]),
         ("added", [n for n in after if n not in before]),
-        ("gone", [n for n in before if n not in after]),
+        ("removed", [n for n in before if n not in after]),
     ):
         if nodes:
             more = f" and {len(nodes) - 3} more" if len(nodes) > 3 else ""
-            told.append(Reason("input", f"{', '.join(nodes[:3])}{more} {verb}"))
-    if not told and [(i["argument"], i["form"]) for i in now] != [(i["argument"], i["form"]) for i in then]:
-        told.append(Reason("input", "the task reads other arguments"))
-    return tuple(told)
+            reasons.append(Reason("input", f"{', '.join(nodes[:3])}{more} {verb}"))
+    if not reasons and [(i["argument"], i["form"]) for i in now] != [(i["argument"], i["form"]) for i in then]:
+        reasons.append(Reason("input", "the task takes other arguments"))
+    return tuple(reasons)
 
 
 def _by_node(inputs: Sequence[Mapping[str, Any]]) -> dict[str, str]:

@@ -18,16 +18,12 @@ from typing import Any, Protocol
 
 from dask.local import SynchronousExecutor
 
-from kinetree.errors import ClusterError, DamagedArtifactError, GraphError, InputError, StoreError, StoreFullError
+from kinetree.errors import ClusterError, GraphError, InputError, StoreError, StoreFullError
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.events import Watch
 from kinetree.pipeline.execute import Input, Ref, Result, Step, execute, forget_reads
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
-from kinetree.pipeline.store import Store
-
-MENDS = 3
-"""How often an input of a node is mended before the disk is to blame."""
 
 
 class Future(Protocol):
@@ -102,12 +98,14 @@ def _interruptible(loop: "_Loop") -> Iterator[None]:
     """Ctrl-C and SIGTERM become something the loop receives, so that it stops where it is at rest.
 
     Raised wherever the thread happens to be, they can leave a lock of a library held for ever. A node that runs in this
-    very thread is interrupted as usual.
+    very thread is interrupted as usual. A signal that whoever started this process had it ignore (nohup, a job in the
+    background) stays ignored.
     """
     if not loop.launch.is_apart or threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, loop.interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    heeded = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, loop.interrupt) for number in heeded}
     try:
         yield
     finally:
@@ -167,11 +165,7 @@ class _Loop:
             self._tell(self.schedule.entries[node], _twin(results[0]))
 
     def _send(self, entry: Entry) -> None:
-        if entry.damaged is not None:
-            if not _is_whole(self.schedule.store, entry):  # another node that makes the same may have mended it already
-                self.schedule.store.discard(entry.damaged)
-            entry.damaged = None
-        parcel = self.schedule.travelling_with(entry)
+        parcel = self.schedule.send(entry)
         number = next(self._numbers)
         self._parcels[number] = parcel
         self._twins[entry.key or ""] = []
@@ -204,35 +198,19 @@ class _Loop:
         elif result.status == "damaged":
             self._mend(entry, result)
         elif result.status == "undone":
-            if entry.state == "running":
-                entry.state = "waits"
+            schedule.put_back(entry.node)
         else:
             raise (StoreFullError if result.error == "StoreFullError" else _refusal(result))(result.message)
 
     def _mend(self, entry: Entry, result: Result) -> None:
         """An input could not be read: whoever made it makes it again, then this node runs."""
-        makers = self.schedule.holding(result.artifact)
-        if not makers:
-            raise StoreError(f"{entry.label}: artifact {result.artifact[:12]} {result.message} and nothing here makes it")
-        entry.mends[result.artifact] += 1
-        if entry.mends[result.artifact] > MENDS:
+        redone = self.schedule.mend(entry.node, result.artifact, result.message)
+        if redone is None:
             told = f"artifact {result.artifact[:12]} {result.message}, again after it was computed again; check the disk"
             self._tell(entry, Result("failed", error="DamagedArtifactError", message=told))
             return
-        for maker in makers:
-            if self.schedule.entries[maker].state in DONE:
-                self.watch.damaged(self.schedule.entries[maker], result.message)
-                self.schedule.redo(maker, result.message)
-            self.schedule.wait_again(entry.node, maker)
-
-
-def _is_whole(store: Store, entry: Entry) -> bool:
-    """Whether the artifact that was found damaged can be read by now."""
-    try:
-        store.read(entry.task.returns, str(entry.damaged)).arrays()
-    except DamagedArtifactError:
-        return False
-    return True
+        for maker, was in redone:
+            self.watch.damaged(maker, was, result.message)
 
 
 def _refuse_rings(schedule: Schedule) -> None:

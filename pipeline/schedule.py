@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from kinetree.errors import DamagedArtifactError, GraphError
+from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
 from kinetree.pipeline.layout import Given, Layout, T
@@ -23,6 +23,8 @@ from kinetree.schemas.array import Artifact, Index, Params
 
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")
+MENDS = 3
+"""How often an input of a node is made again before the disk is to blame."""
 
 
 @dataclass
@@ -49,7 +51,11 @@ class Entry:
 
 
 class Schedule:
-    """The nodes of one graph over one sequence; `complete`, `fail` and `redo` are how a run tells it what happened."""
+    """The nodes of one graph over one sequence; nobody else changes their entries.
+
+    A run takes nodes with `ready`, sends them with `send` and tells what became of each with `complete`, `fail`, `put_back`
+    or `mend`.
+    """
 
     def __init__(
         self,
@@ -111,8 +117,13 @@ class Schedule:
                 entry.state = "running"
                 yield entry
 
-    def travelling_with(self, entry: Entry) -> list[Entry]:
-        """The node and all nodes of the same index that need nothing else: they travel as one piece of work."""
+    def send(self, entry: Entry) -> list[Entry]:
+        """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
+
+        An artifact of it that was found damaged is removed first, so that it is made again.
+        returns : these nodes, each after those of them that it reads
+        """
+        self._discard_damaged(entry)
         parcel = [entry]
         inside = {entry.node}
         for member in parcel:
@@ -157,23 +168,49 @@ class Schedule:
                     queue.append(dependent)
         return skipped
 
-    def redo(self, node: Node, what: str) -> None:
+    def put_back(self, node: Node) -> None:
+        """A node that was sent was not computed, since one it travelled with was not: it waits for that one again."""
+        if self.entries[node].state == "running":  # and not skipped by now
+            self.entries[node].state = "waits"
+
+    def mend(self, node: Node, artifact: str, what: str) -> list[tuple[Entry, State]] | None:
+        """A node could not read an input: whoever made it makes it again, and the node waits for that.
+
+        artifact : digest of the input; what : what is wrong with it
+        returns  : the nodes that are to run again, and what each was; None where that was tried before, several times
+        raises   : StoreError where no node makes it
+        """
+        entry = self.entries[node]
+        makers = [n for n, other in self.entries.items() if other.artifact == artifact and not other.task.is_origin]
+        if not makers:
+            raise StoreError(f"{entry.label}: artifact {artifact[:12]} {what} and nothing here makes it")
+        entry.mends[artifact] += 1
+        if entry.mends[artifact] > MENDS:
+            return None
+        redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
+        for maker, _ in redone:
+            self._redo(maker.node, what)
+        entry.state = "waits"
+        entry.waits.update(makers)
+        for other in makers:
+            self._dependents[other][node] = None
+        return redone
+
+    def _discard_damaged(self, entry: Entry) -> None:
+        """Removes what was found damaged, unless another node that makes the same has mended it already."""
+        if entry.damaged is not None:
+            try:
+                self.store.read(entry.task.returns, entry.damaged).arrays()
+            except DamagedArtifactError:
+                self.store.discard(entry.damaged)
+            entry.damaged = None
+
+    def _redo(self, node: Node, what: str) -> None:
         """A node's artifact turned out to be damaged: it runs again, and what was to read it waits for it again."""
         entry = self.entries[node]
         self._values.pop(node, None)
         entry.state, entry.reasons, entry.damaged = "stale", (Reason("artifact", what),), entry.artifact
         heapq.heappush(self._ready, (-self._rank[node.task], node.at, node))
-
-    def wait_again(self, node: Node, on: Node) -> None:
-        """A node could not read an input; it waits for it once more."""
-        entry = self.entries[node]
-        entry.state = "waits"
-        entry.waits.add(on)
-        self._dependents[on][node] = None
-
-    def holding(self, artifact: str) -> list[Node]:
-        """The nodes whose artifact has this digest."""
-        return [node for node, entry in self.entries.items() if entry.artifact == artifact and not entry.task.is_origin]
 
     def value(self, node: Node) -> Artifact:
         """The artifact of a node that has one, arrays read lazily."""
@@ -231,7 +268,7 @@ class Schedule:
         try:
             return question(self.value(node))
         except DamagedArtifactError as error:
-            self.redo(node, error.what)
+            self._redo(node, error.what)
             return None
 
     def _link(self, entry: Entry) -> None:

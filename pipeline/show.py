@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.pipeline.inspect import Pipeline, found
+from kinetree.pipeline import views
+from kinetree.pipeline.inspect import Pipeline, node_named
 from kinetree.pipeline.plan import Plan
 from kinetree.pipeline.store import Record
 from kinetree.schemas.array import Artifact
@@ -17,16 +18,16 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
     raises : UnknownNodeError
     """
     schedule = pipeline.schedule()
-    entry = schedule.entries[found(schedule, node)]
+    entry = schedule.entries[node_named(schedule, node)]
     planned = Plan.of(schedule)[entry.label]
-    told = {"node": entry.label, "state": planned.state, "why": str(planned), "schema": _schema(entry.task.returns)}
+    content = {"node": entry.label, "state": planned.state, "why": str(planned), "schema": _schema(entry.task.returns)}
     if entry.artifact is None:
-        return told
+        return content
     artifact = schedule.value(entry.node)
     return {
-        **told,
+        **content,
         "artifact": entry.artifact,
-        "told": list(artifact.told()),
+        "told": list(views.text(artifact)),
         "values": artifact.plain(),
         "arrays": {name: statistics(array) for name, array in artifact.arrays().items()},
         "made": _provenance(entry.record) if entry.record else None,
@@ -35,13 +36,13 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
 
 def statistics(array: NDArray[Any]) -> dict[str, Any]:
     """Shape, dtype, and least, mean and greatest of the finite values."""
-    told: dict[str, Any] = {"shape": list(array.shape), "dtype": str(array.dtype)}
+    measured: dict[str, Any] = {"shape": list(array.shape), "dtype": str(array.dtype)}
     finite = array[np.isfinite(array)] if array.dtype.kind == "f" else array
     if finite.size:
-        told |= {"min": finite.min().item(), "mean": float(finite.mean()), "max": finite.max().item()}
+        measured |= {"min": finite.min().item(), "mean": float(finite.mean()), "max": finite.max().item()}
     if finite.size < array.size:
-        told["not finite"] = int(array.size - finite.size)
-    return told
+        measured["not finite"] = int(array.size - finite.size)
+    return measured
 
 
 def _schema(cls: type[Artifact]) -> dict[str, Any]:

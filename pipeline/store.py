@@ -197,12 +197,12 @@ class Store:
         data = self.place.get(MARKER)
         if data is not None:
             try:
-                found = json.loads(data).get("format")
+                version = json.loads(data).get("format")
             except (ValueError, AttributeError):
-                found = "unreadable"
-            if found != FORMAT:
+                version = "unreadable"
+            if version != FORMAT:
                 raise StoreError(
-                    f"store {self.url}: its format is {found!r}, this version reads {FORMAT!r}; name another folder with"
+                    f"store {self.url}: its format is {version!r}, this version reads {FORMAT!r}; name another folder with"
                     " --store, or use the kinetree that wrote it"
                 )
         elif Path(self.place.url).is_file():

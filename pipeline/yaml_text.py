@@ -18,13 +18,13 @@ class _Loader(yaml.SafeLoader):
     """Plain values only, each key once; numbers as in YAML 1.2."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Refuses a key that stands there twice, of which one would silently be lost."""
+        """Refuses a key that is there twice, of which one would silently be lost."""
         seen: set[str] = set()
         for name, _ in node.value:
             if isinstance(name, yaml.ScalarNode) and name.tag != "tag:yaml.org,2002:merge":
                 if name.value in seen:
-                    told = f"key {name.value!r} stands there twice"
-                    raise yaml.constructor.ConstructorError(None, None, told, name.start_mark)
+                    problem = f"key {name.value!r} is there twice"
+                    raise yaml.constructor.ConstructorError(None, None, problem, name.start_mark)
                 seen.add(name.value)
         return super().construct_mapping(node, deep)
 
@@ -47,8 +47,8 @@ def parsed(text: str, where: str) -> Any:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f", line {mark.line + 1}" if mark else ""
-        told = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise ConfigError(f"{where}{line}: not valid YAML: {told}") from None
+        problem = getattr(error, "problem", None) or " ".join(str(error).split())
+        raise ConfigError(f"{where}{line}: not valid YAML: {problem}") from None
     except RecursionError:
         raise ConfigError(f"{where}: not a configuration: its values are nested too deeply") from None
     except ValueError as error:

@@ -96,16 +96,13 @@ class Artifact(BaseModel):
     An artifact whose members other tasks fan out over (the intervals of a sequence, the cones of an interval) names in
     `opens` the spaces it opens and lists their members in `members`; one that orders a traversal answers `previous` for
     members of the dimension `orders`, or, where that is empty, of the last dimension of the task that goes along it.
-    One that people take away gives `files`, or is left in the output folder as the zarr group it is, named in `left_as`.
-    One that also tells of the run that left it is a file named in `page_as`, of the bytes that `page` gives.
+    What people see of it and take away stands elsewhere, in functions registered for its class.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
     version: ClassVar[int] = 1
     opens: ClassVar[tuple[str, ...]] = ()
     orders: ClassVar[str] = ""
-    left_as: ClassVar[str] = ""
-    page_as: ClassVar[str] = ""
     _lazy: dict[str, Loader] = PrivateAttr(default_factory=dict)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
@@ -115,22 +112,6 @@ class Artifact(BaseModel):
     def previous(self, member: int) -> int | None:
         """The member before this one in the traversal this artifact orders; None where the traversal starts."""
         raise ArtifactError(f"{type(self).__name__} orders no traversal")
-
-    def remarks(self) -> tuple[str, ...]:
-        """What a person should know of this result, in plain sentences; most have nothing to say."""
-        return ()
-
-    def told(self) -> tuple[str, ...]:
-        """The result itself as lines of text, where a person would want to see more than shapes and statistics."""
-        return ()
-
-    def files(self, index: Index) -> Mapping[str, bytes]:
-        """What a run leaves of this, at `index`, in the output folder for other programs: bytes by name; most leave nothing."""
-        return {}
-
-    def page(self, run: Mapping[str, Any]) -> bytes:
-        """The file named in `page_as`; `run` is what run.json has, with the graph and the configuration."""
-        raise ArtifactError(f"{type(self).__name__} tells of no run")
 
     @classmethod
     def array_fields(cls) -> dict[str, Array]:

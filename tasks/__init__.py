@@ -1,22 +1,27 @@
-"""The papers' table of contents: a method is a sum of shelves, each of which lists its operations in the papers' order.
-
-mesoscopic: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
-what was measured to be better in place of some of its steps. mesoscopic-2014: the same to the paper's letter.
-"""
+"""The product on the loom: `methods` is the table of contents, `application` the command line, `commands` what it offers."""
 
 if __name__ != "kinetree.tasks":
     raise ImportError(f"import kinetree.tasks, not {__name__}: the top-level folders are not packages of their own")
 
-from kinetree.pipeline.graph import Graph
-from kinetree.tasks.input import INPUT
-from kinetree.tasks.paper_2014 import PAPER_2014
-from kinetree.tasks.registration import REGISTRATION
-from kinetree.tasks.results import FIGURES, FIGURES_2014, RESULTS
-from kinetree.tasks.structure import STRUCTURE
-from kinetree.tasks.topology import TOPOLOGY
+from typing import TYPE_CHECKING, Any
 
-METHODS = {
-    "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
-    "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, *FIGURES_2014, *RESULTS)),
-}
-"""The graph of each method, checked when this package is imported."""
+from kinetree.pipeline.views import provide
+
+if TYPE_CHECKING:
+    from kinetree.tasks.methods import METHODS
+
+__all__ = ["METHODS", "VIEWS"]
+VIEWS = tuple(
+    f"kinetree.tasks.views.{shelf}" for shelf in ("input", "topology", "registration", "structure", "paper_2014", "results")
+)
+"""What people see of results, a module a shelf; each is imported when somebody looks."""
+provide(*VIEWS)
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the tasks when the methods are asked for: the help of the command line does without them."""
+    if name == "METHODS":
+        from kinetree.tasks.methods import METHODS
+
+        return METHODS
+    raise AttributeError(f"kinetree.tasks has no {name}")

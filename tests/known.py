@@ -10,7 +10,7 @@ from kinetree.schemas.input.synth import SynthParams
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.input.synth import body, recipe
-from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted, kept_ancestors
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors
 from kinetree.tasks.results.truth import synthetic
 
 
@@ -24,9 +24,9 @@ def perfect(written: str) -> Skeleton:
     made, truth = body(written), synthetic(written)
     tip = np.array([kind == "tip" for kind in truth.kinds])
     kept = np.array(truth.scored) | tip | (np.array(truth.parents) < 0)
-    above = contracted(truth.parents, list(kept))
+    above = contracted_tree(truth.parents, list(kept))
     stay = np.flatnonzero(kept)
-    carried = np.array(kept_ancestors(truth.parents, list(kept)))
+    carried = np.array(remaining_ancestors(truth.parents, list(kept)))
     W = np.zeros((len(made.skin.V), len(stay)))
     np.add.at(W.T, np.searchsorted(stay, carried), made.weights().T)
     influence = np.argsort(-W, axis=1, kind="stable")[:, :4]

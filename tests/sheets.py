@@ -11,7 +11,7 @@ from shapes import flat_grid, folded
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
-from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.geodesics import Geodesics
@@ -54,7 +54,7 @@ def frame(number: int, *, hidden: tuple[int, ...] = (), bend: float = 0.15, anew
     )  # fmt: skip
     area = np.full(len(V), 13 * 8 / len(V))
     geodesics = Geodesics(mu=np.ones(len(V)), area=area, bases=np.zeros(0, np.int64), share=1.0)
-    return Frame(mesh, tips, geodesics, geodesic_coordinates(mesh, tips, GeodesicCoordinatesParams()), place)
+    return Frame(mesh, tips, geodesics, geodesic_coordinates(mesh, tips), place)
 
 
 def followed(frames: dict[int, Frame], *ends: int) -> tuple[Intervals, Leaves]:

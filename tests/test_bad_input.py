@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from kinetree.pipeline import cli
+from kinetree.tasks.application import main
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
@@ -46,7 +47,7 @@ def kinetree(capsys, tmp_path, monkeypatch):
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["kinetree", *map(str, arguments)])
         with pytest.raises(SystemExit) as end:
-            cli.main()
+            main()
         printed = capsys.readouterr()
         assert "Traceback" not in printed.out + printed.err
         assert "\x1b" not in printed.out + printed.err

@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from kinetree.pipeline.blocks import preset_names
+from kinetree.pipeline.blocks import Reading
 from kinetree.pipeline.config import Compute, checked
 from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks.application import APPLICATION
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 
@@ -19,7 +20,7 @@ def test_default_yaml_tells_every_default() -> None:
     assert (CONFIGS / "default.yaml").read_text().endswith(told), "stale: kinetree config prints the new one"
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", Reading.of({}, APPLICATION.presets).preset_names)
 def test_every_preset_is_a_configuration(name: str) -> None:
     assert Pipeline.of(name).config.method == ("mesoscopic-2014" if name == "paper-2014" else "mesoscopic")
 

@@ -5,16 +5,16 @@ import shlex
 from pathlib import Path
 
 import pytest
-import typer
 
 from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.draw import draw
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks.application import APPLICATION
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
 SHELL = "\n".join(re.findall(r"```sh\n(.*?)```", README, re.DOTALL))
-COMMANDS = typer.main.get_command(command_line())
+COMMANDS = command_line(APPLICATION).commands
 
 
 def test_drawn_graph_is_the_graph_of_the_code() -> None:
@@ -27,7 +27,7 @@ def test_drawn_graph_is_the_graph_of_the_code() -> None:
 @pytest.mark.parametrize("line", re.findall(r"^kinetree .*$", SHELL, re.MULTILINE))
 def test_every_command_in_it_exists_with_its_options(line: str) -> None:
     words = shlex.split(line, comments=True)
-    command = COMMANDS.commands[words[1]]  # type: ignore[attr-defined]
+    command = COMMANDS[words[1]]
     known = {option for param in command.params for option in param.opts}
     assert {w.split("=")[0] for w in words[2:] if w.startswith("-")} <= known
 
@@ -37,7 +37,7 @@ def test_every_link_in_it_leads_somewhere(path: str) -> None:
     assert (ROOT / path).exists()
 
 
-@pytest.mark.parametrize("command", sorted(COMMANDS.commands))  # type: ignore[attr-defined]
+@pytest.mark.parametrize("command", sorted(COMMANDS))
 def test_every_command_is_told_in_it(command: str) -> None:
     assert re.search(rf"^kinetree {command}\b", SHELL, re.MULTILINE)
 

@@ -17,18 +17,6 @@ class Odd(Params):
     faces: int
     """Faces after cleaning beyond those of the others."""
 
-    def why(self) -> str:
-        """What differs, in words."""
-        if self.inputs:
-            return f"its file has {_counted(self.inputs, 'vertex', 'vertices')}"
-        if self.welded > 0:
-            which = "1 vertex lies on another and was" if self.welded == 1 else f"{self.welded} vertices lie on others and were"
-            return f"{which} welded there (mesh.merge)"
-        if self.vertices or self.faces:
-            faces = _counted(self.faces, "face", "faces")
-            return f"after cleaning it has {_counted(self.vertices, 'vertex', 'vertices')} and {faces}"
-        return "its faces are others, or in another order"
-
 
 class Connectivity(Artifact):
     """Whether vertex v is the same point of the body in every frame."""
@@ -43,19 +31,3 @@ class Connectivity(Artifact):
     """Faces of the first frame."""
     odd: tuple[Odd, ...] = ()
     """Frames that differ where more than half share one connectivity: but for them it would be fixed."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """Said where vertices are tracked already, which spares work, and where a few frames stand in the way of that."""
-        if self.fixed:
-            return (f"fixed connectivity: the same {self.faces} faces in every frame",)
-        if not self.odd:
-            return ()
-        first, others = self.odd[0], len(self.odd) - 1
-        more = f" (and {others} other frame{'s' * (others > 1)})" if others else ""
-        odd = f"most frames share one connectivity, but frame {first.frame}{more} does not: {first.why()}"
-        return (f"{odd}; so every frame is aligned as if it were surfaced by itself",)
-
-
-def _counted(count: int, one: str, many: str) -> str:
-    """A difference in words: 1 vertex more, 3 faces fewer."""
-    return f"{abs(count)} {one if abs(count) == 1 else many} {'more' if count >= 0 else 'fewer'}"

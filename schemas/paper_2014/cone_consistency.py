@@ -43,15 +43,3 @@ class ConeConsistency(Artifact):
     def previous(self, member: int) -> int | None:
         """The cone before this one, so that each is told its number."""
         return member - 1 if member else None
-
-    def remarks(self) -> tuple[str, ...]:
-        """Which cones had to be recovered, and that there are none."""
-        if not len(self.ring):
-            return ("no cones: no interval has a leaf; the body is taken as one rigid part",)
-        lost = [
-            f"cone {cone} is not seen in interval {i} and was recovered from its neighbours"
-            for i, row in enumerate(self.leaf)
-            for cone, leaf in enumerate(row.tolist())
-            if leaf < 0
-        ]
-        return tuple(lost)

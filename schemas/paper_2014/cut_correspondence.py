@@ -48,14 +48,3 @@ class CutCorrespondence(Artifact):
         """Leaves of an interval, rows of its `Middle.leaf`, without a partner across the cut ahead of it or behind it."""
         mine = self.before[self.cut == interval] if ahead else self.behind[self.cut == interval - 1]
         return sorted(set(range(int(self.leaves[interval]))) - set(mine.tolist()))
-
-    def remarks(self) -> tuple[str, ...]:
-        """Said where there are too few leaves to tell places apart."""
-        few = ("no leaf", "one leaf", "two leaves")
-        closed = "as a ring has or limbs that touch: a tree of joints cannot close it"
-        rings = tuple(f"interval {i} has {n} handle{'s' * (n > 1)}, {closed}" for i, n in enumerate(self.handles) if n > 0)
-        return rings + tuple(
-            f"interval {i} has {few[n]}: the geodesic mapping cannot tell places apart there"
-            for i, n in enumerate(self.leaves.tolist())
-            if n < len(few)
-        )

@@ -2,17 +2,8 @@
 
 from typing import Annotated
 
-from pydantic import Field
-
-from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import LEAF, VERTEX
-
-
-class GeodesicCoordinatesParams(Params):
-    """How exactly distances are measured."""
-
-    exact: float = Field(default=0.0, ge=0, le=10_000)
-    """Mean edges around each tip in which distances are exact, which takes long; elsewhere 0.2 % too long in the mean."""
 
 
 class GeodesicCoordinates(Artifact):

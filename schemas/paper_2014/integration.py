@@ -17,9 +17,3 @@ class Integration(Artifact):
     """Whether annulus k of each cone is rigid; true beyond a cone's last."""
     clusters: Annotated[Ints, Array("int32", RUNG)]
     """Rigid areas that each threshold gives, in all cones together (Fig. 11)."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """The threshold, where it was chosen."""
-        if len(self.clusters) < 2:
-            return ()
-        return (f"merge-error threshold {self.theta:g}: it gives the most rigid areas, {self.clusters.max()}",)

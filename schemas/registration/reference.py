@@ -5,9 +5,6 @@ from typing import Annotated
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import CORNER, FACE, FRAME, VERTEX, XYZ
 
-LOOP = 0.12
-"""Reach of a loop that a limb makes where it touches another; fingers that fuse make shorter ones."""
-
 
 class Reference(Artifact):
     """The reference mesh, from which frame it is, and before which frame each frame is reached."""
@@ -39,19 +36,3 @@ class Reference(Artifact):
         """The frame from which this one is reached; None for the reference."""
         at = int(self.before[self.frames.index(member)])
         return None if at < 0 else self.frames[at]
-
-    def remarks(self) -> tuple[str, ...]:
-        """The frame, and where it could not be a good one."""
-        told = [f"reference: frame {self.frame}"]
-        if self.leaves < 3:
-            seen = ("no limb is", "one limb is", "two limbs are")[self.leaves]
-            told.append(f"{seen} seen in any frame: nothing tells contact from freedom, the reference may be a poor one")
-        if len(self.frames) == 2:
-            told.append("two frames show one movement: joints that it does not turn cannot be found")
-        if not self.free:
-            told.append(
-                f"no frame is free of contact for long: frame {self.frame} lacks least; limbs that touch in it stay joined"
-            )
-        elif self.loop >= LOOP:
-            told.append(f"frame {self.frame} has a loop, as a hand on the hip makes one: limbs that touch in it stay joined")
-        return tuple(told)

@@ -8,8 +8,3 @@ class Bvh(Exported):
 
     between: int
     """Frames put in between where the sequence leaves some out: BVH has one frame time."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """That frames were put in between, where they were."""
-        told = f"the frames are not evenly spaced: {self.between} were put in between, as BVH has one frame time"
-        return (told,) if self.between else ()

@@ -1,13 +1,10 @@
 """How good a result is against the truth, in the terms of both papers and of rigging papers."""
 
-import json
-from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Floats, Index, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Params
 from kinetree.schemas.dims import FRAME, JOINT
 
 
@@ -160,33 +157,3 @@ class Evaluation(Artifact):
     """R_detection of each frame (2009, Eq. 8)."""
     distance: Annotated[Floats, Array("float64", FRAME)]
     """E_dist of each frame as a share of the height (2009, Eq. 9)."""
-
-    def files(self, index: Index) -> Mapping[str, bytes]:
-        """Nothing without a truth, else evaluation.json: all of this, an error that is not there as null."""
-        if self.summary is None:
-            return {}
-        series = {name: _rounded(values) for name, values in self.arrays().items()}
-        told = {"format": "kinetree.evaluation/1", **self.plain(), **series}
-        return {"evaluation.json": (json.dumps(told, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()}
-
-    def remarks(self) -> tuple[str, ...]:
-        """How many joints were found and how well, and which are missing."""
-        told = self.summary
-        if told is None:
-            return ()
-        mean = "" if told.percent is None else f" at {told.percent:.2f} % of the height"
-        extra = f", {told.spurious} spurious" if told.spurious else ""
-        lines = [f"{told.found} of {told.scored} joints found{mean}{extra}"]
-        missing = [joint.name for joint in self.joints if joint.scored and joint.found is None]
-        if missing:
-            lines.append(f"missing: {', '.join(missing)}")
-        if self.true_frames != len(self.frames):
-            lines.append(f"{self.truth} has {self.true_frames} frames, of which {len(self.frames)} are compared")
-        return tuple(lines)
-
-
-def _rounded(values: Floats) -> Any:
-    """The values as lists of numbers, six digits of each, NaN as None."""
-    if values.ndim > 1:
-        return [_rounded(row) for row in values]
-    return [float(f"{x:.6g}") if np.isfinite(x) else None for x in values]

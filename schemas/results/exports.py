@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.schemas.array import Array, Artifact, Index
+from kinetree.schemas.array import Array, Artifact
 from kinetree.schemas.dims import BYTE
 
 
@@ -25,9 +25,3 @@ class Exported(Artifact):
         """The artifact that holds these files, `more` being its other fields."""
         content = np.frombuffer(b"".join(files.values()), np.uint8)
         return cls(names=tuple(files), sizes=tuple(map(len, files.values())), content=content, **more)
-
-    def files(self, index: Index) -> Mapping[str, bytes]:
-        """The files, by name."""
-        ends = np.cumsum(self.sizes, dtype=np.int64).tolist()
-        content = self.content.tobytes()
-        return {name: content[end - size : end] for name, size, end in zip(self.names, self.sizes, ends, strict=True)}

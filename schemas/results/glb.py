@@ -29,9 +29,3 @@ class Glb(Exported):
     """Metres that one unit of the input was taken for."""
     unit: str | None
     """The input's own unit; None where nobody knows."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """That the pace or the size is a guess, where it is."""
-        pace = f"nobody says how fast the sequence is: played at {self.assumed_fps} frames a second; set sequence.fps"
-        size = f"nobody says what the unit is: one was taken for {self.scale:g} m; set sequence.unit or glb.scale"
-        return (*([] if self.assumed_fps is None else [pace]), *([] if self.unit is not None else [size]))

@@ -1,8 +1,6 @@
 """One page that shows what a run found and how far it is to be believed."""
 
-import json
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,11 +31,5 @@ class ReportParams(Params):
 class Report(Artifact):
     """A page of HTML, but for what is known only when the run is over."""
 
-    page_as: ClassVar[str] = "report.html"
     text: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
     """The page in UTF-8."""
-
-    def page(self, run: Mapping[str, Any]) -> bytes:
-        """The page with what ran laid into it, as JSON that cannot end the element it lies in."""
-        text = json.dumps(run, ensure_ascii=True).replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-        return self.text.tobytes().replace(RUN.encode(), text.encode(), 1)

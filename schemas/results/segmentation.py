@@ -1,6 +1,6 @@
 """Which part every vertex of the input belongs to, and the reference mesh in every frame: segmentation.zarr."""
 
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ class Segmentation(Artifact):
     The labels of the i-th frame are label[begin[i]:end[i]], in the order of the vertices in that frame's file.
     """
 
-    left_as: ClassVar[str] = "segmentation.zarr"
     names: tuple[str, ...]
     """Name of every part, which is that of the joint it turns about."""
     unit: str | None
@@ -38,9 +37,3 @@ class Segmentation(Artifact):
     """Faces of the reference mesh, the same in every frame."""
     aligned: Annotated[NDArray[np.float32], Array("float32", FRAME, VERTEX, XYZ, unit="length")]
     """The reference mesh in every frame."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """How well the skeleton explains the surface."""
-        unit = f" {self.unit}" if self.unit else ""
-        told = f"skinned to the skeleton the mesh is off the aligned ones by {self.error:.3g}{unit} (root mean square)"
-        return (f"{told}, 95 % below {self.error_95:.3g}{unit}",)

@@ -72,7 +72,3 @@ class KinematicTree(Skeleton):
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The runs of uncertain frames, numbered from 0, or the source frames of one."""
         return range(len(self.runs())) if space == "doubt" else self.runs()[index[0]]
-
-    def remarks(self) -> tuple[str, ...]:
-        """None: the skeleton says it."""
-        return ()

@@ -57,35 +57,3 @@ class Skeleton(Artifact):
         parent = np.maximum(self.parents, 0)
         length: Floats = np.where(np.array(self.parents) < 0, 0.0, np.linalg.norm(self.rest - self.rest[parent], axis=1))
         return length
-
-    def told(self) -> tuple[str, ...]:
-        """The tree, a line a joint: length of its bone, range of its turning, how well it is supported."""
-        unit = f" {self.unit}" if self.unit else ""
-        names = [f"{self._branch(joint)}{name}" for joint, name in enumerate(self.names)]
-        width = max(map(len, names))
-        return tuple(f"{name:{width}}  {self._measures(joint, unit)}".rstrip() for joint, name in enumerate(names))
-
-    def _branch(self, joint: int) -> str:
-        """The lines that lead to a joint, as a tree of folders is drawn."""
-        parent, lead = self.parents[joint], ""
-        while parent >= 0:
-            is_last = joint == max(j for j, p in enumerate(self.parents) if p == parent)
-            mark = ("└─ " if is_last else "├─ ") if not lead else ("   " if is_last else "│  ")
-            joint, parent, lead = parent, self.parents[parent], mark + lead
-        return lead
-
-    def _measures(self, joint: int, unit: str) -> str:
-        if self.kinds[joint] == "root":
-            return f"root, {len(self.frames)} frames"
-        length = f"bone {self.lengths[joint]:.4g}{unit}"
-        if self.kinds[joint] == "leaf":
-            return length
-        seen = f"seen in {self.support[joint]} of {len(self.frames)} frames"
-        return f"{length}, turns {self.degrees[joint]:.0f}°, ±{self.drift[joint]:.2g}{unit}, {seen}"
-
-    def remarks(self) -> tuple[str, ...]:
-        """How many joints there are, or that there are none and why."""
-        turning = self.kinds.count("joint")
-        if not turning:
-            return ("no joints: nothing on this body turns against anything else; it is one rigid part",)
-        return (f"{turning} joints and {self.kinds.count('leaf')} ends of bones under {self.names[0]}",)

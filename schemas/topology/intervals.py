@@ -53,14 +53,6 @@ class Intervals(Artifact):
     threshold: float
     """z, or C for the fixed rule, that a transition had to pass."""
 
-    def remarks(self) -> tuple[str, ...]:
-        """Where the sequence was cut, and by what."""
-        if not self.cues:
-            return ("one interval: the topology stays the same in all frames",)
-        made = zip(self.end[:-1], self.cues, strict=True)
-        cuts = [f"{self.frames[e]}|{self.frames[e + 1]} ({' + '.join(cues)})" for e, cues in made]
-        return (f"{len(self.begin)} intervals, cut at frames {', '.join(cuts)}",)
-
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The intervals, numbered from 0, and the source frames of one."""
         if space == "interval":

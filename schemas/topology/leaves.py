@@ -42,17 +42,3 @@ class Leaves(Artifact):
     """Position of the first frame without it."""
     lost_end: Annotated[Ints, Array("int32", GAP)]
     """Position of the last frame without it, included."""
-
-    def remarks(self) -> tuple[str, ...]:
-        """No leaves at all, intervals without any, and where leaves that count in some interval were lost or appeared."""
-        if not len(self.rows):
-            return ("no leaves: no frame has a tip that stands out of the body, as on a ball; there are no limbs to follow",)
-        told = [f"interval {i} has no leaf that is seen often enough" for i in range(len(self.kept)) if not self.kept[i].any()]
-        for leaf, begin, end in zip(self.lost, self.lost_begin, self.lost_end, strict=True):
-            if self.kept[:, leaf].any():
-                told.append(f"leaf {leaf} is not seen from frame {self.frames[begin]} to {self.frames[end]}")
-        for leaf in range(len(self.rows)):
-            first = int((self.rows[leaf] >= 0).argmax())
-            if first > 0 and self.kept[:, leaf].any():
-                told.append(f"leaf {leaf} is first seen in frame {self.frames[first]}")
-        return tuple(told)

@@ -6,9 +6,6 @@ from pydantic import Field
 
 from kinetree.schemas.array import Artifact, Params
 
-UNSURE = 0.3
-"""Below this confidence the way up is a guess worth a word."""
-
 
 class UpDirectionParams(Params):
     """What the user knows."""
@@ -30,10 +27,3 @@ class UpDirection(Artifact):
         """0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions."""
         at = "xyz".index(self.up[-1])
         return ~at if self.up.startswith("-") else at
-
-    def remarks(self) -> tuple[str, ...]:
-        """Said where it is hardly more than a guess."""
-        if self.confidence >= UNSURE:
-            return ()
-        guess = f"pictures have {self.up} up, which is a guess (confidence {self.confidence:.1f})"
-        return (f"{guess}; --set up_direction.up=… says it",)

@@ -2,29 +2,18 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
 from rich.table import Table
 
 from kinetree.errors import ConfigError, InputError, NodesFailedError
-from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.options import AsJson, Set, out, print_json
+from kinetree.pipeline.options import AsJson, Set, out, pipeline_of, print_json
 from kinetree.pipeline.printable import printable
-from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
-from kinetree.tasks.results.plots.drawing import FORMATS, written
-from kinetree.tasks.results.plots.evaluation import drawn
 
-EXAMPLES = (
-    "Examples: kinetree evaluate walk-out walk/truth.json · kinetree evaluate walk-out dance.bvh --set truth.unit=cm"
-    " · kinetree evaluate walk-out other-run/skeleton.json --plot errors.png"
-)
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command(epilog=EXAMPLES)(evaluate)
+if TYPE_CHECKING:
+    from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 
 
 def evaluate(
@@ -33,7 +22,7 @@ def evaluate(
         Path | None,
         typer.Argument(
             metavar="TRUTH",
-            help="A truth.json, a skeleton.json or a BVH; left out: the run's own.",
+            help="A truth.json, a skeleton.json or a BVH; default: the truth that came with the run's input.",
             show_default=False,
         ),
     ] = None,
@@ -44,60 +33,69 @@ def evaluate(
     sets: Set = None,
     as_json: AsJson = False,
 ) -> None:
-    """Say how far every joint is from the true one, what is missing and what is spurious.
+    """Compare the skeleton of a run with the true one, joint by joint.
 
-    Frames are compared by their numbers in the source. Computes nothing but the comparison.
+    Says how far every joint is from the true one, which joints are missing and which are spurious. Frames are compared by
+    their numbers in the source. Nothing but the comparison is computed.
     """
+    from kinetree.tasks.results.plots.drawing import FORMATS, written
+    from kinetree.tasks.results.plots.evaluation import drawn
+    from kinetree.tasks.views.results import evaluation_files
+
     if plot is not None and plot.suffix.lower() not in FORMATS:
         raise ConfigError(f"--plot {plot}: pictures end in {', '.join(FORMATS)}")
-    told = evaluated(run, truth, body, sets)
+    evaluation = evaluated(run, truth, body, sets)
     if plot is not None:
-        written(drawn(told), plot)
+        written(drawn(evaluation), plot)
     if as_json:
-        print_json(json.loads(told.files(())["evaluation.json"]))
+        print_json(json.loads(evaluation_files(evaluation, ())["evaluation.json"]))
         return
-    _print(told)
+    _print(evaluation)
     if plot is not None:
         out.print(printable(plot), markup=False)
 
 
-def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list[str] | None = None) -> Evaluation:
+def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list[str] | None = None) -> "Evaluation":
     """The comparison of a run with a truth; raises InputError where they are not of the same sequence."""
+    from kinetree.schemas.results.evaluation import Evaluation
+
     given = {"truth.file": truth, "truth.body": body}
-    told = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in given.items() if path is not None]
-    pipeline = Pipeline.of(run, sets=[*(sets or ()), *told])
+    changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in given.items() if path is not None]
+    pipeline = pipeline_of(run, sets=[*(sets or ()), *changes])
     try:
         schedule = pipeline.computed("evaluation")
     except NodesFailedError as error:
         if f": {InputError.__name__}: " in str(error):
             raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None
         raise
-    found: Any = pipeline.artifact("evaluation", within=schedule)
-    if found.summary is None:
-        raise ConfigError(f"{run}: nobody knows the truth of it; name one, e.g. kinetree evaluate {run} truth.json")
-    return Evaluation.model_validate({**found.plain(), **found.arrays()})
+    stored: Any = pipeline.artifact("evaluation", within=schedule)
+    if stored.summary is None:
+        raise ConfigError(f"{run}: its input came without a true skeleton; name one, e.g. kinetree evaluate {run} truth.json")
+    return Evaluation.model_validate({**stored.plain(), **stored.arrays()})
 
 
-def _print(told: Evaluation) -> None:
+def _print(evaluation: "Evaluation") -> None:
     """One line a joint, then what sums it up."""
-    unit = told.unit or "length"
+    unit = evaluation.unit or "length"
+    from kinetree.pipeline.views import remarks
+
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name, left in (("joint", True), ("turns", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
         table.add_column(name, justify="left" if left else "right", overflow="fold")
-    for row in sorted(told.joints, key=lambda j: (j.kind == "tip", not j.scored)):
+    for row in sorted(evaluation.joints, key=lambda j: (j.kind == "tip", not j.scored)):
         if row.scored or row.kind == "tip" or row.found is not None:
             table.add_row(*(escape(printable(cell)) for cell in _cells(row)))
     out.print(table)
-    for line in told.remarks():
+    for line in remarks(evaluation):
         out.print(printable(line), markup=False)
-    if told.spurious:
-        out.print(printable(f"spurious: {', '.join(told.spurious)}"), markup=False)
-    if told.summary is not None:
-        for line in _lines(told.summary):
+    if evaluation.spurious:
+        out.print(printable(f"spurious: {', '.join(evaluation.spurious)}"), markup=False)
+    if evaluation.summary is not None:
+        for line in _lines(evaluation.summary):
             out.print(printable(line), markup=False)
 
 
-def _cells(row: JointScore) -> list[str]:
+def _cells(row: "JointScore") -> list[str]:
     turns = "" if row.turns is None or row.kind == "tip" else f"{row.turns:.0f}°"
     name = row.name if row.scored or row.kind == "tip" else f"{row.name} (not asked for)"
     if row.found is None:
@@ -106,7 +104,7 @@ def _cells(row: JointScore) -> list[str]:
     return [name, turns, row.found, f"{row.mean:.4g}", f"{row.deviation:.2g}", f"{row.percent:.2f}"]
 
 
-def _lines(s: Summary) -> list[str]:
+def _lines(s: "Summary") -> list[str]:
     """The summary in words."""
     lines = [
         f"found closely: {s.close} of {s.scored}; found though not asked for: {s.excused}; tips: {s.tips_found} of {s.tips}",

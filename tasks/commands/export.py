@@ -1,19 +1,19 @@
-"""`kinetree export`: what a run found as a file that other programs open."""
+"""`kinetree export`: the result of a run as a file that other programs open."""
 
 import json
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
-from kinetree.pipeline.output import write_elsewhere, write_result
 from kinetree.pipeline.printable import printable
 from kinetree.pipeline.suggest import nearest
-from kinetree.tasks.results.formats.document import schema
+
+if TYPE_CHECKING:
+    from kinetree.pipeline.inspect import Pipeline
 
 FORMATS = {
     "glb": "glb",
@@ -29,15 +29,8 @@ FORMATS = {
 EXTRAS = {"usd": "pxr"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
-EXAMPLES = (
-    "Examples: kinetree export walk/ --to csv · kinetree export walk/ --to glb -o walk.glb --set glb.up=z"
-    " · kinetree export walk/ --to ply -o coloured/"
-)
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command(epilog=EXAMPLES)(export)
+MESH_FILES = (".ply", ".obj", ".off", ".stl", ".glb", ".gltf")
+"""Endings of meshes: one more of these in the folder of the input would be read as a frame or refused."""
 
 
 def export(
@@ -49,7 +42,9 @@ def export(
     sets: Set = None,
     as_json: AsJson = False,
 ) -> None:
-    """Write what a run found as a file for other programs; nothing but the file is computed.
+    """Write the result of a run as a file for other programs.
+
+    Nothing but the file is computed.
 
     glb and usd hold the skinned, moving body, bvh the motion, json the joints, csv tables of trajectories, angles and
     lengths, ply your own meshes coloured by part, rignet the rig as text, zarr part labels and aligned meshes.
@@ -57,7 +52,7 @@ def export(
     if to not in (*FORMATS, SCHEMA):
         raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")
     if to == SCHEMA:
-        _tell_schema(output)
+        _write_schema(output)
         return
     if to in EXTRAS and find_spec(EXTRAS[to]) is None:
         raise ConfigError(f"--to {to} needs a package that is not installed: pip install 'kinetree[{to}]' brings it")
@@ -68,25 +63,30 @@ def export(
         return
     for text in remarks:
         typer.echo(printable(text), err=True)
-    shown = written if len(written) <= 4 else written[:1]
-    for path in shown:
+    named = written if len(written) <= 4 else written[:1]
+    for path in named:
         typer.echo(printable(path))
-    if len(shown) < len(written):
-        typer.echo(f"… and {len(written) - len(shown)} more files beside it")
+    if len(named) < len(written):
+        typer.echo(f"… and {len(written) - len(named)} more files beside it")
 
 
-def _written(pipeline: Pipeline, task: str, output: Path | None) -> tuple[list[Path], list[str]]:
-    """Where the files are, and what there is to say of them."""
+def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list[Path], list[str]]:
+    """Where the files are, and the remarks on them."""
+    from kinetree.pipeline import views
+    from kinetree.pipeline.output import write_elsewhere, write_result
+
     schedule = pipeline.computed(task)
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
-    remarks = list(dict.fromkeys(text for entry in done for text in schedule.value(entry.node).remarks()))
+    remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
     if output is not None:
-        return write_elsewhere(output, schedule, task), remarks
+        return write_elsewhere(output, schedule, task, MESH_FILES), remarks
     folder = pipeline.config.output
     return [folder / name for entry in done for name in write_result(folder, schedule, entry)], remarks
 
 
-def _tell_schema(output: Path | None) -> None:
+def _write_schema(output: Path | None) -> None:
+    from kinetree.tasks.results.formats.document import schema
+
     text = json.dumps(schema(), indent=2) + "\n"
     if output is None:
         typer.echo(text, nl=False)

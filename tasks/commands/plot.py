@@ -1,29 +1,27 @@
-"""`kinetree plot`: pictures of what a run found."""
+"""`kinetree plot`: the results of a run as pictures."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from pydantic import ValidationError
 
 from kinetree.errors import ConfigError, KinetreeError
-from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.results.plots import OF, WHAT, draw
-from kinetree.tasks.results.plots.drawing import Fetch
+from kinetree.pipeline.options import pipeline_of
 
-EXAMPLES = "Examples: kinetree plot walk/ correlation -o correlation.pdf · kinetree plot walk/ mu --frames 0,12,30"
+if TYPE_CHECKING:
+    from kinetree.tasks.results.plots.drawing import Fetch
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command(epilog=EXAMPLES)(plot)
+WHAT = (
+    "alignment", "angles", "cones", "confidence", "correlation", "errors", "lengths", "merging", "mu", "skeleton",
+    "structure", "tree",
+)  # fmt: skip
+"""What can be drawn; `kinetree.tasks.results.plots` draws it."""
 
 
 def plot(
     run: Annotated[str, typer.Argument(metavar="RUN", help="A configuration or the output folder of a run.")],
-    what: Annotated[str, typer.Argument(metavar="WHAT", help=f"One of {', '.join(sorted(WHAT))}.")],
+    what: Annotated[str, typer.Argument(metavar="WHAT", help=f"One of {', '.join(WHAT)}.")],
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File: .png, .svg or .pdf; default: WHAT.png.")] = None,
     frames: Annotated[
         str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw; default: four across the sequence.")
@@ -32,8 +30,11 @@ def plot(
         str | None, typer.Option("--up", help="What points up: x, y, z, -x, -y or -z; default: as the run has it.")
     ] = None,
 ) -> None:
-    """Draw what a run found, for a paper or a screen: curves, surfaces, the tree, errors against a truth."""
-    pipeline = Pipeline.of(run)
+    """Draw a result of a run: curves, surfaces, the tree, errors."""
+    from kinetree.schemas.structure.skeleton import Skeleton
+    from kinetree.tasks.results.plots import OF, draw
+
+    pipeline = pipeline_of(run)
     schedule = pipeline.schedule()
     known = sorted(node.at[0] for node in schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
@@ -46,10 +47,14 @@ def plot(
     typer.echo(str(path))
 
 
-def _axis(up: str | None, fetch: Fetch) -> int:
+def _axis(up: str | None, fetch: "Fetch") -> int:
+    from pydantic import ValidationError
+
+    from kinetree.schemas.topology.up_direction import UpDirection
+
     if up is None:
         try:
-            return int(fetch("up_direction").axis)
+            return int(fetch("upright").axis)
         except KinetreeError:  # a run that did not come so far
             return 1
     try:

@@ -1,35 +1,25 @@
 """`kinetree synth`: a synthetic sequence with its true skeleton, as files."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.config import checked
-from kinetree.schemas.input.synth import ContactParams, DroppedParams, SynthParams
-from kinetree.tasks.input.synth import figure_names, write_sequence
 
-EXAMPLES = (
-    "Examples: kinetree synth human -o walk/ · kinetree synth quadruped -o dog/ --frames 60 --vertices 12000"
-    " · kinetree synth human -o hip/ --contact hand_r:hip_r:12:26 --noise 0.001"
-)
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command(epilog=EXAMPLES)(synth)
+if TYPE_CHECKING:
+    from kinetree.schemas.input.synth import ContactParams, DroppedParams, SynthParams
 
 
 def synth(
     figure: Annotated[
-        str, typer.Argument(help=f"{', '.join(figure_names())}, random:SEED, or a YAML file of your own.")
+        str, typer.Argument(help="bird, human, quadruped, snake, starfish, random:SEED, or a YAML file of your own.")
     ] = "human",
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write; must be new or empty.")] = Path("synth"),
     motion: Annotated[str | None, typer.Option("--motion", help="One of the figure's motions; default: its first.")] = None,
     frames: Annotated[int, typer.Option("--frames", min=1, help="How many frames.")] = 36,
     fps: Annotated[float | None, typer.Option("--fps", help="Frames a second; default: the figure's own.")] = None,
-    vertices: Annotated[int, typer.Option("--vertices", min=100, help="Vertices of a frame, within about a tenth.")] = 3000,
+    vertices: Annotated[int, typer.Option("--vertices", min=100, help="Vertices of a frame, to within about a tenth.")] = 3000,
     contact: Annotated[
         list[str] | None, typer.Option("--contact", metavar="LIMB:TARGET:BEGIN:END", help="A limb touches the body.")
     ] = None,
@@ -40,13 +30,18 @@ def synth(
     holes: Annotated[int, typer.Option("--holes", min=0, help="Holes in every frame.")] = 0,
     hole_size: Annotated[float, typer.Option("--hole-size", help="Radius of a hole as a share of the height.")] = 0.03,
     fixed: Annotated[bool, typer.Option("--fixed", help="One skinned mesh: fixed connectivity.")] = False,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 0,
-    volumes: Annotated[bool, typer.Option("--volumes", help="Also write a distance grid a frame.")] = False,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of everything random.")] = 0,
+    volumes: Annotated[bool, typer.Option("--volumes", help="Also write a grid of signed distances for every frame.")] = False,
     silhouettes: Annotated[
         int, typer.Option("--silhouettes", min=0, metavar="CAMERAS", help="Also write silhouettes from a ring of cameras.")
     ] = 0,
 ) -> None:
-    """Write a synthetic sequence with its true skeleton: frame_0000.ply, …, and truth.json."""
+    """Write a synthetic sequence with its true skeleton.
+
+    Files: frame_0000.ply, frame_0001.ply, …, and truth.json.
+    """
+    from kinetree.tasks.input.synth import write_sequence
+
     params = _params(
         figure,
         motion=motion,
@@ -65,20 +60,27 @@ def synth(
     typer.echo(f"{output}: {frames} frames and truth.json; kinetree run --input {output} --output {output}-kinetree")
 
 
-def _params(figure: str, **options: Any) -> SynthParams:
+def _params(figure: str, **options: Any) -> "SynthParams":
+    from kinetree.pipeline.config import checked
+    from kinetree.schemas.input.synth import SynthParams
+
     own = figure.endswith((".yaml", ".yml"))
     named = {"figure": "" if own else figure, "file": str(Path(figure).absolute()) if own else ""}
     return checked(SynthParams, {**named, **options}, "synth")
 
 
-def _contact(text: str) -> ContactParams:
+def _contact(text: str) -> "ContactParams":
+    from kinetree.schemas.input.synth import ContactParams
+
     parts = text.split(":")
     if len(parts) != 4 or not all(p.strip().isdigit() for p in parts[2:]):
         raise ConfigError(f"--contact {text}: write LIMB:TARGET:BEGIN:END, e.g. hand_r:hip_r:12:26")
     return ContactParams(limb=parts[0], target=parts[1], begin=int(parts[2]), end=int(parts[3]))
 
 
-def _dropped(text: str) -> DroppedParams:
+def _dropped(text: str) -> "DroppedParams":
+    from kinetree.schemas.input.synth import DroppedParams
+
     parts = text.split(":")
     if len(parts) != 3 or not all(p.strip().isdigit() for p in parts[1:]):
         raise ConfigError(f"--drop {text}: write LIMB:BEGIN:END, e.g. wrist_r:12:26")

@@ -9,25 +9,23 @@ from typing import Annotated
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.inspect import Pipeline
-from kinetree.schemas.results.report import Report
-
-EXAMPLES = "Examples: kinetree view walk-out · kinetree view walk-out --print"
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command(epilog=EXAMPLES)(view)
+from kinetree.pipeline.options import pipeline_of
 
 
 def view(
     run: Annotated[str, typer.Argument(metavar="RUN", help="A configuration or the output folder of a run.")],
-    only_print: Annotated[bool, typer.Option("--print", help="Print the path and open nothing.")] = False,
+    only_print: Annotated[bool, typer.Option("--print", help="Only print the path.")] = False,
 ) -> None:
-    """Open the report of a run in a browser, or print its path where there is none."""
-    path = Pipeline.of(run).config.output / Report.page_as
+    """Open the report of a run in a browser.
+
+    Where there is no screen, print its path.
+    """
+    from kinetree.pipeline.views import page_name
+    from kinetree.schemas.results.report import Report
+
+    path = pipeline_of(run).config.output / page_name(Report)
     if not path.is_file():
-        raise ConfigError(f"{path} is not there: the run has not come as far as its report; kinetree run {run}")
+        raise ConfigError(f"{path}: there is no report yet; kinetree run {run} computes it")
     if only_print or not _screen() or not _opened(path):
         typer.echo(str(path))
 

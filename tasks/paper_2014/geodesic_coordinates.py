@@ -4,13 +4,13 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
-from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates, GeodesicCoordinatesParams
+from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.tasks.numerics.paper_2014 import geodesic_coordinates as numerics
 
 
 @task(over="frame")
-def geodesic_coordinates(mesh: Mesh, tips: Extrema, params: GeodesicCoordinatesParams) -> GeodesicCoordinates:
+def geodesic_coordinates(mesh: Mesh, tips: Extrema) -> GeodesicCoordinates:
     """Measures the distance of every vertex to each tip over the surface (2014, Sec. 5.2, Eq. 4)."""
-    distance = numerics.geodesic_coordinates(np.array(mesh.vertices), mesh.faces, tips.vertices, params.exact)
+    distance = numerics.geodesic_coordinates(np.array(mesh.vertices), mesh.faces, tips.vertices)
     return GeodesicCoordinates(tips=tips.vertices, distance=distance)

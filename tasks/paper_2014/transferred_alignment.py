@@ -1,16 +1,14 @@
 """The mesh of the finished skeleton in one frame, in the form in which every method leaves it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Floats
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2014.transfer import Transfer
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.normals import face_areas, smoothed_normals
 from kinetree.tasks.numerics.paper_2014.transfer import completed
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.frame_confidence import stretches
@@ -32,7 +30,7 @@ def transferred_alignment(
     if connectivity.fixed:
         one = known.astype(np.float64)
         return Alignment(vertices=x, residual=0.0 * one, stretch=stretches(rest, x, F), trust=one, uncovered=0.0)
-    target = Target.of(np.array(mesh.vertices), mesh.faces, _size(rest, F))
+    target = Target.of(np.array(mesh.vertices), mesh.faces, float(np.sqrt(face_areas(rest, F).sum())))
     found = vertex_confidence(rest, x, smoothed_normals(x, F), F, target, usual=1.0)
     trust = found.trust * known
     return Alignment(
@@ -44,9 +42,3 @@ def transferred_alignment(
         distance=float(np.median(found.residual)),
         doubted=float((trust < 0.5).mean()),
     )
-
-
-def _size(V: Floats, F: NDArray[np.int64]) -> float:
-    """Root of the area, mesh unit."""
-    a, b, c = V[F].transpose(1, 0, 2)
-    return float(np.sqrt(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2))

@@ -1,8 +1,8 @@
-"""How good the skeleton is against the truth, where somebody knows it."""
+"""How good the skeleton is against the truth, where the truth is known."""
 
 from collections.abc import Mapping
 from collections.abc import Sequence as Ordered
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +18,7 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.results.evaluation import body, rignet
 from kinetree.tasks.numerics.results.evaluation.jitter import jitter
 from kinetree.tasks.numerics.results.evaluation.lengths import length_variation
-from kinetree.tasks.numerics.results.evaluation.matching import Matching, errors, matching
-from kinetree.tasks.numerics.results.evaluation.meeting import Divided, divided
+from kinetree.tasks.numerics.results.evaluation.matching import Matching, joint_errors, matching
 from kinetree.tasks.numerics.results.evaluation.parts import (
     adjusted_rand_index,
     contingency,
@@ -28,20 +27,20 @@ from kinetree.tasks.numerics.results.evaluation.parts import (
     rand_index,
 )
 from kinetree.tasks.numerics.results.evaluation.rates import detection_rate, nearest_distance
-from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted, kept_ancestors, tree_edit_distance
+from kinetree.tasks.numerics.results.evaluation.settings import EvaluationSettings
+from kinetree.tasks.numerics.results.evaluation.split_joints import SplitTree, split_joints
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors, tree_edit_distance
 from kinetree.tasks.numerics.results.evaluation.tree_match import tree_match_distance
-from kinetree.tasks.numerics.results.evaluation.truth import factor
+from kinetree.tasks.numerics.results.units import unit_factor
 from kinetree.tasks.results.truth import synthetic, true_carriers
 
-SAME_RATE = 0.01
-"""Frame rates that differ by less than this share are the same, rounded."""
 
+class Comparison(NamedTuple):
+    """A skeleton and its truth in the sequence's unit, frame by frame, with the partners of the true joints.
 
-
-class Sides(NamedTuple):
-    """Both skeletons in the sequence's unit, frame by frame, and who is whose partner.
-
-    Y is of the joints as the truth tells them; `tree`, `found` and `error` are of those that carry one rigid piece each.
+    X, Y                  : (frame, joint, xyz) joints of the skeleton, and joints of the truth as its file has them
+    height                : of the body
+    tree, matching, error : of the true joints after splitting: each carries one rigid group
     """
 
     skeleton: Skeleton
@@ -49,12 +48,12 @@ class Sides(NamedTuple):
     X: Floats
     Y: Floats
     height: float
-    tree: Divided
-    found: Matching
+    tree: SplitTree
+    matching: Matching
     error: Floats
 
     @property
-    def tip(self) -> Bools:
+    def is_tip(self) -> Bools:
         """(true,) which joints are tips."""
         return np.array([kind == "tip" for kind in self.truth.kinds])[self.tree.origin]
 
@@ -76,180 +75,191 @@ def evaluation(
         none = np.zeros(len(skeleton.frames))
         return Evaluation(truth="", frames=skeleton.frames, unit=skeleton.unit, height=0.0, joints=(), spurious=(),
                           true_frames=0, summary=None, error=none[:, None][:, :0], detection=none, distance=none)  # fmt: skip
-    sides = _sides(skeleton, truth, params)
-    rate, distance = (f(sides.X, sides.Y[:, _moving(truth)]) for f in (detection_rate, nearest_distance))
-    told = {
+    compared = _comparison(skeleton, truth, params)
+    rate, distance = (f(compared.X, compared.Y[:, _moving(truth)]) for f in (detection_rate, nearest_distance))
+    of_frames_and_parts = {
         "detection": float(rate.mean()),
-        "distance": float(distance.mean() / sides.height),
-        "parts": _parts(sides, source, mesh, projection),
+        "distance": float(distance.mean() / compared.height),
+        "parts": _part_score(compared, source, mesh, projection),
     }
     return Evaluation(
         truth=truth.source,
         frames=skeleton.frames,
         true_frames=len(truth.frames),
         unit=skeleton.unit,
-        height=sides.height,
-        joints=tuple(_row(sides, j) for j in range(len(sides.tree.parents))),
-        spurious=tuple(skeleton.names[i] for i in sides.found.spurious),
-        summary=_summary(sides, params).model_copy(update=told),
-        error=sides.error,
+        height=compared.height,
+        joints=tuple(_joint_score(compared, j) for j in range(len(compared.tree.parents))),
+        spurious=tuple(skeleton.names[i] for i in compared.matching.spurious),
+        summary=_summary(compared, params).model_copy(update=of_frames_and_parts),
+        error=compared.error,
         detection=rate,
-        distance=distance / sides.height,
+        distance=distance / compared.height,
     )
 
 
-def _sides(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> Sides:
-    """Brings the truth to the sequence's frames and unit, and matches; raises InputError where it is of another one."""
+def _comparison(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> Comparison:
+    """Brings the truth to the sequence's frames and unit and matches the joints; refuses the truth of another sequence."""
+    _check_frames(skeleton, truth)
+    scale = unit_factor(truth.unit, skeleton.unit, truth.source)
+    row = {frame: t for t, frame in enumerate(truth.frames)}
+    Y = truth.positions[[row[frame] for frame in skeleton.frames]] * scale
+    height = truth.height * scale if truth.height else body.longest_side(skeleton.vertices)
+    is_joint = np.array([kind == "joint" for kind in skeleton.kinds])
+    tree = split_joints(Y, truth.parents, truth.scored, height)
+    is_tip = np.array([kind == "tip" for kind in truth.kinds])[tree.origin]
+    partners = {"root": np.array(tree.parents) < 0, "joint": ~is_tip, "leaf": is_tip}  # a root is only matched with a root
+    allowed = np.array([partners[kind] for kind in skeleton.kinds])
+    X, Z = skeleton.positions, Y[:, tree.origin]
+    limit = params.found * height
+    pairs = matching(X, Z, allowed, scored=tree.scored | is_tip, can_be_spurious=is_joint, limit=limit)
+    return Comparison(skeleton, truth, X, Y, height, tree, pairs, joint_errors(X, Z, pairs.partner))
+
+
+def _check_frames(skeleton: Skeleton, truth: Truth) -> None:
+    """Raises InputError where the truth lacks frames of the sequence or has another frame rate."""
     missing = [frame for frame in skeleton.frames if frame not in set(truth.frames)]
     if missing:
         raise InputError(
-            f"{truth.source}: it has frames {truth.frames[0]} to {truth.frames[-1]}, but not {len(missing)} of the"
-            f" {len(skeleton.frames)} of the sequence, the first {missing[0]}; is it the truth of another sequence?"
+            f"{truth.source}: it has frames {truth.frames[0]} to {truth.frames[-1]}, but {len(missing)} of the"
+            f" {len(skeleton.frames)} frames of the sequence are missing, the first is {missing[0]}; is it the truth of another"
+            " sequence?"
         )
-    if truth.fps and skeleton.fps and abs(truth.fps / skeleton.fps - 1.0) > SAME_RATE:
+    tolerance = EvaluationSettings().rate_tolerance
+    if truth.fps and skeleton.fps and abs(truth.fps / skeleton.fps - 1.0) > tolerance:
         raise InputError(
-            f"{truth.source}: it has {truth.fps:g} frames a second and the sequence {skeleton.fps:g}; frames are compared by"
-            " number, so resample the truth, or correct sequence.fps"
+            f"{truth.source}: it has {truth.fps:g} frames a second, but the sequence has {skeleton.fps:g}; frames are compared"
+            " by number, so resample the truth, or correct sequence.fps"
         )
-    scale = factor(truth.unit, skeleton.unit, truth.source)
-    at = {frame: t for t, frame in enumerate(truth.frames)}
-    Y = truth.positions[[at[frame] for frame in skeleton.frames]] * scale
-    height = truth.height * scale if truth.height else body.side(skeleton.vertices)
-    is_joint = np.array([kind == "joint" for kind in skeleton.kinds])
-    tree = divided(Y, truth.parents, truth.scored, height)
-    tip = np.array([kind == "tip" for kind in truth.kinds])[tree.origin]
-    pairs = {"root": np.array(tree.parents) < 0, "joint": ~tip, "leaf": tip}  # a root turns against nothing
-    may = np.array([pairs[kind] for kind in skeleton.kinds])
-    X, Z = skeleton.positions, Y[:, tree.origin]
-    found = matching(X, Z, may, scored=tree.scored | tip, may_be_spurious=is_joint, limit=params.found * height)
-    return Sides(skeleton, truth, X, Y, height, tree, found, errors(X, Z, found.partner))
 
 
 def _moving(truth: Truth) -> Bools:
-    """(true,) the joints that motion can show: root, tips and those that are scored."""
-    told = zip(truth.scored, truth.kinds, truth.parents, strict=True)
-    return np.array([s or kind == "tip" or p < 0 for s, kind, p in told])
+    """(true,) the joints that motion can show: the root, tips and scored joints."""
+    rows = zip(truth.scored, truth.kinds, truth.parents, strict=True)
+    return np.array([scored or kind == "tip" or parent < 0 for scored, kind, parent in rows])
 
 
-def _seen(sides: Sides) -> Bools:
-    """(true,) the joints that divide the body: root, scored ones, and others where a joint was found."""
-    return ~sides.tip & (sides.tree.scored | (np.array(sides.tree.parents) < 0) | (sides.found.partner >= 0))
+def _dividing(c: Comparison) -> Bools:
+    """(true,) the joints that divide the body into parts: the root, scored joints, and others that have a partner."""
+    return ~c.is_tip & (c.tree.scored | (np.array(c.tree.parents) < 0) | (c.matching.partner >= 0))
 
 
-def _row(sides: Sides, j: int) -> JointScore:
-    truth, partner, error, of = sides.truth, int(sides.found.partner[j]), sides.error[:, j], int(sides.tree.origin[j])
-    nearest, turns = float(sides.found.nearest[j]), float(truth.turns[of])
-    told = {} if partner < 0 else {
-        "found": sides.skeleton.names[partner], "mean": float(error.mean()), "deviation": float(error.std()),
-        "worst": float(error.max()), "percent": float(error.mean() / sides.height * 100.0),
+def _joint_score(c: Comparison, j: int) -> JointScore:
+    """The row of one true joint."""
+    truth, partner, error, given = c.truth, int(c.matching.partner[j]), c.error[:, j], int(c.tree.origin[j])
+    nearest, turns = float(c.matching.nearest[j]), float(truth.turns[given])
+    of_partner: dict[str, Any] = {} if partner < 0 else {
+        "found": c.skeleton.names[partner], "mean": float(error.mean()), "deviation": float(error.std()),
+        "worst": float(error.max()), "percent": float(error.mean() / c.height * 100.0),
     }  # fmt: skip
     return JointScore(
-        name=truth.names[of],
-        kind=truth.kinds[of],
-        scored=bool(sides.tree.scored[j]),
+        name=truth.names[given],
+        kind=truth.kinds[given],
+        scored=bool(c.tree.scored[j]),
         turns=turns if np.isfinite(turns) else None,
-        nearest=nearest / sides.height * 100.0 if np.isfinite(nearest) else None,
-        **told,
+        nearest=nearest / c.height * 100.0 if np.isfinite(nearest) else None,
+        **of_partner,
     )
 
 
-def _summary(sides: Sides, params: EvaluationParams) -> Summary:
-    """Counts and means; what needs the surface is added by others."""
-    truth, found, height = sides.truth, sides.found, sides.height
-    tip, scored = sides.tip, sides.tree.scored
-    hit = scored & (found.partner >= 0)
-    mean = sides.error[:, hit].mean(axis=0)
-    rough, smooth = jitter(sides.X[:, found.partner[hit]], sides.Y[:, sides.tree.origin[hit]], sides.skeleton.frames)
-    claims = np.array([kind == "joint" for kind in sides.skeleton.kinds])
-    excused = np.flatnonzero(~scored & ~tip & (found.partner >= 0))
-    moving = _moving(truth)
-    edit, shape = _trees(sides)
-    tolerance, side = _surface(sides)
-    everything = _rigging(sides, sides.Y, truth.parents, side, tolerance)
-    what_moves = _rigging(sides, sides.Y[:, moving], contracted(truth.parents, list(moving)), side, tolerance[moving])
+def _summary(c: Comparison, params: EvaluationParams) -> Summary:
+    """Counts and means over the joints, distances between the trees, lengths and jitter."""
+    partner, scored = c.matching.partner, c.tree.scored
+    hit = scored & (partner >= 0)
+    mean = c.error[:, hit].mean(axis=0)
+    of_error, of_truth = jitter(c.X[:, partner[hit]], c.Y[:, c.tree.origin[hit]], c.skeleton.frames)
+    is_joint = np.array([kind == "joint" for kind in c.skeleton.kinds])
+    excused = np.flatnonzero(~scored & ~c.is_tip & (partner >= 0))
+    edit, shape = _tree_distances(c)
     return Summary(
         scored=int(scored.sum()),
         found=int(hit.sum()),
-        close=int((mean <= params.close * height).sum()),
+        close=int((mean <= params.close * c.height).sum()),
         missing=int((scored & ~hit).sum()),
-        spurious=len(found.spurious),
-        excused=int(claims[found.partner[excused]].sum()),
-        tips=int(tip.sum()),
-        tips_found=int((tip & (found.partner >= 0)).sum()),
+        spurious=len(c.matching.spurious),
+        excused=int(is_joint[partner[excused]].sum()),
+        tips=int(c.is_tip.sum()),
+        tips_found=int((c.is_tip & (partner >= 0)).sum()),
         error=float(mean.mean()) if hit.any() else None,
-        percent=float(mean.mean() / height * 100.0) if hit.any() else None,
-        deviation=float(sides.error[:, hit].std(axis=0).mean()) if hit.any() else None,
-        chamfer=everything[0],
-        chamfer_moving=what_moves[0],
-        overlap=everything[1],
-        overlap_moving=what_moves[1],
+        percent=float(mean.mean() / c.height * 100.0) if hit.any() else None,
+        deviation=float(c.error[:, hit].std(axis=0).mean()) if hit.any() else None,
         tree_edit=edit,
         tree_shape=shape,
-        length_variation=float(length_variation(sides.X, sides.skeleton.parents).max(initial=0.0) * 100.0),
-        true_length_variation=float(length_variation(sides.Y, truth.parents).max(initial=0.0) * 100.0),
-        jitter=rough / smooth if smooth > 0.0 else None,
-        jitter_percent=rough / height * 100.0,
+        length_variation=float(length_variation(c.X, c.skeleton.parents).max(initial=0.0) * 100.0),
+        true_length_variation=float(length_variation(c.Y, c.truth.parents).max(initial=0.0) * 100.0),
+        jitter=of_error / of_truth if of_truth > 0.0 else None,
+        jitter_percent=of_error / c.height * 100.0,
+        **_rigging_scores(c),
     )
 
 
-def _trees(sides: Sides) -> tuple[int, int]:
-    """Edits between the trees of joints, those that are the same known, and without looking where they are."""
-    turning, seen = np.array([kind != "leaf" for kind in sides.skeleton.kinds]), _seen(sides)
-    one, two = contracted(sides.skeleton.parents, list(turning)), contracted(sides.tree.parents, list(seen))
-    i, j = np.cumsum(turning) - 1, np.cumsum(seen) - 1
-    matched = [(int(i[sides.found.partner[k]]), int(j[k])) for k in np.flatnonzero(seen & (sides.found.partner >= 0))]
-    pairs = [(a, b) for a, b in matched if one[a] >= 0 and two[b] >= 0]
-    return tree_match_distance(one, two, pairs, sides.tree.origin[seen].tolist()), tree_edit_distance(one, two)
+def _tree_distances(c: Comparison) -> tuple[int, int]:
+    """Edit distances between the trees of joints: with the matching, and by the shape of the trees alone."""
+    turning, dividing = np.array([kind != "leaf" for kind in c.skeleton.kinds]), _dividing(c)
+    one, two = contracted_tree(c.skeleton.parents, list(turning)), contracted_tree(c.tree.parents, list(dividing))
+    i, j = np.cumsum(turning) - 1, np.cumsum(dividing) - 1
+    matched = np.flatnonzero(dividing & (c.matching.partner >= 0))
+    numbers = [(int(i[c.matching.partner[k]]), int(j[k])) for k in matched]
+    pairs = [(a, b) for a, b in numbers if one[a] >= 0 and two[b] >= 0]
+    return tree_match_distance(one, two, pairs, c.tree.origin[dividing].tolist()), tree_edit_distance(one, two)
 
 
-def _surface(sides: Sides) -> tuple[Floats, float]:
+def _rigging_scores(c: Comparison) -> dict[str, Any]:
+    """RigNet's measures, against all true joints and against those that motion can show."""
+    moving, parents = _moving(c.truth), c.truth.parents
+    tolerance, side = _radii_and_side(c)
+    of_all = _rigging(c, c.Y, parents, side, tolerance)
+    of_moving = _rigging(c, c.Y[:, moving], contracted_tree(parents, list(moving)), side, tolerance[moving])
+    return {"chamfer": of_all[0], "chamfer_moving": of_moving[0], "overlap": of_all[1], "overlap_moving": of_moving[1]}
+
+
+def _radii_and_side(c: Comparison) -> tuple[Floats, float]:
     """(true,) half the body's diameter at every true joint, median over the frames, and the side of the body's cube.
 
-    raises : InputError where the true joints are not in the body
+    raises : InputError where the true joints do not lie in the body
     """
-    s = sides.skeleton
-    fit, radius = [], []
-    for R, x, y in zip(s.rotation, sides.X, sides.Y, strict=True):
-        V = body.skinned(s.vertices, s.influence, s.weight, s.rest, R, x)
-        fit.append(body.fits(V, y))
-        radius.append(body.radii(V, y))
-    if np.mean(fit) < 0.5:
-        spans = f"true joints span {body.side(sides.Y[0]):.4g} and the body {body.side(s.vertices):.4g}"
+    s = c.skeleton
+    fits, radii = [], []
+    for R, x, y in zip(s.rotation, c.X, c.Y, strict=True):
+        V = body.blended_skin(s.vertices, s.influence, s.weight, s.rest, R, x)
+        fits.append(body.joints_fit(V, y))
+        radii.append(body.local_radii(V, y))
+    if np.mean(fits) < EvaluationSettings().least_fitting:
+        sizes = f"{body.longest_side(c.Y[0]):.4g}, but the body {body.longest_side(s.vertices):.4g}"
         raise InputError(
-            f"{sides.truth.source}: the true joints do not lie in the body as joints do: it is the truth of another sequence,"
-            f" or in another unit or other axes; {spans}; say the unit with truth.unit"
+            f"{c.truth.source}: the true joints do not lie in the body: it is the truth of another sequence, or it has another"
+            f" unit or other axes. The true joints measure {sizes}; if the unit differs, set truth.unit"
         )
-    return np.median(radius, axis=0), body.side(s.vertices)
+    return np.median(radii, axis=0), body.longest_side(s.vertices)
 
 
-def _rigging(sides: Sides, Y: Floats, above: Ordered[int], side: float, tolerance: Floats) -> tuple[Chamfer, Overlap]:
-    """RigNet's measures against the true joints Y with their parents."""
-    apart = rignet.chamfer(sides.X, sides.skeleton.parents, Y, above, side)
-    shares = rignet.overlap(sides.X, Y, tolerance)._asdict()
-    return Chamfer(**apart._asdict()), Overlap(**{name: 100.0 * value for name, value in shares.items()})
+def _rigging(c: Comparison, Y: Floats, parents: Ordered[int], side: float, tolerance: Floats) -> tuple[Chamfer, Overlap]:
+    """RigNet's measures against some true joints."""
+    distances = rignet.chamfer(c.X, c.skeleton.parents, Y, parents, side)
+    shares = rignet.overlap(c.X, Y, tolerance)._asdict()
+    return Chamfer(**distances._asdict()), Overlap(**{name: 100.0 * value for name, value in shares.items()})
 
 
-def _parts(
-    sides: Sides, source: Mapping[int, Source], mesh: Mapping[int, Mesh], projection: Mapping[int, Projection]
+def _part_score(
+    c: Comparison, source: Mapping[int, Source], mesh: Mapping[int, Mesh], projection: Mapping[int, Projection]
 ) -> PartScore | None:
-    """Labels of the user's own vertices in all frames, found and true; None where the true ones are not known."""
-    s = sides.skeleton
-    carries = np.array(kept_ancestors(s.parents, [kind != "leaf" for kind in s.kinds]))
-    part = carries[leading_parts(s.label, s.influence, s.weight)]
-    above = np.array(kept_ancestors(sides.tree.parents, list(_seen(sides))))
-    labels, others = [], []
+    """Agreement of the labels of the input's vertices in all frames with the true ones; None where these are not known."""
+    s = c.skeleton
+    part_of_joint = np.array(remaining_ancestors(s.parents, [kind != "leaf" for kind in s.kinds]))
+    part = part_of_joint[leading_parts(s.label, s.influence, s.weight)]
+    true_part = np.array(remaining_ancestors(c.tree.parents, list(_dividing(c))))
+    labels, true_labels = [], []
     for frame in s.frames:
         carrier = None
         if frame in mesh:
-            carrier = true_carriers(sides.truth, source[frame], mesh[frame].vertices, frame, s.unit)
+            carrier = true_carriers(c.truth, source[frame], mesh[frame].vertices, frame, s.unit)
         if carrier is None:
             return None
-        vertex, where = mesh[frame].vertex_of_input, projection[frame]
-        known = (vertex >= 0) & (where.face >= 0)
-        labels.append(part[s.faces[where.face[known], where.share[known].argmax(axis=1)]])
-        joint, end = (side[vertex[known]] for side in carrier)
-        others.append(above[np.where(end >= 0, np.array(sides.tree.parents)[end], joint)])
-    table = contingency(np.concatenate(labels), np.concatenate(others))
+        vertex, at = mesh[frame].vertex_of_input, projection[frame]
+        known = (vertex >= 0) & (at.face >= 0)
+        labels.append(part[s.faces[at.face[known], at.share[known].argmax(axis=1)]])
+        joint, end = (values[vertex[known]] for values in carrier)
+        true_labels.append(true_part[np.where(end >= 0, np.array(c.tree.parents)[end], joint)])
+    table = contingency(np.concatenate(labels), np.concatenate(true_labels))
     return PartScore(
         rand=rand_index(table), adjusted_rand=adjusted_rand_index(table), mean_iou=mean_iou(table),
         parts=table.shape[0], true_parts=table.shape[1],

@@ -3,8 +3,8 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.glb import ASSUMED_FPS, Glb, GlbParams
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.results.formats.gltf import gltf
-from kinetree.tasks.results.formats.units import METRES
 
 
 @task()

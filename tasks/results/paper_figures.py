@@ -17,6 +17,7 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.page.chapters import Drawn, Written, evidence_of
 from kinetree.tasks.results.plots.mesoscopic import cones, lengths, merging, structure
+from kinetree.tasks.views.paper_2014 import cone_consistency_remarks, integration_remarks
 
 
 @task()
@@ -57,7 +58,7 @@ def paper_figures(
         Drawn(structure(fetch, home, up), "Bones between areas that are not rigid, and the tree that is left.", vector=False),
         Drawn(lengths(fetch, home, up), "By what the lengths of bones vary before they are fixed; afterwards by nothing."),
     ]
-    words = (*consistency.remarks(), *integration.remarks())
+    words = (*cone_consistency_remarks(consistency), *integration_remarks(integration))
     return evidence_of(
         [
             Written("cones", "Cones and annuli", rings, words),

@@ -20,8 +20,8 @@ from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.schemas.topology.up_direction import UNSURE, UpDirection
-from kinetree.tasks.numerics.results.scene import spread
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.page.chapters import sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.heed import counted, heeded, off
@@ -34,6 +34,8 @@ from kinetree.tasks.results.plots.macroscopic import mu as mu_figure
 from kinetree.tasks.results.plots.motion import angles
 from kinetree.tasks.results.plots.structure import confidence, tree
 from kinetree.tasks.results.plots.structure import skeleton as skeleton_figure
+from kinetree.tasks.views.results import evaluation_remarks
+from kinetree.tasks.views.topology import UNSURE
 
 
 @task()
@@ -62,7 +64,7 @@ def report(
 
     limits = Limits(params.frames, params.vertices, params.input_vertices)
     up = up_direction.axis
-    frames = [skeleton.frames[t] for t in spread(len(skeleton.frames), params.views)]
+    frames = [skeleton.frames[t] for t in evenly_spread(len(skeleton.frames), params.views)]
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
@@ -135,7 +137,7 @@ def _judged(evaluation: Evaluation) -> str:
         for joint in evaluation.joints
         if joint.scored
     ]
-    told = "".join(f"<p>{escape(text)}</p>" for text in evaluation.remarks())
+    told = "".join(f"<p>{escape(text)}</p>" for text in evaluation_remarks(evaluation))
     head = ("true joint", "turns, °", "found as", evaluation.unit or "length", "% of the height")
     caption = "Error of every joint over time, mean and deviation beside it (2014, Fig. 16); below, the measures of 2009."
     return told + picture(errors_figure(evaluation), caption) + table(head, rows)

@@ -14,17 +14,12 @@ from kinetree.tasks.results.formats.rig import skinned
 
 
 @task()
-def segmentation(
-    skeleton: Skeleton, alignment: Mapping[int, Alignment], projection: Mapping[int, Projection]
-) -> Segmentation:
+def segmentation(skeleton: Skeleton, alignment: Mapping[int, Alignment], projection: Mapping[int, Projection]) -> Segmentation:
     """Gathers part labels on the input's own vertices and the aligned meshes (2014, Sec. 6)."""
     labels = [input_labels(skeleton, projection[frame]) for frame in skeleton.frames]
     end = np.cumsum([len(label) for label in labels])
     aligned = np.stack([alignment[frame].vertices.astype(np.float32) for frame in skeleton.frames])
-    off = [
-        np.linalg.norm(skinned(skeleton, t) - alignment[frame].vertices, axis=1)
-        for t, frame in enumerate(skeleton.frames)
-    ]
+    off = [np.linalg.norm(skinned(skeleton, t) - alignment[frame].vertices, axis=1) for t, frame in enumerate(skeleton.frames)]
     return Segmentation(
         names=skeleton.names,
         unit=skeleton.unit,

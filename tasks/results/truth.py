@@ -15,49 +15,51 @@ from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.truth import Truth, TruthParams
 from kinetree.tasks.input.synth import body
-from kinetree.tasks.numerics.results.evaluation.body import nearest
-from kinetree.tasks.numerics.results.evaluation.truth import TrueMotion, factor, of_told, read_truth
+from kinetree.tasks.numerics.results.evaluation.body import nearest_vertices
+from kinetree.tasks.numerics.results.truth import TrueMotion, read_truth, truth_of_json
+from kinetree.tasks.numerics.results.units import unit_factor
 
 SYNTH = "synth"
-"""What the truth of a generated sequence is called."""
+"""The name of the truth of a generated sequence, in place of a file's."""
 
 
 @origin()
 def truth(params: TruthParams, files: object) -> Truth:
-    """Reads the true joints that the result is to be compared with, where there are any (2014, Sec. 7.1)."""
+    """Reads the true joints with which the result is compared, where they are given (2014, Sec. 7.1)."""
     if not params.file:
         if params.body:
-            raise InputError(f"truth.body ({params.body}) says nothing without truth.file; name the file of the joints")
-        return _told(None, "", None)
+            raise InputError(f"truth.body ({params.body}) needs truth.file; set it to the file of the true joints")
+        return _artifact(None, "", None)
     return _read(params, _stamp(params.file), _stamp(params.body))
 
 
 def synthetic(recipe: str) -> Truth:
-    """The truth of a generated sequence, from the recipe its frames are made by."""
-    return _told(of_told(body(recipe).truth(), SYNTH), SYNTH, None)
+    """The truth of a generated sequence, computed from the recipe of its frames."""
+    return _artifact(truth_of_json(body(recipe).truth(), SYNTH), SYNTH, None)
 
 
 def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> tuple[Ints, Ints] | None:
-    """(vertex,) the true joint that carries the surface at each of the vertices V, and the end of its bone, or −1 for all.
+    """The true joint that each vertex of a frame follows most, and the end of the one bone that it follows.
 
-    V, unit : (vertex, xyz) vertices of a frame in the sequence's unit, and that unit
-    returns : None where nobody knows
+    V       : (vertex, xyz) vertices of the frame, in the sequence's unit
+    frame   : source frame number
+    unit    : the sequence's unit
+    returns : two of (vertex,) joints, the second −1 where the joint carries all its bones; None where nothing is known
     """
     if source.recipe and truth.source == SYNTH:
-        made = body(source.recipe)
-        told = made.truth()
-        first = np.array([truth.names.index(joints[0]) for joints in told["parts"]], dtype=np.int32)
-        carrier = first[made.parts(source.part or 0, V)]
+        generated = body(source.recipe)
+        first_joint = np.array([truth.names.index(joints[0]) for joints in generated.truth()["parts"]], dtype=np.int32)
+        carrier = first_joint[generated.parts(source.part or 0, V)]
         return carrier, np.full_like(carrier, -1)
     if not truth.vertices.shape[1]:
         return None
-    scale = factor(truth.unit, unit, truth.source)
-    at = nearest(truth.vertices[truth.frames.index(frame)] * scale, V)
+    scale = unit_factor(truth.unit, unit, truth.source)
+    at = nearest_vertices(truth.vertices[truth.frames.index(frame)] * scale, V)
     return truth.carrier[at], truth.bone_end[at]
 
 
 def _stamp(path: str) -> tuple[int, int]:
-    """Size and time of a file, so that what was read of it is remembered until it changes."""
+    """Size and time of change of a file, by which `_read` notices that it has changed."""
     try:
         stat = Path(path).stat() if path else None
     except OSError as error:
@@ -67,6 +69,7 @@ def _stamp(path: str) -> tuple[int, int]:
 
 @lru_cache(maxsize=2)
 def _read(params: TruthParams, *stamps: tuple[int, int]) -> Truth:
+    """The truth in the files named by the parameters; kept in memory until a file changes."""
     path = Path(params.file)
     try:
         text = path.read_text(encoding="utf-8")
@@ -74,11 +77,11 @@ def _read(params: TruthParams, *stamps: tuple[int, int]) -> Truth:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path}: not a text file; a truth is a truth.json, a skeleton.json or a .bvh file") from None
-    return _told(read_truth(text, path.name), path.name, params)
+    return _artifact(read_truth(text, path.name), path.name, params)
 
 
-def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) -> Truth:
-    """The artifact; without joints where there is no motion."""
+def _artifact(motion: TrueMotion | None, source: str, params: TruthParams | None) -> Truth:
+    """The artifact of a motion; without joints where there is none."""
     if motion is None:
         motion = TrueMotion((), (), (), (), (), (), np.zeros((0, 0, 3)), None, None, None)
     vertices: NDArray[np.float32] = np.zeros((len(motion.X), 0, 3), np.float32)
@@ -106,16 +109,16 @@ def _told(motion: TrueMotion | None, source: str, params: TruthParams | None) ->
 def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, Ints]:
     """(frame, vertex, xyz) the true body, (vertex,) the joint each vertex follows most, and the end of its bone or −1."""
     try:
-        with np.load(path, allow_pickle=False) as held:
-            V, W = (np.array(held[key], dtype=np.float64) for key in ("vertices", "weights"))
-            told = [str(n) for n in np.atleast_1d(held["weight_names"])]
+        with np.load(path, allow_pickle=False) as arrays:
+            V, W = (np.array(arrays[key], dtype=np.float64) for key in ("vertices", "weights"))
+            columns = [str(n) for n in np.atleast_1d(arrays["weight_names"])]
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(
-            f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one connectivity"
+            f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one set of faces"
         ) from None
-    follows = [_followed(name, motion) for name in told]
-    unknown = [name for name, joint in zip(told, follows, strict=True) if joint is None]
-    if unknown or W.ndim != 2 or W.shape[1] != len(told):
+    follows = [_followed(name, motion) for name in columns]
+    unknown = [name for name, joint in zip(columns, follows, strict=True) if joint is None]
+    if unknown or W.ndim != 2 or W.shape[1] != len(columns):
         raise InputError(f"{path}: weights must be (vertex, joint) of the truth's joints; {unknown[:3]} are none of them")
     if len(V) != len(motion.frames) * len(W):
         raise InputError(
@@ -128,7 +131,7 @@ def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, In
 
 
 def _followed(name: str, motion: TrueMotion) -> tuple[int, int] | None:
-    """What a column of weights follows: a joint by its name, or one bone by the numbers of both joints, as bone_3_4."""
+    """The joint of a column of weights: by its name, or with the end of one bone by both numbers, as in bone_3_4."""
     if name in motion.names:
         return motion.names.index(name), -1
     bone = re.fullmatch(r"bone_(\d+)_(\d+)", name)

@@ -1,6 +1,7 @@
 """The command: a run and a truth in, a table, JSON or a picture out, and refusals in words."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,11 @@ from known import generated, written_truth
 from typer.testing import CliRunner
 
 from kinetree.errors import ConfigError, InputError, UnknownNodeError
-from kinetree.pipeline import inspect
+from kinetree.pipeline import application
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.schemas.input.synth import SynthParams
-from kinetree.tasks.commands.evaluate import register
+from kinetree.tasks.application import APPLICATION
+from kinetree.tasks.commands.evaluate import evaluate
 from kinetree.tasks.input.synth import write_sequence
 
 RECIPE = generated()
@@ -24,7 +26,8 @@ SYNTH = {"figure": "human", "frames": 6, "vertices": 600, "connectivity": "fixed
 
 @pytest.fixture(autouse=True)
 def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inspect, "_methods", lambda: {"mesoscopic": known_tasks.GRAPH})
+    known = replace(APPLICATION, methods=lambda: {"mesoscopic": known_tasks.GRAPH})
+    monkeypatch.setattr(application, "_installed", lambda: known)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +48,7 @@ def truth(tmp_path: Path) -> Path:
 
 def asked(*words: object) -> Result:
     app = typer.Typer()
-    register(app)
+    app.command()(evaluate)
     return CliRunner().invoke(app, [str(word) for word in words])
 
 
@@ -114,7 +117,7 @@ def test_what_is_wrong_with_the_truth_is_an_error_of_input(run: str, truth: Path
     truth.write_text(json.dumps({**told, "positions": told["positions"][:2]}))
     error = refused(run, truth)
     assert type(error) is InputError
-    assert str(error).startswith("truth.json: it has frames 0 to 1, but not 4 of the 6 of the sequence")
+    assert str(error).startswith("truth.json: it has frames 0 to 1, but 4 of the 6 frames of the sequence are missing")
     truth.write_text(json.dumps({**told, "positions": [[[1e7, 0, 0]] * len(told["joints"])] * 6}))
     assert "truth of another sequence" in str(refused(run, truth))
 
@@ -138,7 +141,7 @@ def test_folder_of_meshes_has_no_truth_until_one_is_named(tmp_path: Path) -> Non
     assert not (out / "evaluation.json").exists()
     error = refused(out)
     assert isinstance(error, ConfigError)
-    assert "nobody knows the truth of it; name one" in str(error)
+    assert "its input came without a true skeleton; name one" in str(error)
     summary = json.loads(asked(out, tmp_path / "walk" / "truth.json", "--json").output)["summary"]
     assert summary["found"] == summary["scored"]
     assert summary["parts"] is None

@@ -10,7 +10,8 @@ from pages import artifacts, judged, unjudged
 from rigs import spider
 
 from kinetree.errors import ConfigError
-from kinetree.tasks.results.plots import WHAT, draw
+from kinetree.tasks.commands import plot
+from kinetree.tasks.results.plots import OF, WHAT, draw
 from kinetree.tasks.results.plots.drawing import view
 from kinetree.tasks.results.plots.motion import turns
 
@@ -22,6 +23,10 @@ def fetch() -> Any:
     derived = {"rigid_parts": parts_of(spider()), "kinematic_tree": tree_of(spider())}
     told = artifacts() | {"evaluation": judged(spider())} | derived
     return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+
+
+def test_help_of_the_command_names_every_picture() -> None:
+    assert all(sorted(pictures) == sorted(plot.WHAT) for pictures in OF.values())
 
 
 @pytest.mark.parametrize("what", sorted(WHAT))

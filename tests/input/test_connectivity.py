@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from kinetree.pipeline import views
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.tasks.input.connectivity import connectivity
@@ -50,7 +51,7 @@ def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_r
     made = connectivity({10: merged, 12: frame(), 14: frame(V * 2), 16: frame(V * 3)})
     assert not made.fixed
     assert [(o.frame, o.welded, o.vertices, o.faces) for o in made.odd] == [(10, 1, -1, -3)]
-    (said,) = made.remarks()
+    (said,) = views.remarks(made)
     assert "frame 10 does not: 1 vertex lies on another and was welded there (mesh.merge)" in said
 
 
@@ -65,13 +66,13 @@ def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_r
 )
 def test_what_differs_is_told_in_words(other, why):
     made = connectivity({0: frame(), 1: frame(V * 2), 2: frame(V * 3), 3: other, 4: other})
-    (said,) = made.remarks()
+    (said,) = views.remarks(made)
     assert f"frame 3 (and 1 other frame) does not: {why};" in said
 
 
 def test_a_sequence_surfaced_anew_in_every_frame_says_nothing_of_fixed_connectivity():
     made = connectivity({t: frame(faces=np.roll(F, t, axis=0)) for t in range(4)})
-    assert (made.fixed, made.odd, made.remarks()) == (False, (), ())
+    assert (made.fixed, made.odd, views.remarks(made)) == (False, (), ())
 
 
 def test_change_is_seen_against_the_first_frame():

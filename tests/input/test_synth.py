@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from kinetree.schemas.input.source import SourceParams
 from kinetree.schemas.input.synth import ContactParams, SynthParams
 from kinetree.tasks.commands.synth import synth
 from kinetree.tasks.input.source import source, surface
-from kinetree.tasks.input.synth import body, recipe, write_sequence
+from kinetree.tasks.input.synth import body, figure_names, recipe, write_sequence
 
 SMALL = SynthParams(frames=3, vertices=600)
 
@@ -110,3 +111,8 @@ def test_figure_of_ones_own_is_read_from_yaml(tmp_path: Path) -> None:
     own.write_text("a: [")
     with pytest.raises(ConfigError, match="not valid YAML"):
         recipe(SynthParams(file=str(own)))
+
+
+def test_help_of_the_command_names_every_figure() -> None:
+    declared = get_type_hints(synth, include_extras=True)["figure"].__metadata__[0].help
+    assert declared.startswith(f"{', '.join(figure_names())}, random:SEED")

@@ -3,6 +3,7 @@
 import numpy as np
 from sheets import CORNERS, Frame, exact, followed, frame
 
+from kinetree.pipeline import views
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.tasks.paper_2014.cut_correspondence import cut_correspondence
@@ -54,7 +55,7 @@ def test_leaves_find_each_other_and_the_one_that_went_is_surplus() -> None:
     np.testing.assert_allclose(told.moved, np.linalg.norm(ends[0] - ends[1], axis=1)[[0, 2]])
     assert told.surplus(0, ahead=True) == [1]
     assert told.surplus(1, ahead=False) == []
-    assert told.remarks() == ("interval 1 has two leaves: the geodesic mapping cannot tell places apart there",)
+    assert views.remarks(told) == ("interval 1 has two leaves: the geodesic mapping cannot tell places apart there",)
 
 
 def test_one_interval_has_no_cut() -> None:
@@ -62,4 +63,4 @@ def test_one_interval_has_no_cut() -> None:
     assert (told.onward == -1).all()
     assert (told.backward == -1).all()
     assert len(told.cut) == 0
-    assert told.remarks() == ()
+    assert views.remarks(told) == ()

@@ -3,6 +3,7 @@
 import numpy as np
 from mesoscopic import made
 
+from kinetree.pipeline import views
 from kinetree.tasks.paper_2014.integration import integration
 
 
@@ -11,7 +12,7 @@ def test_all_cones_have_the_joint_that_their_intervals_found() -> None:
     assert here.integration.rigid.shape[0] == 3
     assert ((~here.integration.rigid).sum(axis=1) == 1).all()
     assert (here.integration.clusters == 6).all()
-    assert "6" in here.integration.remarks()[0]
+    assert "6" in views.remarks(here.integration)[0]
 
 
 def test_joint_that_only_one_interval_shows_is_kept() -> None:
@@ -26,7 +27,7 @@ def test_one_threshold_is_taken_without_a_word() -> None:
     single = [a.model_copy(update={**one, "rigid": a.rigid[:1], "merge": a.merge[:1]}) for a in here.annuli.values()]
     told = integration(here.consistency, tuple(single))
     assert told.theta == 1.2
-    assert told.remarks() == ()
+    assert views.remarks(told) == ()
 
 
 def test_no_cones_no_areas() -> None:

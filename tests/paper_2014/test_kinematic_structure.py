@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from mesoscopic import made, tips
 
+from kinetree.pipeline import views
+
 
 def test_three_arms_hang_on_the_middle_and_end_at_their_leaves() -> None:
     here = made()
@@ -30,4 +32,4 @@ def test_lengths_are_fixed_and_turning_is_that_of_the_arms() -> None:
 def test_still_body_has_no_joint() -> None:
     told = made(still=True).skeleton
     assert told.kinds == ("root", "leaf", "leaf", "leaf")
-    assert "no joints" in told.remarks()[0]
+    assert "no joints" in views.remarks(told)[0]

@@ -6,6 +6,7 @@ import json
 import os
 import secrets
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -22,12 +23,16 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.key import forget_code
 
 HERE = Path(__file__).parent
-MAIN = """from kinetree.pipeline import cli, inspect
-from .toys import GRAPH
-inspect._methods = lambda: {"mesoscopic": GRAPH}
+MAIN = """from kinetree.pipeline.application import Application, Section, built_in
+from kinetree.pipeline.cli import main
+COMMANDS = tuple(map(built_in, ("run", "plan", "show", "why", "graph", "tasks", "runs", "diff", "config", "gc")))
+def methods():
+    from .toys import GRAPH
+    return {"toy": GRAPH}
 if __name__ == "__main__":
-    cli.main()
+    main(Application("toy", "Adds numbers.", methods, sections=(Section("All", COMMANDS),)))
 """
+"""Another product on the loom: it has nothing of kinetree's."""
 
 
 @dataclass
@@ -77,6 +82,7 @@ class Toys:
     output: Path
     main: str = "toys"
     """The module of the package that has the graph."""
+    started: "list[subprocess.Popen[str]]" = field(default_factory=list)
 
     @property
     def module(self) -> ModuleType:
@@ -117,7 +123,7 @@ class Toys:
 
     def pipeline(self, **blocks: Any) -> Pipeline:
         """The toy graph over the frames."""
-        return Pipeline.of(self.config(**blocks), methods={"mesoscopic": self.module.GRAPH})
+        return Pipeline.of(self.config(**blocks), methods={"toy": self.module.GRAPH})
 
     def run(self, client: Any = None, *, until: tuple[str, ...] = (), force: tuple[str, ...] = (), **blocks: Any) -> Run:
         """Runs in this process and keeps what was heard."""
@@ -148,12 +154,29 @@ class Toys:
         path.write_text(json.dumps(self.config(**blocks)))
         return path
 
-    def start(self, *arguments: str, **options: Any) -> "subprocess.Popen[str]":
-        """The command kinetree on the toy graph, in a process of its own, in a group of its own."""
+    def start(self, *arguments: str, deaf: bool = False, **options: Any) -> "subprocess.Popen[str]":
+        """The command kinetree on the toy graph, in a process of its own, in a group of its own.
+
+        deaf : it ignores SIGINT from its start, as what nohup or a shell's background starts; else it does not, even where
+               this very test run was started so: what a process handles is at its default in the program it executes
+        """
         command = [sys.executable, "-m", self.name, *arguments]
-        return subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, **options
-        )
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN if deaf else signal.default_int_handler)
+        try:
+            process = subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, **options
+            )
+        finally:
+            signal.signal(signal.SIGINT, before)
+        self.started.append(process)
+        return process
+
+    def end(self) -> None:
+        """Ends what a failing test left running, with every process it started itself."""
+        for process in self.started:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate()
 
     def command(self, *arguments: str) -> "subprocess.CompletedProcess[str]":
         """The command kinetree on the toy graph, to its end."""
@@ -196,5 +219,6 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     monkeypatch.setenv("TOYS_FLAGS", str(found.flags))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     yield found
+    found.end()
     with contextlib.suppress(ImportError):
         found.forget()

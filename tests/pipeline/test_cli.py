@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,10 +13,11 @@ import yaml
 from kinetree.errors import KinetreeError
 from kinetree.pipeline import cli
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.tasks.application import APPLICATION, main
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n{x} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
 READING = ["plan", "why", "graph", "show", "runs", "diff", "gc", "tasks"]
-COMMANDS = ["run", "config", *READING]
+COMMANDS = list(APPLICATION.commands)
 
 
 @pytest.fixture
@@ -28,7 +30,7 @@ def kinetree(capsys, tmp_path, monkeypatch):
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["kinetree", *map(str, arguments)])
         with pytest.raises(SystemExit) as end:
-            cli.main()
+            main()
         printed = capsys.readouterr()
         assert "Traceback" not in printed.err
         return end.value.code, printed.out, printed.err
@@ -71,7 +73,7 @@ def test_help_of_every_command_has_an_example(kinetree, command):
 @pytest.mark.parametrize("command", ["why", "show"])
 def test_help_writes_a_node_with_its_index(kinetree, command):
     _, printed, _ = kinetree(command, "--help")
-    assert printed.count("mesh[frame=3]") == 2
+    assert "mesh[frame=3]" in printed
 
 
 def test_help_names_every_command_and_the_exit_codes(kinetree):
@@ -81,11 +83,25 @@ def test_help_names_every_command_and_the_exit_codes(kinetree):
     assert "0 done · 1 nodes failed · 2 the input is wrong · 130 interrupted" in " ".join(printed.split())
 
 
-def test_bare_command_shows_its_help(kinetree):
+def test_bare_command_says_how_to_begin(kinetree):
     code, printed, complained = kinetree()
-    assert code == 2
-    assert "Usage: kinetree" in printed + complained
-    assert "kinetree: \n" not in complained
+    assert (code, complained) == (0, "")
+    begins = [words for line in printed.splitlines() if (words := line.split()[:2])[:1] == ["kinetree"]]
+    assert begins == [["kinetree", word] for word in ("demo", "run", "view", "--help")]
+
+
+def test_commands_stand_in_their_sections_in_the_order_of_a_persons_work(kinetree):
+    _, printed, _ = kinetree("--help")
+    titles = [line for line in printed.splitlines() if re.fullmatch(r"\w[\w ]*:", line)]
+    assert titles == ["Start:", "Look:", "Take away:", "Configure:", "Make:", "Care:", "Options:"]
+    names = re.findall(r"^  ([a-z]+) ", printed.partition("Start:")[2].partition("Options:")[0], re.MULTILINE)
+    order = "demo run view  show plan why graph tasks runs diff  export plot evaluate  config  synth  gc"
+    assert names == order.split()
+
+
+@pytest.mark.parametrize("command", APPLICATION.commands.values(), ids=lambda command: command.name)
+def test_summary_in_the_list_is_the_first_line_of_the_commands_own_help(command):
+    assert (command.imported().__doc__ or "").splitlines()[0] == command.summary
 
 
 def test_version_is_printed(kinetree):
@@ -115,9 +131,11 @@ def test_misuse_is_one_message_that_points_to_help(kinetree, arguments, words):
 def test_without_anything_to_work_on_it_says_what_to_name(kinetree):
     for command in (["run"], ["plan"], ["runs"], ["gc"], ["why", "mesh[0]"], ["show", "mesh[0]"]):
         code, _, complained = kinetree(*command)
-        assert (code, complained) == (
-            2, "kinetree: nothing to work on: name a config or an output folder (run and plan also take --input FOLDER)\n",
-        )  # fmt: skip
+        assert code == 2
+        assert complained == (
+            "kinetree: nothing to work on: name a configuration or an output folder"
+            " (run and plan also take --input FOLDER)\n"
+        )
 
 
 # ── run ─────────────────────────────────────────────────────────────────────────────────────────────────────────────
@@ -203,7 +221,7 @@ def test_input_and_output_may_be_called_anything(kinetree, scans, tmp_path, name
     assert (code, complained) == (0, "")
     code, printed, _ = kinetree("plan", f"out {name}", "--until", "sequence")
     assert code == 0
-    assert "everything is fresh" in printed
+    assert "everything is up to date" in printed
 
 
 def test_force_runs_what_is_fresh(kinetree, walked):
@@ -250,7 +268,7 @@ def test_error_of_ours_shows_where_it_came_from(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr(signal, "signal", lambda *_: None)
     monkeypatch.setattr(sys, "argv", ["kinetree", "tasks"])
     with pytest.raises(SystemExit) as end:
-        cli.main()
+        main()
     complained = capsys.readouterr().err
     assert end.value.code == 1
     assert "ZeroDivisionError: ours" in complained
@@ -272,10 +290,10 @@ def test_plan_tells_states_and_reasons(kinetree, walked):
     code, printed, _ = kinetree("plan", walked, "--set", "mesh.component_share=0.1", "--until", "connectivity")
     assert code == 0
     assert "mesh ×3: 3 stale — params: component_share 0.05 → 0.1 ×3" in printed
-    assert "connectivity: waits — waits on mesh[frame=0], mesh[frame=1], mesh[frame=2]" in printed
+    assert "connectivity: waits — waits for mesh[frame=0], mesh[frame=1], mesh[frame=2]" in printed
     code, printed, _ = kinetree("plan", walked, "--until", "connectivity", "--nodes")
     assert "mesh[frame=1]: fresh\n" in printed
-    assert "everything is fresh; a run would compute nothing" in printed
+    assert "everything is up to date; a run would compute nothing" in printed
 
 
 def test_plan_as_json(kinetree, walked):
@@ -294,7 +312,7 @@ def test_planning_writes_nothing(kinetree, scans, tmp_path):
 def test_why_tells_state_and_neighbours(kinetree, walked):
     code, printed, _ = kinetree("why", "mesh[1]", walked)
     assert code == 0
-    assert printed.startswith("mesh[frame=1]: fresh\n  reads source[frame=1]\n  feeds ")
+    assert printed.startswith("mesh[frame=1]: fresh\n  reads source[frame=1]\n  is read by ")
     assert "connectivity" in printed
     found = told(kinetree("why", "mesh[1]", walked, "--set", "mesh.merge=0", "--json")[1])
     assert set(found) == {"node", "state", "waits", "reasons", "reads", "feeds"}
@@ -337,7 +355,7 @@ def test_show_of_what_was_not_computed_tells_its_schema(kinetree, scans):
 
 @pytest.mark.parametrize("form", ["mermaid", "dot", "json"])
 def test_graph_of_the_method_and_of_a_sequence(kinetree, walked, form):
-    begins = {"mermaid": "flowchart TD\n", "dot": "digraph kinetree {\n", "json": "{"}[form]
+    begins = {"mermaid": "flowchart TD\n", "dot": "digraph tasks {\n", "json": "{"}[form]
     for arguments in ([], [walked], [walked, "--expanded"]):
         code, printed, _ = kinetree("graph", *arguments, "--format", form)
         assert code == 0
@@ -353,10 +371,10 @@ def test_graph_groups_mapped_nodes(kinetree, walked):
 
 
 def test_wrong_drawing_is_refused(kinetree):
-    assert kinetree("graph", "--format", "png")[::2] == (2, "kinetree: --format png; there are: dot, json, mermaid\n")
+    assert kinetree("graph", "--format", "png")[::2] == (2, "kinetree: --format png: expected dot, json or mermaid\n")
     code, _, complained = kinetree("graph", "--expanded")
     assert code == 2
-    assert "name a config or an output folder" in complained
+    assert "name a configuration or an output folder" in complained
 
 
 def test_runs_diff_and_gc_tell_what_changed_between_runs(kinetree, walked):
@@ -373,11 +391,11 @@ def test_runs_diff_and_gc_tell_what_changed_between_runs(kinetree, walked):
     assert "0 nodes have other results" in kinetree("diff", a, b, walked)[1]
     code, printed, _ = kinetree("gc", walked, "--dry-run")
     assert code == 0
-    assert printed.startswith("would free ")
+    assert printed.startswith("would delete ")
     freed = told(kinetree("gc", walked, "--json")[1])
     assert set(freed) == {"runs", "records", "artifacts", "leftovers", "bytes"}
     assert freed["runs"] == [a]
-    assert "everything is fresh" in kinetree("plan", walked, "--until", "connectivity")[1]
+    assert "everything is up to date" in kinetree("plan", walked, "--until", "connectivity")[1]
 
 
 @pytest.mark.parametrize("name", ["nothing", "../../records/x", "\x1b[31m"])
@@ -410,14 +428,14 @@ def test_config_is_printed_in_full_and_read_back(kinetree, walked, tmp_path):
 
 def test_output_folder_is_found_from_within(kinetree, walked, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "walk")
-    assert "everything is fresh" in kinetree("plan", "--until", "connectivity")[1]
+    assert "everything is up to date" in kinetree("plan", "--until", "connectivity")[1]
 
 
 # ── the true command ────────────────────────────────────────────────────────────────────────────────────────────────
 
 
 def command(*arguments, **env):
-    code = "from kinetree.pipeline.cli import main; main()"
+    code = "from kinetree.tasks.application import main; main()"
     return subprocess.run(
         [sys.executable, "-c", code, *arguments], capture_output=True, env={**os.environ, **env}, check=False, timeout=120
     )
@@ -430,7 +448,7 @@ def test_terminal_that_knows_only_ascii_still_gets_an_answer(scans, tmp_path):
 
 
 def test_reader_that_stops_listening_is_no_error_of_ours(scans):
-    code = "from kinetree.pipeline.cli import main; main()"
+    code = "from kinetree.tasks.application import main; main()"
     shell = f"'{sys.executable}' -c '{code}' plan -i '{scans}' --json | head -n 1"
     done = subprocess.run(["/bin/sh", "-c", shell], capture_output=True, text=True, timeout=120, check=True)
     assert done.stdout == "{\n"

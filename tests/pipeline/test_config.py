@@ -7,16 +7,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.blocks import preset_names
+from kinetree.pipeline.blocks import Reading
 from kinetree.pipeline.config import Compute, load, with_compute
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import as_yaml
 from kinetree.pipeline.yaml_text import parsed
-from kinetree.tasks import METHODS
+from kinetree.tasks.application import APPLICATION
+
+PRESETS = Reading.of({}, APPLICATION.presets).preset_names
 
 
 def of(target=None, *sets):
-    return load(target, METHODS, sets)
+    return load(target, APPLICATION, sets)
 
 
 def refusal(target=None, *sets):
@@ -69,7 +71,7 @@ def test_chain_of_files_is_followed_to_its_end(write):
     assert config.params["mesh"].model_dump() == {"merge": 0.01, "component_share": 0.5}
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_loads_by_its_name_and_can_be_extended(name, write):
     assert of(write("mine.yaml", f"extends: {name}\n")).params == of(name).params
 
@@ -131,10 +133,10 @@ def test_tilde_is_the_users_home_and_an_unknown_one_a_name(write, tmp_path, monk
         ("compute: []", "compute: expected keys with values, got []"),
         ("compute: {workers: 0}", "compute.workers: input should be greater than or equal to 1, got 0"),
         ("compute: {worker: 2}", "compute.worker: no such key; did you mean 'workers'?"),
-        ("method: rebe", "method 'rebe'; there are: mesoscopic"),
-        ("method: mesoscopc", "method 'mesoscopc'; did you mean 'mesoscopic'?"),
-        ("method: [a]", "method ['a']; there are: "),
-        ("method: {a: b}", "method {'a': 'b'}; there are: "),
+        ("method: rebe", "method 'rebe': no such method; there are: mesoscopic"),
+        ("method: mesoscopc", "method 'mesoscopc': no such method; did you mean 'mesoscopic'?"),
+        ("method: [a]", "method ['a']: no such method; there are: "),
+        ("method: {a: b}", "method {'a': 'b'}: no such method; there are: "),
         ("output: 5", "output: expected the path of a folder, got 5; put it in quotes if it is one"),
         ("store: [a]", "store: expected the path of a folder, got ['a']"),
         ("output: ''", "output: expected the path of a folder, got ''"),
@@ -170,8 +172,8 @@ def test_every_wrong_key_is_told_at_once(write):
     [
         ("mesh:\n  merge: [1\nsequence: {}\n", 3, "expected ',' or ']'"),
         ("a: 1\n\tb: 2", 2, "cannot start any token"),
-        ("mesh: {}\nmesh: {}\n", 2, "key 'mesh' stands there twice"),
-        ("mesh:\n  merge: 0\n  merge: 1\n", 3, "key 'merge' stands there twice"),
+        ("mesh: {}\nmesh: {}\n", 2, "key 'mesh' is there twice"),
+        ("mesh:\n  merge: 0\n  merge: 1\n", 3, "key 'merge' is there twice"),
         ("mesh: *nothing\n", 1, "found undefined alias"),
         ("mesh: {[1]: 2}\n", 1, "found unhashable key"),
         ("ok: 1\nmesh: !!python/object/apply:os.system ['touch exploded']\n", 2, "could not determine a constructor"),
@@ -234,12 +236,12 @@ def test_what_cannot_be_extended_is_refused_with_what_can(write, parent):
     path = write("a.yaml", f"extends: {parent}")
     message = refusal(path)
     assert message.startswith(f"{path}: extends ")
-    assert message.endswith(f"which is neither a preset ({', '.join(preset_names())}) nor a file")
+    assert message.endswith(f"which is neither a preset ({', '.join(PRESETS)}) nor a file")
 
 
 def test_target_that_is_nothing_is_refused_with_the_presets(tmp_path):
     assert refusal(tmp_path / "no.yaml") == (
-        f"{tmp_path / 'no.yaml'}: no such file, output folder or preset; presets: {', '.join(preset_names())}"
+        f"{tmp_path / 'no.yaml'}: no such file, output folder or preset; presets: {', '.join(PRESETS)}"
     )
     assert refusal(tmp_path) == (
         f"{tmp_path}: no config.yaml in this folder, so it is not the output of a run; give a YAML file"
@@ -250,8 +252,8 @@ def test_target_that_is_nothing_is_refused_with_the_presets(tmp_path):
 
 
 @pytest.mark.parametrize("text", ["", "=", "=1", "mesh.merge", ".merge=1", "extends=default"])
-def test_set_that_sets_nothing_is_refused_with_an_example(text):
-    assert refusal(None, text) == f"--set {text}: write task.name=value, e.g. --set mesh.component_share=0.1"
+def test_set_that_sets_nothing_says_how_it_is_written(text):
+    assert refusal(None, text) == f"--set {text}: write task.name=value; kinetree tasks lists every parameter"
 
 
 @pytest.mark.parametrize(
@@ -350,7 +352,7 @@ def test_compute_is_replaced_where_something_is_said():
 
 
 def test_compute_preset_is_one_of_those_there_are():
-    assert refusal({"compute": "no-such-machine"}).startswith("compute 'no-such-machine'; ")
+    assert refusal({"compute": "no-such-machine"}).startswith("compute 'no-such-machine': no such compute settings; ")
 
 
 def test_workers_default_to_the_cores_this_process_may_use():

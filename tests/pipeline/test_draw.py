@@ -28,7 +28,7 @@ def test_mermaid_has_every_task_and_edge_and_thick_ones_for_gathers(tasks):
 
 def test_dot_has_every_task_and_edge_and_bold_ones_for_gathers(tasks):
     lines = draw(tasks, "dot").splitlines()
-    assert (lines[0], lines[-1]) == ("digraph kinetree {", "}")
+    assert (lines[0], lines[-1]) == ("digraph tasks {", "}")
     assert '    "mesh" [label="mesh · per frame"];' in lines
     assert '    "source" -> "mesh";' in lines
     assert '    "mesh" -> "connectivity" [style=bold];' in lines

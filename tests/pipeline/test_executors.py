@@ -75,7 +75,7 @@ def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, clus
 def parcel(toys, **blocks):
     """The first parcel of a run, as it would travel."""
     schedule = toys.pipeline(**blocks).schedule()
-    return schedule, _steps(schedule, schedule.travelling_with(next(schedule.ready())))
+    return schedule, _steps(schedule, schedule.send(next(schedule.ready())))
 
 
 def test_a_worker_with_other_code_refuses(toys):
@@ -121,7 +121,7 @@ def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
         assert [run["status"] for run in toys.pipeline().runs()] == ["running"]
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2
-    assert err.strip() == "kinetree: the scheduler cancelled the work; was it stopped? Run again to go on"
+    assert err.strip() == "toy: the scheduler cancelled the work; was it stopped? Run again to go on"
     (toys.flags / "wait-total-210").unlink()
     assert not {"points", "smooth"} & set(toys.run().counts)
 

@@ -225,7 +225,7 @@ def test_a_damaged_traversal_is_noticed_when_planning_and_mended(toys, calm):
     toys.clear()
     plan = toys.pipeline().plan()
     assert str(plan["order"]) == "order: stale (artifact: array frames was altered)"
-    assert str(plan["track[frame=0]"]) == "track[frame=0]: waits (on order)"
+    assert str(plan["track[frame=0]"]) == "track[frame=0]: waits (for order)"
     assert toys.run().ran == {"order"}
     assert toys.artifacts() == calm
 

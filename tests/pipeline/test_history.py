@@ -5,7 +5,7 @@ import json
 import pytest
 
 from kinetree.errors import UnknownNodeError
-from kinetree.pipeline.told import RunsTold
+from kinetree.pipeline.look import RunList
 
 
 def why(toys, node, **blocks):
@@ -14,8 +14,8 @@ def why(toys, node, **blocks):
 
 def test_a_node_that_never_ran_says_so(toys):
     assert why(toys, "points[0]") == "points[frame=0]: stale (never ran)"
-    assert why(toys, "total") == "total: waits (on smooth[frame=0], smooth[frame=1], smooth[frame=2] and 3 more)"
-    assert why(toys, "track[5]") == "track[frame=5]: waits (on order)"
+    assert why(toys, "total") == "total: waits (for smooth[frame=0], smooth[frame=1], smooth[frame=2] and 3 more)"
+    assert why(toys, "track[5]") == "track[frame=5]: waits (for order)"
 
 
 def test_a_changed_parameter_is_told_old_and_new(toys):
@@ -23,7 +23,7 @@ def test_a_changed_parameter_is_told_old_and_new(toys):
     changed = {"intervals": {"length": 3}}
     assert why(toys, "intervals", **changed) == "intervals: stale (params: length 2 → 3)"
     assert why(toys, "points[1]", **changed) == "points[frame=1]: fresh"
-    assert why(toys, "report", **changed) == "report: waits (on intervals)"
+    assert why(toys, "report", **changed) == "report: waits (for intervals)"
 
 
 def test_a_changed_input_is_named(toys):
@@ -39,7 +39,7 @@ def test_a_changed_input_is_named(toys):
     for n in range(4):
         (toys.frames / f"{n + 3:05d}.txt").unlink()
     assert why(toys, "total").startswith(
-        "total: stale (input: smooth[frame=3], smooth[frame=4], smooth[frame=5] and 1 more gone"
+        "total: stale (input: smooth[frame=3], smooth[frame=4], smooth[frame=5] and 1 more removed"
     )
 
 
@@ -63,8 +63,8 @@ def test_a_plan_counts_by_task(toys):
     rows = {row.task: str(row) for row in toys.pipeline(smooth={"grain": 20.0}).plan().tasks}
     assert rows["points"] == "points ×6: 6 fresh"
     assert rows["smooth"] == "smooth ×6: 6 stale — params: grain 10.0 → 20.0 ×6"
-    assert rows["cones"] == "cones ×0: more when intervals is there"
-    assert rows["total"].startswith("total: waits — waits on smooth[frame=0]")
+    assert rows["cones"] == "cones ×0: more once intervals is computed"
+    assert rows["total"].startswith("total: waits — waits for smooth[frame=0]")
 
 
 def test_reasons_are_told_against_the_last_run_into_the_same_folder(toys, tmp_path):
@@ -160,5 +160,5 @@ def test_what_is_told_reads_well_and_is_still_plain(toys):
     assert repr(runs).splitlines()[1].startswith(first["run"])
     assert runs._repr_html_().count("<tr>") == 1 + len(runs)
     told = toys.pipeline().diff(first["run"], second["run"])
-    assert "begins at smooth[frame=0]: params: grain 10.0 → 20.0" in repr(told)
-    assert "<script>" not in RunsTold([{"name": "<script>"}])._repr_html_()
+    assert "starts at smooth[frame=0]: params: grain 10.0 → 20.0" in repr(told)
+    assert "<script>" not in RunList([{"name": "<script>"}])._repr_html_()

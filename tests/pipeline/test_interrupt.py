@@ -3,8 +3,22 @@
 import json
 import os
 import signal
+from pathlib import Path
 
 import pytest
+
+
+def living(group: int) -> list[int]:
+    """The processes of a group that still run; one that ended and that nobody asked after does not."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, its_group = status.read_text().rpartition(")")[2].split()[:3]
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if int(its_group) == group and state not in "ZX":
+            found.append(int(status.parent.name))
+    return found
 
 
 @pytest.mark.parametrize(
@@ -28,7 +42,8 @@ def test_an_interrupted_run_says_so_and_the_next_goes_on(toys, tmp_path, blow, e
     (os.killpg if blow == signal.SIGINT else os.kill)(process.pid, blow)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert err.strip() == "kinetree: interrupted; what is finished is kept, run again to go on"
+    toys.until(lambda: not living(process.pid), "no process is left behind")
+    assert err.strip() == "toy: interrupted; what is finished is kept, run again to go on"
     told = json.loads((toys.output / "run.json").read_text())
     assert told["status"] == "interrupted"
     assert told["tasks"]["points"]["ran"] == 6
@@ -37,3 +52,26 @@ def test_an_interrupted_run_says_so_and_the_next_goes_on(toys, tmp_path, blow, e
     assert not {"points", "smooth"} & set(run.counts)
     assert run.told["status"] == "done"
     assert toys.artifacts() == toys.artifacts(store=store)
+
+
+@pytest.mark.parametrize("executor", ["sync", "threads", "processes"])
+def test_a_run_that_was_started_deaf_to_ctrl_c_stays_so_and_obeys_sigterm(toys, executor):
+    toys.flag("wait-total-210")
+    arguments = ("run", str(toys.yaml()), "--executor", executor, "--workers", "2", "--quiet")
+    process = toys.start(*arguments, deaf=True)
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
+    os.killpg(process.pid, signal.SIGINT)
+    (toys.flags / "wait-total-210").unlink()
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert json.loads((toys.output / "run.json").read_text())["status"] == "done"
+
+    (toys.flags / "waiting-total-210").unlink()
+    toys.flag("wait-total-210")
+    process = toys.start(*arguments, "--force", "total", deaf=True)
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins again", process)
+    os.kill(process.pid, signal.SIGTERM)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.strip() == "toy: interrupted; what is finished is kept, run again to go on"
+    toys.until(lambda: not living(process.pid), "no process is left behind")

@@ -123,7 +123,7 @@ def test_editing_a_formula_reruns_its_task_and_names_the_module(toys):
     toys.run()
     toys.edit("return value // grain * grain", "return grain * (value // grain)", "toy_sums.py")
     plan = toys.pipeline().plan()
-    assert str(plan["smooth[frame=3]"]) == "smooth[frame=3]: waits (on points[frame=3])"
+    assert str(plan["smooth[frame=3]"]) == "smooth[frame=3]: waits (for points[frame=3])"
     assert [str(r) for r in plan["points[frame=3]"].reasons] == [f"code: {toys.name}.toy_sums"]
     assert set(toys.run().counts) == TASKS
     assert toys.run().ran == set()

@@ -50,7 +50,7 @@ def test_wrong_index_is_refused_with_the_right_form(text):
 def test_what_is_no_node_is_refused_with_an_example(text):
     with pytest.raises(UnknownNodeError) as refused:
         parse(text, GRAPH)
-    assert str(refused.value) == f"{text!r} is no node; write a task, or a task with its index: mesh[frame=3]"
+    assert str(refused.value) == f"{text!r}: not a node; write a task, or a task with its index: source[frame=3]"
 
 
 def test_mistyped_task_is_refused_with_the_nearest():

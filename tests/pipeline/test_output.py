@@ -12,12 +12,12 @@ import yaml
 from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.config import load
 from kinetree.pipeline.output import write_config, write_run_json
-from kinetree.tasks import METHODS
+from kinetree.tasks.application import APPLICATION
 
 
 @pytest.fixture
 def config(tmp_path):
-    return load({"output": str(tmp_path / "deep" / "out"), "sequence": {"unit": "µm: #1"}}, METHODS)
+    return load({"output": str(tmp_path / "deep" / "out"), "sequence": {"unit": "µm: #1"}}, APPLICATION)
 
 
 def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
@@ -25,7 +25,7 @@ def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
     text = (config.output / "config.yaml").read_text()
     assert text.startswith("# The configuration of the last run into this folder; what is not here is the default.\n")
     assert yaml.safe_load(text) == config.saved()
-    assert load(config.output, METHODS) == config
+    assert load(config.output, APPLICATION) == config
 
 
 def test_account_is_left_as_json(config):

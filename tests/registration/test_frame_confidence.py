@@ -5,6 +5,7 @@ from typing import Any
 
 from stepwise import walk
 
+from kinetree.pipeline import views
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 
@@ -22,21 +23,21 @@ def told(uncovered: list[float], doubted: list[float] | None = None, first: int 
 def test_even_alignment_is_trusted_and_says_nothing() -> None:
     made = told([0.001] * 6)
     assert made.trusted.all()
-    assert made.remarks() == ()
+    assert views.remarks(made) == ()
     assert made.residual.tolist() == [0.005] * 6
 
 
 def test_frames_that_stand_out_are_told_as_runs() -> None:
     made = told([0.001, 0.2, 0.3, 0.001, 0.001, 0.2, 0.001, 0.001, 0.001])
     assert made.trusted.tolist() == [True, False, False, True, True, False, True, True, True]
-    assert made.remarks() == ("frames 11–12, 15 are not trusted: the body does not explain what is seen there",)
+    assert views.remarks(made) == ("frames 11–12, 15 are not trusted: the body does not explain what is seen there",)
 
 
 def test_limb_that_is_not_seen_is_told_where_the_frame_is_trusted() -> None:
     made = told([0.001] * 5, doubted=[0.0, 0.0, 0.12, 0.1, 0.0])
-    assert made.remarks() == ("frames 12–13 are trusted in part: up to 12% of the body is out of sight or in doubt",)
+    assert views.remarks(made) == ("frames 12–13 are trusted in part: up to 12% of the body is out of sight or in doubt",)
 
 
 def test_aligned_walk_is_trusted() -> None:
     assert walk().trust.trusted.all()
-    assert walk().trust.remarks() == ()
+    assert views.remarks(walk().trust) == ()

@@ -5,6 +5,7 @@ import pytest
 from rigs import spider
 from scipy.spatial.transform import Rotation
 
+from kinetree.pipeline import views
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.formats.bvh import continuous, euler_zxy
 
@@ -18,7 +19,7 @@ def body():
 
 
 def text(skeleton):
-    return bvh(skeleton).files(())["skeleton.bvh"].decode()
+    return views.files(bvh(skeleton), ())["skeleton.bvh"].decode()
 
 
 def read(skeleton, folder):
@@ -72,9 +73,9 @@ def test_frames_left_out_are_put_in_between(body):
     assert "Frame Time: 0.2" in lines
     rows = np.array([list(map(float, line.split())) for line in lines[lines.index("Frame Time: 0.2") + 1 :]])
     np.testing.assert_allclose(rows[11:14, :3], np.linspace(rows[10, :3], rows[13, :3], 4)[1:], atol=1e-6)
-    (told,) = bvh(gaps).remarks()
+    (told,) = views.remarks(bvh(gaps))
     assert "2 were put in between" in told
-    assert bvh(body).remarks() == ()
+    assert views.remarks(bvh(body)) == ()
 
 
 def test_angles_are_those_of_the_turns_even_where_two_axes_are_one():

@@ -5,6 +5,7 @@ import pytest
 from known import generated, observed, perfect
 
 from kinetree.errors import InputError
+from kinetree.pipeline import views
 from kinetree.schemas.results.evaluation import EvaluationParams
 from kinetree.schemas.results.truth import TruthParams
 from kinetree.tasks.results.evaluation import evaluation
@@ -54,7 +55,7 @@ def test_without_truth_there_is_nothing_to_say():
     told = evaluated(true=NOBODY)
     assert told.summary is None
     assert told.joints == ()
-    assert told.remarks() == ()
+    assert views.remarks(told) == ()
 
 
 def test_perfect_skeleton_is_found_whole():
@@ -70,7 +71,7 @@ def test_perfect_skeleton_is_found_whole():
     assert s.overlap_moving.iou == pytest.approx(100.0)
     assert s.length_variation < 60
     assert told.height == HEIGHT
-    assert told.remarks() == (f"{s.scored} of {s.scored} joints found at 0.00 % of the height",)
+    assert views.remarks(told) == (f"{s.scored} of {s.scored} joints found at 0.00 % of the height",)
 
 
 def test_generated_sequence_brings_its_own_truth_and_its_true_parts():
@@ -111,8 +112,8 @@ def test_joint_that_is_too_far_off_is_missing_and_spurious():
     lost = next(j for j in told.joints if j.name == PERFECT.names[FIRST])
     assert lost.found is None
     assert lost.nearest > 5.0
-    assert f"missing: {lost.name}" in told.remarks()
-    assert "1 spurious" in told.remarks()[0]
+    assert f"missing: {lost.name}" in views.remarks(told)
+    assert "1 spurious" in views.remarks(told)[0]
 
 
 def test_joint_too_many_is_spurious_and_one_edit_of_the_tree():
@@ -198,7 +199,7 @@ def test_frames_are_compared_by_their_numbers():
             some[field] = some[field][1::2]
     told = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **some, "frames": (1, 3, 5)}))
     assert told.summary.percent == 0.0
-    assert told.remarks()[-1] == "synth has 6 frames, of which 3 are compared"
+    assert views.remarks(told)[-1] == "synth has 6 frames, of which 3 are compared"
 
 
 def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
@@ -218,17 +219,17 @@ def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
 
 def test_truth_with_too_few_frames_is_refused():
     short = TRUTH.model_copy(update={"frames": (0, 1, 2), "positions": TRUTH.positions[:3]})
-    with pytest.raises(InputError, match=r"synth: it has frames 0 to 2, but not 3 of the 6 of the sequence, the first 3"):
+    with pytest.raises(InputError, match=r"frames 0 to 2, but 3 of the 6 frames of the sequence are missing, the first is 3"):
         evaluated(true=short)
 
 
 def test_truth_of_other_frames_altogether_is_refused():
-    with pytest.raises(InputError, match="but not 6 of the 6 of the sequence"):
+    with pytest.raises(InputError, match="but 6 of the 6 frames of the sequence are missing"):
         evaluated(true=TRUTH.model_copy(update={"frames": tuple(range(100, 106))}))
 
 
 def test_truth_of_another_sequence_is_refused():
-    with pytest.raises(InputError, match="do not lie in the body as joints do: it is the truth of another sequence"):
+    with pytest.raises(InputError, match="do not lie in the body: it is the truth of another sequence"):
         evaluated(true=TRUTH.model_copy(update={"positions": TRUTH.positions + 10 * HEIGHT}))
 
 
@@ -236,9 +237,9 @@ def test_truth_in_another_unit_is_converted_if_both_say_so_and_refused_if_it_can
     metres = TRUTH.model_copy(update={"positions": TRUTH.positions / 1000, "height": HEIGHT / 1000, "unit": "m"})
     assert PERFECT.unit == "mm"
     assert evaluated(true=metres).summary.percent == pytest.approx(0.0, abs=1e-9)
-    with pytest.raises(InputError, match=r"true joints span .* and the body .*; say the unit with truth\.unit"):
+    with pytest.raises(InputError, match=r"true joints measure .*, but the body .*; if the unit differs, set truth\.unit"):
         evaluated(true=metres.model_copy(update={"unit": None}))
-    with pytest.raises(InputError, match="synth is in ell and the sequence in mm; ell is none of"):
+    with pytest.raises(InputError, match="synth is in ell and the sequence in mm, but 'ell' cannot be converted"):
         evaluated(true=metres.model_copy(update={"unit": "ell"}))
 
 

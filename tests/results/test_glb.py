@@ -13,6 +13,7 @@ import pytest
 from gltf_reader import Glb as Read
 from rigs import skinned, spider
 
+from kinetree.pipeline import views
 from kinetree.schemas.results.glb import GlbParams
 from kinetree.tasks.results.glb import glb
 
@@ -39,7 +40,7 @@ print("HEADS" + json.dumps(found))
 
 
 def written(skeleton, **params):
-    return glb(skeleton, GlbParams(**{"scale": 1.0, **params})).files(())["skeleton.glb"]
+    return views.files(glb(skeleton, GlbParams(**{"scale": 1.0, **params})), ())["skeleton.glb"]
 
 
 def read(skeleton, **params):
@@ -98,16 +99,16 @@ def test_unknown_pace_is_thirty_frames_a_second_and_said_to_be_a_guess():
     unknown = spider(fps=None, unit=None)
     assert read(unknown).times[-1] == pytest.approx(11 / 30)
     assert read(unknown).json["asset"]["extras"]["fps_is_assumed"] is True
-    pace, size = glb(unknown, GlbParams()).remarks()
+    pace, size = views.remarks(glb(unknown, GlbParams()))
     assert "played at 30.0 frames a second" in pace
     assert "one was taken for 1 m" in size
 
 
 def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
     assert glb(body, GlbParams()).scale == 0.001
-    assert glb(body, GlbParams()).remarks() == ()
+    assert views.remarks(glb(body, GlbParams())) == ()
     assert glb(body, GlbParams(scale=2.0)).scale == 2.0
-    assert glb(spider(unit="ell"), GlbParams()).remarks() == (
+    assert views.remarks(glb(spider(unit="ell"), GlbParams())) == (
         "nobody says what the unit is: one was taken for 1 m; set sequence.unit or glb.scale",
     )
 

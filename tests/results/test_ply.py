@@ -8,6 +8,7 @@ import trimesh
 from rigs import skinned, spider
 
 from kinetree.errors import MeshError
+from kinetree.pipeline import views
 from kinetree.pipeline.key import file_digest
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
@@ -32,7 +33,7 @@ def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
     n = len(body.vertices)
     corner = {int(v): (f, c) for f, row in enumerate(body.faces) for c, v in enumerate(row)}
     at = np.array([corner[v] for v in range(n)])
-    files = ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body).files((7,))
+    files = views.files(ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body), (7,))
     assert list(files) == ["parts/frame_0007.ply"]
     found = trimesh.load(io.BytesIO(files["parts/frame_0007.ply"]), file_type="ply", process=False)
     np.testing.assert_allclose(found.vertices, skinned(body)[4], atol=1e-5)

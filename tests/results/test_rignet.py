@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from rigs import spider
 
+from kinetree.pipeline import views
 from kinetree.tasks.results.rignet import rignet
 
 
@@ -14,13 +15,13 @@ def body():
 
 
 def lines(skeleton):
-    told = rignet(skeleton).files(())["rignet/skeleton.txt"].decode().splitlines()
+    told = views.files(rignet(skeleton), ())["rignet/skeleton.txt"].decode().splitlines()
     return {word: [line.split()[1:] for line in told if line.split()[0] == word] for word in ("joints", "root", "hier", "skin")}
 
 
 def test_every_line_is_of_a_known_kind_and_no_joint_is_missing(body):
     told = lines(body)
-    assert sum(map(len, told.values())) == len(rignet(body).files(())["rignet/skeleton.txt"].decode().splitlines())
+    assert sum(map(len, told.values())) == len(views.files(rignet(body), ())["rignet/skeleton.txt"].decode().splitlines())
     assert [row[0] for row in told["joints"]] == list(body.names)
     np.testing.assert_allclose([[float(x) for x in row[1:]] for row in told["joints"]], body.rest)
 
@@ -43,7 +44,7 @@ def test_skin_gives_every_vertex_weights_that_sum_to_one(body):
 
 def test_mesh_beside_it_is_the_one_whose_vertices_are_numbered(body, tmp_path):
     path = tmp_path / "skeleton.obj"
-    path.write_bytes(rignet(body).files(())["rignet/skeleton.obj"])
+    path.write_bytes(views.files(rignet(body), ())["rignet/skeleton.obj"])
     found = trimesh.load(path, process=False, maintain_order=True)
     np.testing.assert_allclose(found.vertices, body.vertices, rtol=1e-7, atol=1e-7)
     np.testing.assert_array_equal(found.faces, body.faces)

@@ -3,6 +3,7 @@
 import numpy as np
 from rigs import skinned, spider
 
+from kinetree.pipeline import views
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.tasks.results.segmentation import segmentation
@@ -36,5 +37,5 @@ def test_every_frame_has_as_many_labels_as_its_file_has_vertices():
 def test_error_is_the_distance_between_skinned_and_aligned():
     _, _, found = gathered(shift=0.25)
     np.testing.assert_allclose([found.error, found.error_95], 0.25, rtol=1e-6)
-    (told,) = found.remarks()
+    (told,) = views.remarks(found)
     assert told.endswith("off the aligned ones by 0.25 mm (root mean square), 95 % below 0.25 mm")

@@ -7,6 +7,7 @@ import pytest
 from pydantic import ValidationError
 from rigs import spider
 
+from kinetree.pipeline import views
 from kinetree.schemas.results.skeleton_json import Document
 from kinetree.tasks.results.formats.document import schema
 from kinetree.tasks.results.skeleton_json import skeleton_json
@@ -18,7 +19,7 @@ def body():
 
 
 def text(skeleton):
-    return skeleton_json(skeleton).files(())["skeleton.json"].decode()
+    return views.files(skeleton_json(skeleton), ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):

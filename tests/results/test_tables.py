@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from rigs import spider
 
+from kinetree.pipeline import views
 from kinetree.tasks.results.formats.tables import bone_angles
 from kinetree.tasks.results.tables import tables
 
@@ -17,7 +18,7 @@ def body():
 
 
 def rows(skeleton, name):
-    return list(csv.reader(io.StringIO(tables(skeleton).files(())[f"tables/{name}.csv"].decode(), newline="")))
+    return list(csv.reader(io.StringIO(views.files(tables(skeleton), ())[f"tables/{name}.csv"].decode(), newline="")))
 
 
 def test_trajectories_are_a_row_a_frame_with_its_time(body):

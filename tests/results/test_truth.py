@@ -117,7 +117,7 @@ def test_what_cannot_be_read_is_refused_in_words(tmp_path: Path) -> None:
     (tmp_path / "a.bvh").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="not a text file"):
         read(file=str(tmp_path / "a.bvh"))
-    with pytest.raises(InputError, match=r"says nothing without truth\.file"):
+    with pytest.raises(InputError, match=r"needs truth\.file"):
         read(body=str(tmp_path / "body.npz"))
     (tmp_path / "b.json").write_text("{}")
     (tmp_path / "no.npz").write_text("no")

@@ -5,6 +5,7 @@ import pytest
 from rigs import skinned, spider
 
 from kinetree.errors import ConfigError
+from kinetree.pipeline import views
 from kinetree.schemas.results.usd import UsdParams
 from kinetree.tasks.results.formats import usd as exports
 from kinetree.tasks.results.usd import usd
@@ -15,7 +16,7 @@ needs_usd = pytest.mark.skipif(
 
 
 def written(skeleton, **params):
-    return usd(skeleton, UsdParams(**params)).files(())["skeleton.usda"]
+    return views.files(usd(skeleton, UsdParams(**params)), ())["skeleton.usda"]
 
 
 @pytest.fixture

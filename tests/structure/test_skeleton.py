@@ -5,6 +5,7 @@ import pytest
 from fitting import FIRST, FRAMES, arms, articulation
 from limbs import rotation
 
+from kinetree.pipeline import views
 from kinetree.schemas.structure.pose_refinement import PoseRefinement
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.structure.skeleton import skeleton
@@ -46,4 +47,4 @@ def test_fitted_frames_are_put_in_their_places() -> None:
 
 def test_skeleton_says_how_many_joints_it_has() -> None:
     known, _ = arms()
-    assert skeleton(articulation(known), ()).remarks() == ("3 joints and 1 ends of bones under root",)
+    assert views.remarks(skeleton(articulation(known), ())) == ("3 joints and 1 ends of bones under root",)

@@ -4,18 +4,19 @@ import numpy as np
 from pages import followed
 from rigs import spider
 
+from kinetree.pipeline import views
 from kinetree.schemas.topology.up_direction import UpDirectionParams
 from kinetree.tasks.topology.up_direction import up_direction
 
 
 def test_what_the_user_says_is_so() -> None:
     told = up_direction(followed(spider()), UpDirectionParams(up="-z"))
-    assert (told.up, told.axis, told.confidence, told.remarks()) == ("-z", ~2, 1.0, ())
+    assert (told.up, told.axis, told.confidence, views.remarks(told)) == ("-z", ~2, 1.0, ())
 
 
 def test_nothing_to_tell_by_is_said_to_be_a_guess() -> None:
     whole = followed(spider())
     told = up_direction(whole.model_copy(update={"positions": whole.positions[:0] * np.nan}), UpDirectionParams())
     assert (told.up, told.axis, told.confidence) == ("y", 1, 0.0)
-    assert "which is a guess" in told.remarks()[0]
-    assert "--set up_direction.up=" in told.remarks()[0]
+    assert "which is a guess" in views.remarks(told)[0]
+    assert "--set up_direction.up=" in views.remarks(told)[0]

@@ -1,15 +1,11 @@
 """A front that runs over the links of a surface in bands: Dijkstra's order without a heap (2014, Eq. 1: g)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Indices
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import ANYWHERE, BITS, Links
-from kinetree.tasks.numerics.geometry.surface import Surface
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.uint32]
-Topology = Links
 Room = tuple[Floats, Indices, Indices, Indices]
 
 BAND = 0.8  # mean edges: few links are shorter, so that hardly a vertex goes on before its distance is known
@@ -19,11 +15,6 @@ _0, _1, _8, _LOW = np.uint64(0), np.uint64(1), np.uint64(8), np.uint64(0xFF)
 _BITS, _SECTOR, _ANYWHERE = np.uint64(BITS), np.uint64((1 << BITS) - 1), np.uint64(ANYWHERE)
 _LAST, _LINE = np.uint64(BANDS - 1), np.uint64(7)
 IDLE, LATE = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFE)
-
-
-def topology(surface: Surface) -> Topology:
-    """What compiled propagation reads of a surface."""
-    return surface.links
 
 
 @compiled
@@ -45,7 +36,7 @@ def workspace(vertices: int, links: int) -> Room:
 
 
 @compiled
-def propagate(mesh: Topology, source: np.uint64, edge: float, radius: float, room: Room) -> None:
+def propagate(mesh: Links, source: np.uint64, edge: float, radius: float, room: Room) -> None:
     """Distances from one source into room[0]; the only state is `room`.
 
     source : vertex in the surface's own numbering
@@ -75,7 +66,7 @@ def enter(v: np.uint64, now: np.uint64, per_band: float, room: Room) -> None:
 
 
 @compiled
-def advance(now: np.uint64, mesh: Topology, per_band: float, radius: float, room: Room) -> None:
+def advance(now: np.uint64, mesh: Links, per_band: float, radius: float, room: Room) -> None:
     """Run the queue dry from band `now` on, and again wherever an edge is found to be a shorter path."""
     distance, _, _, filled = room
     last = min(radius * per_band, 2.0**26)
@@ -92,7 +83,7 @@ def advance(now: np.uint64, mesh: Topology, per_band: float, radius: float, room
 
 
 @compiled
-def _work_off(now: np.uint64, mesh: Topology, per_band: float, room: Room) -> None:
+def _work_off(now: np.uint64, mesh: Links, per_band: float, room: Room) -> None:
     """Follow the links straight on from every vertex due in one band, those included that it makes due in it."""
     first, link, onward, _, _ = mesh
     distance, due, waiting, filled = room
@@ -141,7 +132,7 @@ def _work_off(now: np.uint64, mesh: Topology, per_band: float, room: Room) -> No
 
 
 @compiled
-def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Topology, due: Indices) -> np.uint32:
+def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Links, due: Indices) -> np.uint32:
     """Read what these vertices will need: all at once, memory serves several of them in the time that it takes for one.
 
     Returns a number of no meaning, which must be kept lest the compiler leave out what nobody asks for.
@@ -156,7 +147,7 @@ def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Topology, d
 
 
 @compiled
-def _mend(mesh: Topology, per_band: float, radius: float, room: Room) -> np.uint64:
+def _mend(mesh: Links, per_band: float, radius: float, room: Room) -> np.uint64:
     """Queue every vertex that an edge brings nearer by much, to look around from there; the first band with one."""
     edge, along = mesh[3], mesh[4]
     distance, due, _, _ = room

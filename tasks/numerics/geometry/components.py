@@ -1,16 +1,14 @@
 """The largest connected piece of a surface: distances run over one piece only."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Longs = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import face_areas
 
 
-def largest_component(V: Floats, F: Ints) -> tuple[Longs, Longs, float]:
+def largest_component(V: Floats, F: Faces) -> tuple[Ints, Ints, float]:
     """The vertices and faces of the piece with the greatest area; pieces are what shared vertices connect.
 
     V, F    : (vertex, xyz) mesh unit · (face, corner)
@@ -20,8 +18,7 @@ def largest_component(V: Floats, F: Ints) -> tuple[Longs, Longs, float]:
     links = coo_array((np.ones(2 * len(F), bool), (F[:, [0, 1]].ravel(), F[:, [1, 2]].ravel())), shape=(len(V), len(V)))
     count, piece = connected_components(links, directed=False)
     of_face = piece[F[:, 0]]
-    area = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
-    areas = np.bincount(of_face, area, count)
+    areas = np.bincount(of_face, face_areas(V, F), count)
     largest = int(np.argmax(areas)) if areas.any() else int(of_face[0])
     kept = np.flatnonzero(piece == largest)
     number = np.full(len(V), -1)

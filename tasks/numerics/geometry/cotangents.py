@@ -5,10 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 _LEAST = 0.01  # of an edge's weight: a hundredth of 1/√3, what two equilateral triangles give
 _MOST = 20.0  # of a corner's cotangent: corners below 3° count as if they had 3°

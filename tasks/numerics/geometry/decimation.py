@@ -5,8 +5,7 @@ import numpy.typing as npt
 import trimesh
 from scipy.spatial import cKDTree
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
 def decimated(V: Floats, F: npt.NDArray[np.integer], count: int) -> tuple[Ints, Ints]:

@@ -11,12 +11,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Indices, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.visibility import DEPTH, MOST, Corners, Found, Rings, corners, edges_of, shine
 
-Floats = npt.NDArray[np.float64]
-Lengths = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.uint32]
 Codes = npt.NDArray[np.uint16]
 Records = npt.NDArray[np.void]
 

@@ -1,9 +1,8 @@
 """Neighbours of vertices over the edges of a mesh."""
 
 import numpy as np
-import numpy.typing as npt
 
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Ints
 
 
 def rings(F: Ints, vertices: int) -> tuple[Ints, Ints]:

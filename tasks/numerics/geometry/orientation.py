@@ -1,20 +1,16 @@
 """Which side of a surface is out: neighbouring faces made to agree, closed patches turned outwards, winding numbers."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Longs = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from kinetree.tasks.numerics.geometry.normals import area_vectors
 
 _FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
 _PRESSED = 1e-9  # the same for a closed patch
 
 
-def oriented(X: Floats, F: Ints) -> tuple[Flags, Longs]:
+def oriented(X: Floats, F: Faces) -> tuple[Flags, Ints]:
     """Which faces to turn so that neighbours agree and closed patches face outwards, and each face's component.
 
     A patch is what edges of exactly two faces connect. A closed patch is turned to positive volume; so is an open one
@@ -43,7 +39,7 @@ def oriented(X: Floats, F: Ints) -> tuple[Flags, Longs]:
     return turned, _numbered(component_root)
 
 
-def winding(P: Floats, X: Floats, F: Ints) -> Floats:
+def winding(P: Floats, X: Floats, F: Faces) -> Floats:
     """How often the surface winds round each point: 1 inside a closed one that faces outwards, 0 outside.
 
     Solid angles after Van Oosterom and Strackee 1983.
@@ -54,32 +50,19 @@ def winding(P: Floats, X: Floats, F: Ints) -> Floats:
     return _winding(np.ascontiguousarray(P), np.ascontiguousarray(X), np.ascontiguousarray(F))
 
 
-def half_edges(F: Ints) -> Ints:
+def half_edges(F: Faces) -> Faces:
     """(3 · face, end) ends, the smaller first, of half-edge 3f + k from corner k of face f to the next."""
     H = F[:, [1, 2, 0]]
     return np.stack([np.minimum(F, H), np.maximum(F, H)], axis=2).reshape(-1, 2)
 
 
-def _numbered(root: Longs) -> Longs:
+def _numbered(root: Ints) -> Ints:
     """Labels 0, 1, … instead of roots, in the order of the roots."""
     return (np.cumsum(root == np.arange(len(root))) - 1)[root]
 
 
 @compiled
-def area_vectors(X: Floats, F: Ints) -> Floats:
-    """(face, xyz) normals as long as the faces' areas."""
-    N = np.empty((len(F), 3))
-    for f in range(len(F)):
-        a, b, c = F[f]
-        for x in range(3):
-            y, z = (x + 1) % 3, (x + 2) % 3
-            N[f, x] = (X[b, y] - X[a, y]) * (X[c, z] - X[a, z]) - (X[b, z] - X[a, z]) * (X[c, y] - X[a, y])
-            N[f, x] *= 0.5
-    return N
-
-
-@compiled
-def lexicographic(rows: Ints, n: int) -> Longs:
+def lexicographic(rows: Faces, n: int) -> Ints:
     """Stable order of the rows of integers in [0, n): a counting sort per column, linear in rows + n."""
     order = np.arange(len(rows))
     for column in range(rows.shape[1] - 1, -1, -1):
@@ -96,7 +79,7 @@ def lexicographic(rows: Ints, n: int) -> Longs:
 
 
 @compiled
-def _find(parent: Longs, flip: Flags, f: int) -> int:
+def _find(parent: Ints, flip: Flags, f: int) -> int:
     """Root of face f; afterwards f hangs from it directly and flip[f] is relative to it."""
     root, relative = f, False
     while parent[root] != root:
@@ -108,7 +91,7 @@ def _find(parent: Longs, flip: Flags, f: int) -> int:
 
 
 @compiled
-def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
+def _patches(F: Faces, order: Ints) -> tuple[Ints, Flags, Flags, Ints]:
     """Per face: root of its patch, flip relative to it, whether it has an open end, root of its component.
 
     Edges are joined in the order of their vertices: where a surface cannot be oriented the cut does not depend on
@@ -149,7 +132,7 @@ def _patches(F: Ints, order: Longs) -> tuple[Longs, Flags, Flags, Longs]:
 
 
 @compiled
-def _winding(P: Floats, X: Floats, F: Ints) -> Floats:
+def _winding(P: Floats, X: Floats, F: Faces) -> Floats:
     out = np.zeros(len(P))
     for i in range(len(P)):
         total = 0.0

@@ -6,14 +6,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Indices, Ints, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import Links, linked
+from kinetree.tasks.numerics.geometry.morton_curve import morton_order
+from kinetree.tasks.numerics.geometry.normals import vertex_areas
 from kinetree.tasks.numerics.geometry.visibility import BLIND, NONE
-
-Floats = npt.NDArray[np.float64]
-Lengths = npt.NDArray[np.float32]
-Ints = npt.NDArray[np.int64]
-Indices = npt.NDArray[np.uint32]
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,6 @@ class Surface:
     twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
                   where a one-sided surface closes: faces are turned to agree wherever they can
     length      : (half-edge,) mesh unit
-    bends       : (vertex,) 1 where a shortest path may bend: total angle above 2π, or not one closed ring of faces
     links       : the straight lines from vertex to vertex along which distance spreads
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
     centre      : (xyz,) the surface's centre of area, mesh unit
@@ -48,7 +45,6 @@ class Surface:
     apex: Indices
     twin: Indices
     length: Lengths
-    bends: npt.NDArray[np.uint8]
     links: Links
     area: Floats
     centre: Floats
@@ -62,7 +58,7 @@ class Surface:
         V : (vertex, xyz) finite, mesh unit
         F : (face, corner) three different vertices each; vertices in no face are allowed and reached by nothing
         """
-        order = _along_a_curve(V)
+        order = morton_order(V)
         rank = np.empty_like(order)
         rank[order] = np.arange(len(order))
         corners: Ints = rank[F].reshape(-1, 3)
@@ -76,9 +72,8 @@ class Surface:
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
         inside = kind > 0
-        doubled_area = np.linalg.norm(np.cross(P[head[::3]] - P[tail[::3]], P[apex[::3]] - P[tail[::3]]), axis=1)
         area = np.zeros(len(P))
-        area[order] = np.bincount(tail, np.repeat(doubled_area / 6, 3), len(P))
+        area[order] = vertex_areas(P, corners)
         free = np.zeros(len(P), np.uint8)
         free[tail[twin >= BLIND]] = free[head[twin >= BLIND]] = 1
         free[np.bincount(np.repeat(np.arange(len(P)), np.diff(ring_start)), ~inside, len(P)) > 1] = 1
@@ -101,7 +96,6 @@ class Surface:
             apex=rings[3],
             twin=rings[4],
             length=rings[5],
-            bends=free | (np.bincount(tail, angle, len(P)) > 2 * np.pi),
             links=Links(*linked(rings, angle, free), np.stack([tail[edges], head[edges]], axis=1).astype(np.uint32), along),
             area=area,
             centre=(area[:, None] * V).sum(axis=0) / max(area.sum(), np.finfo(float).tiny),
@@ -112,16 +106,6 @@ class Surface:
 
 def _before(edge: Ints) -> Ints:
     return np.where(edge % 3 == 0, edge + 2, edge - 1)
-
-
-def _along_a_curve(V: Floats) -> Ints:
-    """Vertices sorted along a Morton curve of 1,024 cells a side."""
-    low = V.min(axis=0) if len(V) else np.zeros(3)
-    extent = max(float(np.ptp(V)), np.finfo(float).tiny) if len(V) else 1.0
-    cell = np.minimum((V - low) / extent * 1024, 1023).astype(np.int64)
-    for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
-        cell = (cell | cell << shift) & mask
-    return np.argsort(cell @ np.array([1, 2, 4]), kind="stable")
 
 
 def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
@@ -147,7 +131,7 @@ def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
 
 
 @compiled
-def _turned(partner: Ints, tail: Ints) -> npt.NDArray[np.bool_]:
+def _turned(partner: Ints, tail: Ints) -> Flags:
     """(face,) which to turn, so that faces agree with the first of their component, at most one of each two neighbours."""
     turned = np.zeros(len(tail) // 3, np.bool_)
     known, waiting = np.zeros(len(turned), np.bool_), np.empty(len(turned), np.int64)

@@ -1,11 +1,9 @@
 """How thick a body is at every point of its surface: the way through it to the other side."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 _TURN = 0.1  # what a turn of the normal counts against distance: enough that a neighbour is never the other side
 _CANDIDATES = 4

@@ -6,13 +6,10 @@ So the lines lie about equally dense in all directions, whatever the sizes of th
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Indices, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 
-Floats = npt.NDArray[np.float64]
-Lengths = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.uint32]
 Rings = tuple[Indices, Indices, Indices, Indices, Indices, Lengths, Lengths]
 Corners = tuple[Floats, Floats, Lengths, Lengths]
 Found = tuple[Indices, Lengths, Lengths, Lengths]

@@ -12,21 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from trimesh.exchange.gltf import load_glb
 from trimesh.exchange.ply import load_ply
 from trimesh.geometry import triangulate_quads
 
 from kinetree.errors import MeshError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 
 _MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
 _ENCODED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization"}
 
 
-def read_mesh(path: Path | str) -> tuple[Floats, Ints]:
+def read_mesh(path: Path | str) -> tuple[Floats, Faces]:
     """One mesh, its vertices exactly those of the file and in the file's order.
 
     STL has three vertices a face; the meshes of a GLB follow each other, placed as its scene says; polygons become
@@ -56,7 +53,7 @@ def read_mesh(path: Path | str) -> tuple[Floats, Ints]:
     return checked(V, F, str(path), first_index=int(path.suffix.lower() == ".obj"))
 
 
-def checked(V: Any, F: Any, name: str, first_index: int = 0) -> tuple[Floats, Ints]:
+def checked(V: Any, F: Any, name: str, first_index: int = 0) -> tuple[Floats, Faces]:
     """The mesh as contiguous float64 and int32, if it is one.
 
     V, F        : (vertex, xyz) · (face, corner), numbers of any kind
@@ -89,7 +86,7 @@ def suffixes() -> tuple[str, ...]:
     return tuple(_READERS)
 
 
-def _triangles(polygons: Any) -> NDArray[np.int64]:
+def _triangles(polygons: Any) -> Ints:
     """(face, corner)"""
     return np.asarray(triangulate_quads(polygons), dtype=np.int64).reshape(-1, 3)
 

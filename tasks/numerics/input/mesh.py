@@ -7,19 +7,15 @@ and faces turned inside out. Thresholds are relative to the mesh's own size, so 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinetree.errors import MeshError
+from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints, Labels
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.orientation import area_vectors, half_edges, lexicographic, oriented, winding
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Longs = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from kinetree.tasks.numerics.geometry.normals import area_vectors, face_areas
+from kinetree.tasks.numerics.geometry.orientation import half_edges, lexicographic, oriented, winding
 
 _NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
 _INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
@@ -56,9 +52,9 @@ class Cleaned:
     """
 
     V: Floats
-    F: Ints
-    vertex_map: Ints
-    face_origin: Ints
+    F: Faces
+    vertex_map: Labels
+    face_origin: Labels
     merged: int
     unreferenced: int
     degenerate: int
@@ -79,7 +75,7 @@ class Cleaned:
     volume: float
 
 
-def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0.05, name: str = "mesh") -> Cleaned:
+def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 0.05, name: str = "mesh") -> Cleaned:
     """Weld, drop what is no surface, orient outwards and keep the body; cleaning twice changes nothing more.
 
     Components are what shared edges connect. Kept are the largest, and those of at least `component_share` of the area
@@ -108,7 +104,7 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
     first = welded(X, merge)
     G = first[F]
     whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
-    area = np.linalg.norm(area_vectors(X, G[whole]), axis=1)
+    area = face_areas(X, G[whole])
     distinct, folded = _distinct(G[whole], area, component_share, len(V))
     origin, area = whole[distinct], area[distinct]
     G = G[origin]
@@ -149,7 +145,7 @@ def clean(V: Floats, F: Ints, *, merge: float = 1e-7, component_share: float = 0
     )
 
 
-def welded(X: Floats, tolerance: float) -> Ints:
+def welded(X: Floats, tolerance: float) -> Faces:
     """For every vertex the first vertex at its place.
 
     Closeness is carried along chains, so that the vertices that stay are further apart than `tolerance`.
@@ -174,7 +170,7 @@ def welded(X: Floats, tolerance: float) -> Ints:
     return first[cluster]
 
 
-def _body(X: Floats, F: Ints, component: Longs, shares: Floats, least: float) -> tuple[Flags, Flags]:
+def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float) -> tuple[Flags, Flags]:
     """(component,) large enough but wholly inside a larger one · (component,) to be kept."""
     large = shares >= min(least, float(shares.max()))
     inside = np.zeros(len(shares), dtype=bool)
@@ -190,7 +186,7 @@ def _body(X: Floats, F: Ints, component: Longs, shares: Floats, least: float) ->
     return inside, large & ~inside
 
 
-def _distinct(G: Ints, area: Floats, sheet: float, n: int) -> tuple[Longs, int]:
+def _distinct(G: Faces, area: Floats, sheet: float, n: int) -> tuple[Ints, int]:
     """One face, the first, for each set of corners, without pairs back to back unless they are a sheet.
 
     G, area : (face, corner) three different vertices below n · (face,)
@@ -211,7 +207,7 @@ def _distinct(G: Ints, area: Floats, sheet: float, n: int) -> tuple[Longs, int]:
     return np.sort(first[~paired]), int(copies[paired].sum())
 
 
-def _compacted(V: Floats, F: Ints, first: Ints) -> tuple[Floats, Ints, Ints]:
+def _compacted(V: Floats, F: Faces, first: Faces) -> tuple[Floats, Faces, Faces]:
     """Only the vertices in use, the faces that use them, and where every input vertex went (−1: nowhere)."""
     used = np.zeros(len(V), dtype=bool)
     used[F] = True
@@ -219,7 +215,7 @@ def _compacted(V: Floats, F: Ints, first: Ints) -> tuple[Floats, Ints, Ints]:
     return np.ascontiguousarray(V[used]), position[F], position[first]
 
 
-def _edge_counts(F: Ints, n: int) -> tuple[int, int, int, int]:
+def _edge_counts(F: Faces, n: int) -> tuple[int, int, int, int]:
     """How many edges have one face, more than two, two that disagree, and how many edges there are."""
     ends = half_edges(F)
     order = lexicographic(ends, n)
@@ -231,13 +227,13 @@ def _edge_counts(F: Ints, n: int) -> tuple[int, int, int, int]:
     return int((degree == 1).sum()), int((degree > 2).sum()), int(disagreeing.sum()), len(start)
 
 
-def _volume(X: Floats, F: Ints) -> float:
+def _volume(X: Floats, F: Faces) -> float:
     """Volume inside a closed surface that faces outwards, by the divergence theorem."""
     return float(np.einsum("fx,fx->", X[F[:, 0]] - X[F[0, 0]], area_vectors(X, F)) / 3)
 
 
 @compiled
-def _needles(X: Floats, F: Ints, area: Floats) -> int:
+def _needles(X: Floats, F: Faces, area: Floats) -> int:
     """How many faces are lower than a millionth of their longest edge."""
     count = 0
     for f in range(len(F)):

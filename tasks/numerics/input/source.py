@@ -15,13 +15,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.errors import SourceError
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked, suffixes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 _READ = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
 
@@ -78,8 +75,8 @@ class Frames:
     unit: str | None
     name: str
     _arrays: Mapping[str, Any]
-    _vertex_offsets: NDArray[np.int64]
-    _face_offsets: NDArray[np.int64]
+    _vertex_offsets: Ints
+    _face_offsets: Ints
 
     @classmethod
     def of(cls, arrays: Mapping[str, Any], name: str) -> "Frames":
@@ -112,7 +109,7 @@ class Frames:
     def __len__(self) -> int:
         return len(self._vertex_offsets) - 1
 
-    def mesh(self, t: int) -> tuple[Floats, Ints]:
+    def mesh(self, t: int) -> tuple[Floats, Faces]:
         """V (vertex, xyz) and F (face, corner) of frame t, which the caller may change; MeshError as `checked`."""
         if not 0 <= t < len(self):
             raise SourceError(f"{self.name}: there is no frame {t}; frames are 0 to {len(self) - 1}")
@@ -150,7 +147,7 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     return Frames.of(arrays, path)
 
 
-def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> NDArray[np.int64]:
+def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:
     """The offsets `key` into the array `of`, each frame holding at least one element."""
     if arrays[key].dtype.kind not in "iu" or len(arrays[key].shape) != 1 or arrays[key].shape[0] < 2:
         found = f"{arrays[key].dtype} {tuple(arrays[key].shape)}"

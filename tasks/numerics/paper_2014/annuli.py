@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
@@ -41,13 +43,7 @@ def steps(x: Floats) -> Step:
 
     x : (frame, vertex, xyz) mesh unit
     """
-    middle = x.mean(axis=1)
-    y = x - middle[:, None]
-    U, _, Vt = np.linalg.svd(y[:-1].transpose(0, 2, 1) @ y[1:])
-    turn = np.linalg.det(U) * np.linalg.det(Vt) < 0
-    Vt[turn, 2] *= -1
-    R = np.asarray((U @ Vt).transpose(0, 2, 1), dtype=np.float64)
-    return Step(R, middle[1:] - np.einsum("txy,ty->tx", R, middle[:-1]))
+    return Step(*rigid_motion(x[:-1], x[1:]))
 
 
 def left(x: Floats, step: Step) -> Floats:

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import splu
 
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.cotangents import Links, cotangent_links
-from kinetree.tasks.numerics.geometry.polar import turn_all, turn_towards
+from kinetree.tasks.numerics.geometry.rigid_fit import turn_all, turn_towards
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

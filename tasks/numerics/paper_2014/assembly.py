@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, fitted, placed, sums
 from kinetree.tasks.numerics.structure.spanning_tree import spanning
 
@@ -97,10 +98,7 @@ def rotations(V: Floats, y: Floats, mine: Bools) -> Floats:
     for t, at in enumerate(y):
         here = mine & np.isfinite(at[:, 0])
         if here.sum() >= 3:
-            P, Q = V[here] - V[here].mean(axis=0), at[here] - at[here].mean(axis=0)
-            U, _, Vt = np.linalg.svd(P.T @ Q)
-            Vt[2] *= np.sign(np.linalg.det(U @ Vt))
-            R[t] = (U @ Vt).T
+            R[t] = rigid_motion(V[here], at[here])[0]
             if known < 0:
                 R[:t] = R[t]
             known = t

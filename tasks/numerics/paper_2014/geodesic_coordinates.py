@@ -5,25 +5,24 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.geometry.components import largest_component
-from kinetree.tasks.numerics.geometry.geodesic_distance import EXACT, geodesic_distance
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
-def geodesic_coordinates(V: Floats, F: npt.NDArray[np.integer], leaf: npt.ArrayLike, exact: float = EXACT) -> Floats:
+def geodesic_coordinates(V: Floats, F: npt.NDArray[np.integer], leaf: npt.ArrayLike) -> Floats:
     """x_n(v) = g(v, leaf_n), the distance of every vertex to each leaf over the surface  (2014, Eq. 4).
 
     V, F    : (vertex, xyz) mesh unit · (face, corner)
     leaf    : (leaf,) vertices of the largest component; may be none
-    exact   : mean edges around each leaf in which distances are exact, see `geodesic_distance`
     returns : (leaf, vertex) mesh unit; NaN outside the largest component
     """
     kept, inner, _ = largest_component(V, np.asarray(F, np.int32))
     out = np.full((np.size(leaf), len(V)), np.nan)
     if np.size(leaf):
-        out[:, kept] = geodesic_distance(Surface.of(V[kept], inner), np.searchsorted(kept, leaf), exact=exact)
+        out[:, kept] = geodesic_distance(Surface.of(V[kept], inner), np.searchsorted(kept, leaf))
     return out
 
 

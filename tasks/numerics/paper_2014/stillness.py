@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -35,7 +36,8 @@ def rigid_gap(rest: Floats, x: Floats, area: Floats, V: Floats, F: Ints) -> floa
     noise = NOISE * size + SAG * edge
     least = np.inf
     for _ in range(ROUNDS):
-        moved = _moved(P, goal, w)
+        R, t = rigid_motion(P, goal, w)
+        moved = P @ R.T + t
         there = projected(moved, V, F)
         gap = float(np.quantile(there.distance, MOST)) / noise
         least = min(least, gap)
@@ -43,11 +45,3 @@ def rigid_gap(rest: Floats, x: Floats, area: Floats, V: Floats, F: Ints) -> floa
             break
         goal = np.einsum("vk,vkx->vx", there.share, V[F[there.face]])
     return least
-
-
-def _moved(P: Floats, Q: Floats, w: Floats) -> Floats:
-    """P by the rigid motion that takes it nearest to Q, weighted least squares (Kabsch 1976)."""
-    p, q = w @ P, w @ Q
-    U, _, Vt = np.linalg.svd((P - p).T @ (w[:, None] * (Q - q)))
-    Vt[2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))
-    return np.asarray((P - p) @ U @ Vt + q)

@@ -4,6 +4,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
+
 AROUND = 12
 """Vertices whose motion one without a place follows."""
 
@@ -48,9 +50,6 @@ def completed(rest: Floats, place: Floats) -> Floats:
     if len(bare):
         there = np.flatnonzero(known)
         near = there[cKDTree(rest[there]).query(rest[bare], k=min(AROUND, len(there)))[1].reshape(len(bare), -1)]
-        P, Q = rest[near], place[near]
-        p, q = P.mean(axis=1, keepdims=True), Q.mean(axis=1, keepdims=True)
-        U, _, Vt = np.linalg.svd((P - p).transpose(0, 2, 1) @ (Q - q))
-        Vt[:, 2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))[:, None]
-        out[bare] = ((rest[bare][:, None] - p) @ U @ Vt + q)[:, 0]
+        R, t = rigid_motion(rest[near], place[near])
+        out[bare] = np.einsum("vxy,vy->vx", R, rest[bare]) + t
     return out

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.morton_curve import spread_along_curve
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 
@@ -23,7 +24,6 @@ Ints = npt.NDArray[np.int64]
 BETA = 0.08  # what a turn of the normal counts against distance, share of the body's size
 COVERED = 0.0135  # a point of the frame is covered by a point of the body this near, share of the body's size
 ALIKE = 0.3  # and whose normal has at least this cosine with its own
-_CELLS = 7  # bits a side of the grid along which samples are spread
 _STEPS = 64  # a walk is never longer
 
 
@@ -61,30 +61,13 @@ class Target:
         """
         faces = F.astype(np.int64)
         N = smoothed_normals(V, faces)
-        sample = spread(V, samples)
+        sample = spread_along_curve(V, samples)
         tree = cKDTree(np.hstack([V[sample], BETA * size * N[sample]]), balanced_tree=False)
         return cls(np.ascontiguousarray(V), faces, N, *rings(faces, len(V)), sample, tree, BETA * size, size)
 
     def found(self, x: Floats, n: Floats) -> Ints:
         """(point,) the sample nearest to each point in (x, βn)."""
         return self.sample[self.tree.query(np.hstack([x, self.beta * n]))[1]]
-
-
-def spread(V: Floats, count: int) -> Ints:
-    """Vertices spread through space: every so many along a Morton curve, in whatever order the mesh lists them.
-
-    V       : (vertex, xyz)
-    count   : wanted, all if there are fewer
-    returns : (sample,) vertex numbers in the order of the curve
-    """
-    side = max(float(np.ptp(V, axis=0).max()), np.finfo(float).tiny)
-    cell = ((V - V.min(axis=0)) / side * (2**_CELLS - 1)).astype(np.int64)
-    code = np.zeros(len(V), np.int64)
-    for bit in range(_CELLS):
-        for axis in range(3):
-            code |= (cell[:, axis] >> bit & 1) << 3 * bit + axis
-    order = np.lexsort((V[:, 2], V[:, 1], V[:, 0], code))
-    return order[np.arange(min(count, len(V))) * len(V) // min(count, len(V))]
 
 
 @compiled

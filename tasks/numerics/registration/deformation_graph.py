@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.geometry.covering import covering, nearest_nodes
+from kinetree.tasks.numerics.geometry.nearest_nodes import nearest_nodes
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.sampling import farthest_points
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.geometry.thickness import opposite, thickness
 from kinetree.tasks.numerics.registration.block_system import pattern
@@ -94,7 +95,7 @@ def deformation_graph(
     size = float(np.sqrt(surface.area.sum()))
     N = smoothed_normals(V, F)
     spacing = _smoothed(np.clip(thickness(V, N, size) / (settings.thick * size), settings.finest, 1.0), faces)
-    node = covering(surface, spacing, settings.nodes)
+    node = farthest_points(surface, spacing, settings.nodes)
     nearest, distance = nearest_nodes(surface, node, NEIGHBOURS + 1)
     bound, weight = bindings(nearest[:, : BOUND + 1], distance[:, : BOUND + 1])
     near = _pairs(np.repeat(np.arange(len(node)), NEIGHBOURS), nearest[node, 1:].ravel())

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.rigid_fit import rotation_gain
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
@@ -23,8 +24,6 @@ ONE = 1.0  # two pieces stay two if together they cost more than this a frame, s
 _AROUND = 4  # nearest nodes that tell the spacing
 _EXTENT = 0.5  # a node stands for points this many spacings around it, which turn with it
 _FAR = 2.5  # ties longer than so many spacings join no pieces
-_ROUNDS = 60
-_EXACT = 1e-12
 
 
 class _Moments(NamedTuple):
@@ -123,35 +122,3 @@ def _joined(a: int, b: int, M: Floats, G: Floats, gg: Floats, P: Floats, pp: Flo
         left[t] = max(rest + posed - 2.0 * rotation_gain(H), 0.0)
     left.sort()
     return left.mean()
-
-
-@compiled
-def rotation_gain(H: Floats) -> float:
-    """Largest tr(Rᵀ H) over rotations R, the sum of H's singular values with the sign of det H on the smallest.
-
-    The largest root of (x² − |H|²)² = 4 (Σ minors² + 2 x det H), by Newton from above  (Horn 1987, quaternion quartic).
-
-    H : (3, 3)
-    """
-    square = minors = 0.0
-    for i in range(3):
-        for j in range(3):
-            i1, i2, j1, j2 = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
-            square += H[i, j] ** 2
-            minors += (H[i1, j1] * H[i2, j2] - H[i1, j2] * H[i2, j1]) ** 2
-    det = (
-        H[0, 0] * (H[1, 1] * H[2, 2] - H[1, 2] * H[2, 1])
-        - H[0, 1] * (H[1, 0] * H[2, 2] - H[1, 2] * H[2, 0])
-        + H[0, 2] * (H[1, 0] * H[2, 1] - H[1, 1] * H[2, 0])
-    )
-    x = np.sqrt(3.0 * square)
-    for _ in range(_ROUNDS):
-        u = x * x - square
-        slope = 4.0 * x * u - 8.0 * det
-        if not slope > 0.0:
-            break
-        nearer = x - (u * u - 4.0 * minors - 8.0 * det * x) / slope
-        if abs(nearer - x) <= _EXACT * x:
-            return nearer
-        x = nearer
-    return x

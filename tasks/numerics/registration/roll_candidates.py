@@ -12,6 +12,7 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.registration.correspondence import Target, walked
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
@@ -95,7 +96,7 @@ def roll_candidates(template: DeformationGraph, pose: Pose, target: Target, piec
     surface = target.V, target.N, target.start, target.ring
     for k, limb in enumerate(every):
         V, N = template.V[limb.sample] - limb.middle, template.N[limb.sample]
-        R, c = _carried(template.g[limb.node] - limb.middle, pose.translation[limb.node])
+        R, c = rigid_motion(template.g[limb.node] - limb.middle, pose.translation[limb.node])
         match = target.found(V @ R.T + c, N @ R.T)
         for h in range(TURNS):
             begun = R @ Rotation.from_rotvec(2.0 * np.pi * h / TURNS * limb.axis).as_matrix()
@@ -118,14 +119,6 @@ def untwisted(template: DeformationGraph, pose: Pose, piece: Ints, found: RollCa
             R[limb.node] = turned
             p[limb.node] = (template.g[limb.node] - limb.middle) @ turned.T + found.place[k, chosen[k]]
     return Pose(R, p)
-
-
-def _carried(g: Floats, p: Floats) -> tuple[Floats, Floats]:
-    """The rigid motion R, c that carries g nearest to p, in least squares (Kabsch)."""
-    U, _, Vt = np.linalg.svd((p - p.mean(axis=0)).T @ (g - g.mean(axis=0)))
-    U[:, 2] *= np.sign(np.linalg.det(U @ Vt))
-    R = U @ Vt
-    return R, p.mean(axis=0) - R @ g.mean(axis=0)
 
 
 def _about(axis: Floats, R: Floats) -> Floats:

@@ -15,7 +15,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.normals import area_vectors, smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import rotations
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 
@@ -123,7 +123,7 @@ def _distances(
 ) -> tuple[float, float, float, float]:
     """The smaller part's distances to frame f: root mean squares as one piece and alone, medians as one and as aligned."""
     V, F = evidence.surface(f)
-    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    n = area_vectors(V, F)
     n /= np.maximum(np.linalg.norm(n, axis=1, keepdims=True), np.finfo(float).tiny)
     both = np.concatenate([own, others])
     count = np.bincount(parts.label, minlength=parts.R.shape[1])[[small, large]] / (len(own), len(others))

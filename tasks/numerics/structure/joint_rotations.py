@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotation
 
 POSES = 96
 """Frames whose rotations are compared each with each."""
@@ -37,9 +38,7 @@ def joint_degrees(R: Floats, parents: Ints, turns: Flags) -> Floats:
 
 def mean_rotation(turns: Floats) -> Floats:
     """(3, 3) the rotation nearest to the mean of those given (frame, 3, 3)."""
-    U, _, Vt = np.linalg.svd(turns.mean(axis=0))
-    U[:, 2] *= np.sign(np.linalg.det(U @ Vt))
-    return U @ Vt
+    return nearest_rotation(turns.mean(axis=0))
 
 
 def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool, N: Floats | None = None) -> float:

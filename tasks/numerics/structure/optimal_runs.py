@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, residual
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, residual
 from kinetree.tasks.numerics.structure.patch_merging import costs
 
 
@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.structure.patch_merging import costs
 def runs(M: Floats, penalty: float, least: int) -> Ints:
     """The cut of a chain of rings that minimises Σ residual of the runs + penalty · (number of runs); ours.
 
-    M       : (ring, frame, 17) sums of every ring, from the leaf on; see `rigid_moments.MOMENTS`
+    M       : (ring, frame, 17) sums of every ring, from the leaf on; see `rigid_fit.MOMENTS`
     penalty : what one more run must save, mesh unit² times weight
     least   : rings in a run; the whole chain is one run if it has fewer than two such
     returns : (ring,) number of the run of every ring, ascending from 0
@@ -63,7 +63,7 @@ def runs(M: Floats, penalty: float, least: int) -> Ints:
 def merge_growth(M: Floats, reach: int) -> Floats:
     """Growth of the rigid residual when the rings before a border and the rings behind it become one rigid piece.
 
-    M       : (ring, frame, 17) sums of every ring; see `rigid_moments.MOMENTS`
+    M       : (ring, frame, 17) sums of every ring; see `rigid_fit.MOMENTS`
     reach   : rings that count on either side, fewer at the ends of the chain
     returns : (ring − 1,) for the border behind every ring but the last, mesh unit² times weight, summed over frames
     """

@@ -7,9 +7,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.geometry.covering import covering
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
+from kinetree.tasks.numerics.geometry.sampling import farthest_points
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.leaf_cones import cones
 from kinetree.tasks.numerics.structure.optimal_runs import merge_growth, runs
@@ -84,7 +84,7 @@ def cone_runs(
     out = ConeRuns(outside, outside.copy(), outside.copy(), np.full(shape, -1, np.int64), np.full(shape, np.nan))
     if not len(leaves):
         return out
-    distance = geodesic_distance(surface, leaves, exact=0.0)
+    distance = geodesic_distance(surface, leaves)
     extent = cones(distance, surface.area, leaves, start, ring, chosen.rings, chosen.pocket)
     out.cone[:] = _cone_of_vertices(distance, extent, chosen.clearly_nearer)
     total = 0
@@ -141,7 +141,7 @@ def patches(surface: Surface, V: Floats, start: Ints, ring: Ints, count: int) ->
     start, ring : neighbours of every vertex
     count       : patches
     """
-    centre = covering(surface, np.ones(len(V)), count)
+    centre = farthest_points(surface, np.ones(len(V)), count)
     tail = np.repeat(np.arange(len(V)), np.diff(start))
     length = np.linalg.norm(V[tail] - V[ring], axis=1)
     graph = csr_array((length, ring, start), shape=(len(V), len(V)))

@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, added, motion
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, added, motion
 
 ROUNDS = 3  # of fitting and weighting anew
 

@@ -6,13 +6,13 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.rigid_moments import MOMENTS, residual
+from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, residual
 
 
 def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:
     """Neighbouring patches joined, the pair whose residual grows least first.
 
-    M       : (patch, frame, 17) sums of every patch; see `moments.MOMENTS`
+    M       : (patch, frame, 17) sums of every patch; see `rigid_fit.MOMENTS`
     pairs   : (pair, 2) patches that touch
     count   : groups to leave; patches that do not touch stay apart, however many there are
     limit   : growth of the residual beyond which nothing is joined, mesh unit² times weight, summed over frames

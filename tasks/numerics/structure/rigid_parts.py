@@ -12,6 +12,7 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated
 from kinetree.tasks.numerics.structure.oversegmentation import ConeRuns, OversegmentationSettings, cone_runs, grouped, patches
@@ -168,7 +169,7 @@ def _normalised_parts(
 ) -> RigidParts:
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
-    body = NormalisedBody(V, _normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
+    body = NormalisedBody(V, vertex_normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
     first = chosen.first_cut or OversegmentationSettings()
     patch = patches(surface, V, body.start, body.ring, first.patches)
     cones, initial = _first_cut(surface, body, patch, leaves, first)
@@ -235,11 +236,3 @@ def _refitted(body: NormalisedBody, label: Ints, floor: float) -> tuple[Ints, In
     R, t = np.empty((len(body.x), len(first), 3, 3)), np.empty((len(body.x), len(first), 3))
     fit(body.V, body.x, body.weight, body.area, label, np.ones(len(first), np.bool_), False, len(label), floor, R, t)
     return used[np.argsort(first)], label, R, t
-
-
-def _normals(V: Floats, F: Ints) -> Floats:
-    """(vertex, xyz) unit, area-weighted means of the faces around; 0 where they cancel."""
-    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    N = np.stack([np.bincount(F.ravel(), np.repeat(n[:, k], 3), len(V)) for k in range(3)], axis=1)
-    unit: Floats = N / np.maximum(np.linalg.norm(N, axis=1, keepdims=True), np.finfo(float).tiny)
-    return unit

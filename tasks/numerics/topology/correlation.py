@@ -11,10 +11,10 @@ Frames meet as summaries, never as vertices: a summary is a histogram of 2,000 f
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Floats
+
 Normalisation = Literal["sequence", "frame"]
 
 FINE = 2000

@@ -3,15 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from kinetree.errors import ConfigError, DisconnectedMeshError
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.bucketed_dijkstra import Topology, propagate, topology, workspace
+from kinetree.tasks.numerics.geometry.bucketed_dijkstra import propagate, workspace
+from kinetree.tasks.numerics.geometry.geodesic_graph import Links
+from kinetree.tasks.numerics.geometry.sampling import farthest_points_with_fields
 from kinetree.tasks.numerics.geometry.surface import Surface
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -43,12 +42,8 @@ def farthest_bases(surface: Surface, count: int = 200) -> Bases:
     """
     if count < 1:
         raise ConfigError(f"{count} bases were asked for; μ needs at least 1, and 200 miss it by less than 0.5 %")
-    first = int(np.argmax(((surface.position - surface.centre) ** 2).sum(axis=1)))
-    rank = np.empty_like(surface.order)
-    rank[surface.order] = np.arange(len(rank))
-    wanted = min(count, len(rank))
-    vertex, distance, cell = _spread(topology(surface), rank, surface.order, surface.edge, first, wanted)
-    _refuse_infinite(distance[0], first)
+    vertex, distance, cell = farthest_points_with_fields(surface, count)
+    _refuse_infinite(distance[0], int(vertex[0]))
     weight = np.bincount(cell, surface.area, len(vertex)).astype(np.float64)
     return Bases(vertex, distance, cell, weight)
 
@@ -75,7 +70,7 @@ def mu_from_every_vertex(surface: Surface, weight: Floats | None = None) -> Floa
     raises  : DisconnectedMeshError if a vertex cannot be reached
     """
     counted = np.ones(len(surface.order)) if weight is None else np.ascontiguousarray(weight, np.float64)
-    total, unreached, source = _streamed_sum(topology(surface), surface.order, surface.edge, counted)
+    total, unreached, source = _streamed_sum(surface.links, surface.order, surface.edge, counted)
     if unreached:
         raise DisconnectedMeshError(_disconnected(unreached, len(total), source))
     return total
@@ -95,31 +90,6 @@ def _disconnected(unreached: int, vertices: int, source: int) -> str:
 
 
 @compiled
-def _spread(mesh: Topology, rank: Ints, order: Ints, edge: float, first: int, count: int) -> tuple[Ints, Floats, Ints]:
-    """Farthest-point sampling: (base,) vertices, (base, vertex) distances and (vertex,) nearest base, all as input."""
-    vertices = len(order)
-    vertex = np.empty(count, np.int64)
-    distance = np.empty((count, vertices))
-    cell = np.zeros(vertices, np.int64)
-    nearest = np.full(vertices, np.inf)
-    room = workspace(vertices, len(mesh[1]))
-    base = first
-    for b in range(count):
-        vertex[b] = base
-        propagate(mesh, np.uint64(rank[base]), edge, np.inf, room)
-        for i in range(vertices):
-            distance[b, order[i]] = room[0][i]
-        base = 0
-        for v in range(vertices):
-            if distance[b, v] < nearest[v]:
-                nearest[v] = distance[b, v]
-                cell[v] = b
-            if nearest[v] > nearest[base]:
-                base = v
-    return vertex, distance, cell
-
-
-@compiled
 def _weighted_sum(distance: Floats, weight: Floats) -> Floats:
     """Row by row in a fixed order: a library's product may split the sum by its number of threads."""
     total = np.zeros(distance.shape[1])
@@ -130,7 +100,7 @@ def _weighted_sum(distance: Floats, weight: Floats) -> Floats:
 
 
 @compiled
-def _streamed_sum(mesh: Topology, order: Ints, edge: float, weight: Floats) -> tuple[Floats, int, int]:
+def _streamed_sum(mesh: Links, order: Ints, edge: float, weight: Floats) -> tuple[Floats, int, int]:
     """Σ_u w_u g(u, ·) and, if some vertex is out of reach, how many are and from which source."""
     vertices = len(order)
     total = np.zeros(vertices)

@@ -9,11 +9,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 # Cost that forbids a pair; far above any sum of distances in units of the body's size.
 _NEVER = 1e9
@@ -117,7 +115,7 @@ def gaps(tracks: Ints) -> list[Gap]:
     return lost
 
 
-def bridged(tracks: Ints, stems: Sequence[Floats], longest: int = 3) -> tuple[Floats, npt.NDArray[np.bool_]]:
+def bridged(tracks: Ints, stems: Sequence[Floats], longest: int = 3) -> tuple[Floats, Flags]:
     """Where every track's tip is, with short gaps filled on the straight line between the sights around them.
 
     tracks  : (track, frame)
@@ -137,7 +135,7 @@ def bridged(tracks: Ints, stems: Sequence[Floats], longest: int = 3) -> tuple[Fl
     return X, tracks >= 0
 
 
-def _matched(cost: Floats, steady: npt.NDArray[np.bool_], gate: float, margin: float) -> tuple[Ints, Ints]:
+def _matched(cost: Floats, steady: Flags, gate: float, margin: float) -> tuple[Ints, Ints]:
     """Tracks and the leaves they take: first those seen in the frame before, then the lost ones, where it is safe.
 
     cost   : (track, leaf), infinite where a pair is out of the question

@@ -3,9 +3,8 @@
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Flags, Floats
 
 DIRECTIONS: tuple[Literal["x", "y", "z", "-x", "-y", "-z"], ...] = ("x", "y", "z", "-x", "-y", "-z")
 """Directions that may be up."""
@@ -46,7 +45,7 @@ def up_direction(X: Floats) -> Direction:
     return Direction(int(best), float(np.clip(1.0 - score[second] / score[best], 0.0, 1.0)) if score[best] > 0.0 else 0.0)
 
 
-def _standing(height: Floats, seen: npt.NDArray[np.bool_]) -> float:
+def _standing(height: Floats, seen: Flags) -> float:
     """Share of the tips on the ground, and of those with the lowest of their frame."""
     lowest = np.nanmin(height, axis=0)
     on_ground = height - np.quantile(lowest, 0.1) < GROUND

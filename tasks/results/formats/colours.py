@@ -1,28 +1,47 @@
-"""The colours of parts, the same in every format."""
+"""The colours of files, pictures and pages, all defined here."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.schemas.array import Ints
-from kinetree.tasks.numerics.results.scene import shades
+from kinetree.schemas.array import Floats, Ints
+from kinetree.tasks.numerics.results.scene import part_colouring
 
-PARTS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F")
-"""Okabe and Ito's, grey for black."""
-BLENDING = "#FFFFFF"
-"""Surface that is not rigid."""
+BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
+ORANGE, SKY, YELLOW, BLACK, GREY = "#E69F00", "#56B4E9", "#F0E442", "#000000", "#7F7F7F"
+"""Okabe and Ito's eight colours, which colour-blind people can tell apart, and a grey."""
+PARTS = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, YELLOW, GREY)
+"""Of rigid parts."""
+LINES = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, YELLOW)
+"""Of curves, in the order in which they are used."""
+KINDS = {"root": BLACK, "joint": VERMILION, "leaf": BLUE}
+"""Of joints, by kind."""
+SURFACE_LEAF = GREEN
+"""Of leaves where they are seen on the surface."""
+NOT_RIGID = "#FFFFFF"
+"""Of surface that is not rigid."""
 
 
 def part_colours(label: Ints, faces: Ints) -> NDArray[np.uint8]:
-    """(part + 1, rgb) sRGB of every part, parts that touch in other colours; the last row is for label −1."""
-    chosen = shades(np.asarray(label), faces, len(PARTS))
-    return np.array([_rgb(PARTS[c]) for c in chosen] + [_rgb(BLENDING)], np.uint8)
+    """Colours of all parts; parts that touch have different ones.
+
+    label   : (vertex,) part, −1 where the surface is not rigid
+    faces   : (face, corner)
+    returns : (part + 1, rgb) sRGB, 0 to 255; the last row is for label −1
+    """
+    chosen = part_colouring(np.asarray(label), faces, len(PARTS))
+    return np.array([_rgb(PARTS[c]) for c in chosen] + [_rgb(NOT_RIGID)], np.uint8)
 
 
-def linear(srgb: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Bytes of sRGB as linear light, 0 to 1 (IEC 61966-2-1)."""
+def linear(srgb: NDArray[np.uint8]) -> Floats:
+    """Linear light of sRGB colours (IEC 61966-2-1).
+
+    srgb    : (…,) 0 to 255
+    returns : (…,) 0 to 1
+    """
     c = srgb / 255.0
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
-def _rgb(text: str) -> tuple[int, ...]:
-    return tuple(bytes.fromhex(text[1:]))
+def _rgb(hexadecimal: str) -> tuple[int, ...]:
+    """Three numbers from 0 to 255 of a colour such as #0072B2."""
+    return tuple(bytes.fromhex(hexadecimal[1:]))

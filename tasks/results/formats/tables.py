@@ -26,9 +26,7 @@ def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
     names, X = skeleton.names, skeleton.positions
     pairs, angles = bone_angles(skeleton)
     lengths = skeleton.lengths
-    bones = [
-        (names[p], names[j], _number(lengths[j]), skeleton.unit or "") for j, p in enumerate(skeleton.parents) if p >= 0
-    ]
+    bones = [(names[p], names[j], _number(lengths[j]), skeleton.unit or "") for j, p in enumerate(skeleton.parents) if p >= 0]
     return {
         "positions.csv": _series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
         "confidence.csv": _series(skeleton, names, skeleton.confidence),

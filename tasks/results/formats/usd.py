@@ -13,10 +13,10 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.results.glb import ASSUMED_FPS
 from kinetree.schemas.results.usd import UsdParams
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.results.formats.colours import linear, part_colours
 from kinetree.tasks.results.formats.names import identifiers
 from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames
-from kinetree.tasks.results.formats.units import METRES
 
 
 def usd(skeleton: Skeleton, params: UsdParams) -> bytes:

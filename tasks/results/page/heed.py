@@ -9,8 +9,10 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.results.scene import spread
+from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.formats.rig import skinned
+from kinetree.tasks.views.structure import skeleton_remarks
+from kinetree.tasks.views.topology import leaves_remarks
 
 SHORT = 5
 """Frames below which an interval or a sequence is worth a warning."""
@@ -34,7 +36,7 @@ def heeded(
 def off(skeleton: Skeleton, aligned: Mapping[int, Alignment]) -> float:
     """Root mean square distance between the skin and the aligned meshes of some frames, share of the body's diagonal."""
     size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
-    shown = spread(len(skeleton.frames), LOOKED_AT)
+    shown = evenly_spread(len(skeleton.frames), LOOKED_AT)
     squared = [np.sum((skinned(skeleton, int(t)) - aligned[skeleton.frames[t]].vertices) ** 2, axis=1).mean() for t in shown]
     return float(np.sqrt(np.mean(squared))) / max(size, 1e-300)
 
@@ -47,7 +49,7 @@ def counted(count: int, what: str) -> str:
 def _of_skeleton(skeleton: Skeleton, aligned: Mapping[int, Alignment]) -> Iterator[str]:
     inner = [j for j, kind in enumerate(skeleton.kinds) if kind == "joint"]
     if not inner:
-        yield from skeleton.remarks()
+        yield from skeleton_remarks(skeleton)
     if len(skeleton.frames) < SHORT:
         yield f"{counted(len(skeleton.frames), 'frame')} only: joints are seen in motion, more frames show more of them"
     share = off(skeleton, aligned)
@@ -83,7 +85,7 @@ def _of_frames(
     doubted = [str(frame) for frame, a in aligned.items() if a.doubted > 0.5]
     if doubted:
         yield f"the alignment is not trusted in {_some(doubted, 'frame')}; poses there come from the whole model"
-    yield from (text for text in leaves.remarks() if "not seen" in text or "no leaves" in text)
+    yield from (text for text in leaves_remarks(leaves) if "not seen" in text or "no leaves" in text)
     for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
         if end - begin + 1 < SHORT < len(intervals.frames):
             yield f"interval {number} is short: {counted(end - begin + 1, 'frame')} from frame {intervals.frames[int(begin)]}"

@@ -17,7 +17,7 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.decimation import decimated
-from kinetree.tasks.numerics.results.scene import Lattice, shades, spread
+from kinetree.tasks.numerics.results.scene import Lattice, evenly_spread, part_colouring
 from kinetree.tasks.results.plots.drawing import view
 
 PALETTE = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F")
@@ -65,7 +65,7 @@ def scene(
 
     up : see `view`
     """
-    shown = spread(len(skeleton.frames), limits.frames)
+    shown = evenly_spread(len(skeleton.frames), limits.frames)
     frames = [skeleton.frames[t] for t in shown]
     axes = view([meshes[frame].vertices for frame in frames], up)
     kept, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
@@ -90,7 +90,7 @@ def scene(
         at = [leaves.frames.index(frame) for frame in frames]
         arrays["leaves"] = (leaves.positions[:, at].transpose(1, 0, 2) @ axes).astype(np.float32)
     told, block = packed(arrays)
-    colours = shades(np.asarray(skeleton.label), skeleton.faces, len(PALETTE))
+    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PALETTE))
     described = {
         "frames": frames,
         "fps": skeleton.fps,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from kinetree.errors import ConfigError
 from kinetree.schemas.array import Floats, Ints
+from kinetree.tasks.results.formats.colours import LINES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,8 +21,7 @@ Fetch = Callable[..., Any]
 FORMATS = (".png", ".svg", ".pdf")
 """How a picture's name may end."""
 BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
-"""Okabe and Ito's eight, which the colour-blind can tell apart."""
+COLOURS = LINES
 
 
 def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tuple[Figure, Any]":

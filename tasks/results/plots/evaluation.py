@@ -6,7 +6,9 @@ import numpy as np
 
 from kinetree.errors import ConfigError
 from kinetree.schemas.results.evaluation import Evaluation
+from kinetree.tasks.results.formats.colours import VERMILION
 from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, blank
+from kinetree.tasks.views.results import evaluation_remarks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +39,7 @@ def drawn(told: Evaluation) -> "Figure":
             over.plot(told.frames, share[:, j], lw=1.1, label=told.joints[j].name, **style)
             beside.errorbar(told.joints[j].percent, k, xerr=share[:, j].std(), fmt="o", ms=4, capsize=2, color=style["color"])
         else:
-            beside.annotate("missing", (0.0, k), fontsize=7, va="center", color="#D55E00")
+            beside.annotate("missing", (0.0, k), fontsize=7, va="center", color=VERMILION)
     over.set(ylabel="error / height, %", ylim=(0, None), title=_title(told))
     names = [f"{told.joints[j].name}  {_length(told, j)}" for j in shown]
     beside.set(yticks=range(len(shown)), xlim=(0, None), xlabel="mean ± deviation over the frames, % of the height")
@@ -54,7 +56,7 @@ def drawn(told: Evaluation) -> "Figure":
 
 
 def _title(told: Evaluation) -> str:
-    return told.remarks()[0] if told.summary is not None else "no truth"
+    return evaluation_remarks(told)[0] if told.summary is not None else "no truth"
 
 
 def _length(told: Evaluation, j: int) -> str:

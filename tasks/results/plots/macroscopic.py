@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinetree.schemas.array import Artifact, Floats
+from kinetree.tasks.results.formats.colours import BLUE, ORANGE, VERMILION
 from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, levels, surface, view
 
 if TYPE_CHECKING:
@@ -24,10 +25,10 @@ def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     below.set(xlabel="frame", ylabel="cue / its threshold", xlim=(t[0] - 0.5, t[-1] + 0.5), ylim=(0, None))
     below.legend(fontsize=7, ncols=len(cut.cue_names))
     for number, (begin, end) in enumerate(zip(cut.begin, cut.end, strict=True)):
-        axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color="#0072B2" if number % 2 else "#E69F00", alpha=0.12, lw=0)
+        axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color=BLUE if number % 2 else ORANGE, alpha=0.12, lw=0)
     axes.plot(between, series.correlation, color="black", marker=".", lw=1)
     for end, cues in zip(cut.end[:-1], cut.cues, strict=True):
-        axes.axvline(t[end] + 0.5, color="#D55E00", lw=1)
+        axes.axvline(t[end] + 0.5, color=VERMILION, lw=1)
         axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.5), xycoords=("data", "axes fraction"), fontsize=7)
     axes.set(ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
     count = len(cut.begin)

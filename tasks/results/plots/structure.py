@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgba
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.results.scene import shades
+from kinetree.tasks.numerics.results.scene import part_colouring
 from kinetree.tasks.results.formats.rig import skinned
 from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, surface, view
 
@@ -73,7 +73,7 @@ def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def part_colours(found: Skeleton) -> Floats:
     """(face, 4) pale colours of the parts, white where a face is not rigid or lies between two."""
-    shade = shades(np.asarray(found.label), found.faces, len(PALE))
+    shade = part_colouring(np.asarray(found.label), found.faces, len(PALE))
     corners = found.label[found.faces]
     label = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], -1)
     colour: Floats = np.ones((len(label), 4))

@@ -3,13 +3,13 @@
 import numpy as np
 import shapes
 
-from kinetree.tasks.numerics.geometry.bucketed_dijkstra import propagate, topology, workspace
+from kinetree.tasks.numerics.geometry.bucketed_dijkstra import propagate, workspace
 from kinetree.tasks.numerics.geometry.surface import Surface
 
 
 def test_what_the_workspace_held_before_leaves_no_trace() -> None:
     surface = Surface.of(*shapes.sphere(3))
-    mesh = topology(surface)
+    mesh = surface.links
     fresh, used = (workspace(len(surface.order), len(surface.links.link)) for _ in range(2))
     propagate(mesh, np.uint64(5), surface.edge, np.inf, fresh)
     propagate(mesh, np.uint64(400), surface.edge, 0.7, used)
@@ -24,5 +24,5 @@ def test_one_long_edge_among_short_ones_is_waited_for() -> None:
     surface = Surface.of(np.concatenate([V, [[29.0, 400.0, 0.0]]]), np.concatenate([F, [[898, 899, tip]]]))
     room = workspace(len(surface.order), len(surface.links.link))
     inside = np.flatnonzero(surface.order == 0)[0]
-    propagate(topology(surface), np.uint64(inside), surface.edge, np.inf, room)
+    propagate(surface.links, np.uint64(inside), surface.edge, np.inf, room)
     assert np.isclose(room[0][np.flatnonzero(surface.order == tip)[0]], np.hypot(29, 29) + 371.0, rtol=0.01)

@@ -9,19 +9,20 @@ import numpy.typing as npt
 import pytest
 import shapes
 import trimesh
+from exact_distances import exact_distances
 
 from kinetree.errors import MeshError
-from kinetree.tasks.numerics.geometry.geodesic_distance import EXACT, geodesic_distance
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
-def relative_error(V: Floats, F: Ints, source: Ints, exact: Floats, near: float = EXACT) -> Floats:
+def relative_error(V: Floats, F: Ints, source: Ints, exact: Floats) -> Floats:
     """Signed, at vertices more than four mean edges from their source: nearer, one edge's worth is all there is."""
     surface = Surface.of(V, F)
-    found = geodesic_distance(surface, source, exact=near)
+    found = geodesic_distance(surface, source)
     far = exact > 4 * surface.edge
     assert far.any()
     return (found - exact)[far] / exact[far]
@@ -226,13 +227,6 @@ def test_a_source_that_is_no_vertex_is_refused(source: list[float], words: str) 
         geodesic_distance(Surface.of(V, F), source)
 
 
-def exact_distances(V: Floats, F: Ints, source: Ints) -> Floats:
-    """(source, vertex) by another program's exact algorithm (Mitchell, Mount, Papadimitriou 1987)."""
-    peer = pytest.importorskip("pygeodesic.geodesic", reason="pygeodesic computes the exact distances")
-    solver = peer.PyGeodesicAlgorithmExact(V, F.astype(np.int32))
-    return np.array([solver.geodesicDistances(np.array([s]), None)[0] for s in source])
-
-
 def test_exact_distances_of_another_program_are_met_on_a_rough_body_with_a_sharp_rim() -> None:
     V, F, _ = shapes.y_pipe(arm=40, half_width=7)
     V = V + np.random.default_rng(3).normal(scale=0.08, size=V.shape)
@@ -243,28 +237,6 @@ def test_exact_distances_of_another_program_are_met_on_a_rough_body_with_a_sharp
     assert np.quantile(error, 0.999) < 0.02
     surface = Surface.of(V, F)
     assert np.abs(geodesic_distance(surface, source) - exact).max() < 1.5 * surface.edge
-    assert np.allclose(geodesic_distance(surface, source[:3], exact=np.inf), exact[:3], rtol=1e-5)
-
-
-def test_what_is_asked_to_be_exact_is_exact_and_what_lies_beyond_is_not_worse_for_it() -> None:
-    V, F, _ = shapes.y_pipe()
-    surface = Surface.of(V, F)
-    source = np.arange(0, len(V), 97)
-    truth = geodesic_distance(surface, source, exact=np.inf)
-    mean = []
-    for exact in (0.0, 6.0, 12.0):
-        found = geodesic_distance(surface, source, exact=exact)
-        near = truth <= exact * surface.edge
-        assert np.allclose(found[near], truth[near], rtol=1e-5)
-        mean.append(np.abs(found - truth)[truth > 12 * surface.edge].mean())
-    assert mean[0] > mean[1] > mean[2] > 0
-
-
-def test_exact_distances_are_symmetric_and_obey_the_triangle_inequality() -> None:
-    V, F, _ = shapes.y_pipe(arm=12, half_width=3)
-    g = geodesic_distance(Surface.of(V, F), np.arange(len(V)), exact=np.inf)
-    assert np.allclose(g, g.T, rtol=1e-5)
-    assert (g[:, :, None] - (g[:, None, ::7] + g[::7].T[None])).max() < 1e-5 * g.max()
 
 
 @pytest.mark.data

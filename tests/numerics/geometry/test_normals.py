@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+import trimesh
 from shapes import flat_grid, sphere
 
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.normals import area_vectors, face_areas, smoothed_normals, vertex_areas, vertex_normals
 
 
 @pytest.mark.parametrize("rounds", [0, 2, 5])
@@ -40,3 +41,23 @@ def test_normals_turn_with_the_surface_and_back_when_it_is_turned_inside_out():
         Q[:, 0] *= -1
     np.testing.assert_allclose(smoothed_normals(V @ Q.T, F), smoothed_normals(V, F) @ Q.T, atol=1e-12)
     np.testing.assert_allclose(smoothed_normals(V, F[:, ::-1]), -smoothed_normals(V, F), atol=1e-12)
+
+
+def test_areas_and_normals_of_a_box_are_those_of_its_sides():
+    box = trimesh.creation.box((1.0, 2.0, 3.0))
+    V, F = np.array(box.vertices), np.array(box.faces)
+    np.testing.assert_allclose(area_vectors(V, F), box.face_normals * box.area_faces[:, None], atol=1e-12)
+    np.testing.assert_allclose(face_areas(V, F), box.area_faces)
+    assert vertex_areas(V, F).sum() == pytest.approx(22.0)
+
+
+def test_area_of_a_vertex_is_a_third_of_the_faces_around_it():
+    V, F = flat_grid(5, 5)
+    area = vertex_areas(V, F).reshape(5, 5)
+    np.testing.assert_allclose(area[1:-1, 1:-1], 1.0)
+    assert vertex_areas(np.vstack([V, V[:1]]), F)[-1] == 0.0
+
+
+def test_vertex_normals_without_smoothing_are_the_smoothed_ones_of_no_rounds():
+    V, F = sphere(2)
+    np.testing.assert_array_equal(vertex_normals(V, F), smoothed_normals(V, F, 0))

@@ -47,16 +47,3 @@ def test_every_edge_is_in_the_rings_of_both_its_ends() -> None:
         found = {(int(surface.order[a]), int(surface.order[b])) for a, b in zip(owner, surface.ring >> 1, strict=True)}
         sides = F[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         assert found == {(int(a), int(b)) for a, b in sides} | {(int(b), int(a)) for a, b in sides}
-
-
-def test_paths_may_bend_at_borders_and_saddles_but_not_on_a_ball() -> None:
-    ball, flat = Surface.of(*shapes.sphere(2)), Surface.of(*shapes.flat_grid(5, 5))
-    assert not ball.bends.any()
-    assert sorted(flat.order[flat.bends == 1]) == [v for v in range(25) if v // 5 in (0, 4) or v % 5 in (0, 4)]
-
-
-def test_paths_may_bend_where_two_balls_touch() -> None:
-    V, F = shapes.sphere(2)
-    joined = np.where(F == 0, len(V), F + len(V) + 1)
-    surface = Surface.of(np.concatenate([V, V[:1], 2 * V[0] - V]), np.concatenate([F, np.where(joined == len(V), 0, joined)]))
-    assert surface.order[surface.bends == 1].tolist() == [0]

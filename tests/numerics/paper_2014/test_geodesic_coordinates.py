@@ -19,8 +19,6 @@ CORNERS = np.array([0, 11, 15 * 12])
 def test_coordinates_of_a_leaf_are_nought_there_and_straight_lines_on_a_plane():
     X = geodesic_coordinates(SHEET, FACES, CORNERS)
     np.testing.assert_array_equal(X[np.arange(3), CORNERS], 0.0)
-    exact = geodesic_coordinates(SHEET, FACES, CORNERS, exact=np.inf)
-    np.testing.assert_allclose(exact, np.linalg.norm(SHEET[CORNERS][:, None] - SHEET[None], axis=2), rtol=1e-5)
     np.testing.assert_allclose(X, np.linalg.norm(SHEET[CORNERS][:, None] - SHEET[None], axis=2), rtol=0.01)
 
 

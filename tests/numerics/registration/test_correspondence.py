@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.registration.correspondence import Target, covered, spread, uncovered, walked
+from kinetree.tasks.numerics.registration.correspondence import Target, covered, uncovered, walked
 
 
 @pytest.fixture(scope="module")
@@ -54,18 +54,6 @@ def test_neighbours_are_mutual_and_six_on_a_regular_part():
     pairs = {(v, int(u)) for v in range(len(start) - 1) for u in ring[start[v] : start[v + 1]]}
     assert pairs == {(u, v) for v, u in pairs}
     assert (np.diff(start)[20:50] == 6).all()
-
-
-def test_samples_spread_evenly_in_whatever_order_the_mesh_lists_its_vertices():
-    V, _ = tube(around=40, along=80)
-    order = np.random.default_rng(0).permutation(len(V))
-    assert {tuple(x) for x in V[spread(V, 300)]} == {tuple(x) for x in V[order][spread(V[order], 300)]}
-    assert cKDTree(V[spread(V, 300)]).query(V)[0].max() < 1.5
-
-
-def test_as_many_samples_as_vertices_are_all_of_them():
-    V, _ = tube()
-    np.testing.assert_array_equal(np.sort(spread(V, 10**6)), np.arange(len(V)))
 
 
 def test_a_body_covers_itself_and_a_missing_half_is_uncovered(frame):

@@ -6,7 +6,7 @@ from limbs import LENGTH, rotation, tube
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters, rotation_gain
+from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
 
 ANGLES = (0.3, 0.6, 0.9)
 
@@ -61,14 +61,3 @@ def test_the_order_of_frames_and_the_scale_change_nothing(body):
     scaled = [Pose(p.rotation, 1024.0 * p.translation) for p in poses]
     np.testing.assert_array_equal(larger.node, body.node)
     np.testing.assert_array_equal(first, rigid_clusters(larger, scaled))
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_the_gain_of_a_matrix_is_its_signed_singular_values(sign):
-    rng = np.random.default_rng(0)
-    for _ in range(50):
-        H = rng.standard_normal((3, 3))
-        H *= sign * np.sign(np.linalg.det(H))
-        s = np.linalg.svd(H)[1]
-        assert rotation_gain(H) == pytest.approx(s[0] + s[1] + sign * s[2], rel=1e-7)
-    assert rotation_gain(np.zeros((3, 3))) == 0.0

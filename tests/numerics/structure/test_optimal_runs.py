@@ -4,7 +4,7 @@ import articulated
 import numpy as np
 from limbs import bent, tube
 
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.structure.optimal_runs import merge_growth, runs
 from kinetree.tasks.numerics.structure.patch_merging import costs
 

@@ -3,7 +3,7 @@
 import numpy as np
 from limbs import bent, tube
 
-from kinetree.tasks.numerics.geometry.rigid_moments import moments
+from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.structure.patch_merging import costs, merged
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from pages import page
 
+from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.tasks.results.page.document import as_script, table
 
@@ -42,7 +43,7 @@ def test_what_ran_is_laid_into_the_page_harmlessly():
     text = page()
     assert text.count(RUN) == 1
     report = Report(text=np.frombuffer(text.encode(), np.uint8))
-    told = report.page({"run": EVIL}).decode()
+    told = views.page(report, {"run": EVIL}).decode()
     assert RUN not in told
     found = re.search(r'<script type="application/json" id="told">(.*?)</script>', told)
     assert found is not None

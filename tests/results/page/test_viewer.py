@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pages import page
 
+from kinetree.pipeline import views
 from kinetree.schemas.results.report import Report
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -35,7 +36,7 @@ def browser() -> Iterator[Any]:
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     report = Report(text=np.frombuffer(page("a <script>alert(1)</script> walk", warnings=["leaf 2"]).encode(), np.uint8))
     out = tmp_path_factory.mktemp("page") / "report.html"
-    out.write_bytes(report.page(RAN))
+    out.write_bytes(views.page(report, RAN))
     return out
 
 

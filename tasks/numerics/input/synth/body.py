@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.input.synth.cameras import Cameras, camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.contacts import Contact, merging, touching
 from kinetree.tasks.numerics.input.synth.defects import punctured, roughened
@@ -26,9 +26,6 @@ from kinetree.tasks.numerics.input.synth.losses import Dropped
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations, true_joints
 from kinetree.tasks.numerics.input.synth.skins import Skin
 from kinetree.tasks.numerics.input.synth.surfacing import spacing_for, surface
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 MOST_FRAMES = 1_000_000
 _SURFACE, _NOISE, _HOLES, _REST = range(4)
@@ -172,7 +169,7 @@ class Body:
         low, high = self._box
         return camera_ring(count, 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)), size, elevation)
 
-    def silhouettes(self, t: int, cameras: Cameras) -> npt.NDArray[np.bool_]:
+    def silhouettes(self, t: int, cameras: Cameras) -> Flags:
         """(camera, row, column) what the cameras see of frame t's mesh."""
         return silhouettes(*self.frame(t), cameras)
 
@@ -207,7 +204,7 @@ class Body:
                 cones = merging(self.figure, self.flesh, contact, cones)
         return cones
 
-    def _missing(self, t: int) -> npt.NDArray[np.bool_] | None:
+    def _missing(self, t: int) -> Flags | None:
         lost = [d.limbs for d in self.dropped if d.begin <= t <= d.end]
         return np.any(lost, axis=0) if lost else None
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -58,7 +55,7 @@ def camera_ring(
     return Cameras(P, size)
 
 
-def silhouettes(V: Floats, F: Ints, cameras: Cameras) -> npt.NDArray[np.bool_]:
+def silhouettes(V: Floats, F: Ints, cameras: Cameras) -> Flags:
     """What every camera sees of a mesh: pixels whose centre lies in the image of some face.
 
     V       : (vertex, xyz) in front of every camera, F : (face, corner)

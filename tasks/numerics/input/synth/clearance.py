@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import shortest_path
 
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
-
-Floats = npt.NDArray[np.float64]
 
 _STEPS = 8
 # Balls nearer to each other along the tree than this multiple of their radii are neighbours, not limbs that may meet.

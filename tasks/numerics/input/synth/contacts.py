@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.descriptions import suggestion, triple
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.implicit import Cones, values
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics
-
-Floats = npt.NDArray[np.float64]
 
 _KEYS = ("limb", "target", "begin", "end", "ramp", "direction")
 # The end of a limb sinks into the target by this share of its radius: enough for any sensible voxel to merge them.

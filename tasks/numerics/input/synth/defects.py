@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import vertex_normals
 
 # Share of the noise's variance that varies smoothly over the surface, as errors of silhouettes and stereo do.
 _SMOOTH_SHARE = 0.4
 _WAVES = 32
-
-
-def vertex_normals(V: Floats, F: Ints) -> Floats:
-    """(vertex, xyz) unit normals, faces weighted by area; zero at a vertex without a face."""
-    N = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    summed = np.stack([np.bincount(F.ravel(), np.repeat(N[:, k], 3), minlength=len(V)) for k in range(3)], axis=1)
-    return np.asarray(summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300), dtype=np.float64)
 
 
 def roughened(V: Floats, F: Ints, sigma: float, wavelength: float, rng: np.random.Generator) -> Floats:

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import (
     Joint,
     Motion,
@@ -36,8 +36,6 @@ from kinetree.tasks.numerics.input.synth.descriptions import (
     refuse_unknown,
     suggestion,
 )
-
-Floats = npt.NDArray[np.float64]
 
 _FIGURE_KEYS = ("name", "unit", "fps", "joints", "motions")
 
@@ -77,7 +75,7 @@ class Figure:
         return [joint.name for joint in self.joints]
 
     @property
-    def parents(self) -> npt.NDArray[np.int64]:
+    def parents(self) -> Ints:
         """(joint,) index of the parent, −1 at the root."""
         return np.array([joint.parent for joint in self.joints], dtype=np.int64)
 

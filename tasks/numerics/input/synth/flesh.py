@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import Joint
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.implicit import Cones
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 _KNOTS = 17
 # A limb shorter than this multiple of its radius is a link: the limbs at its two ends meet in one crease.
@@ -37,7 +34,7 @@ class Flesh:
     members: Ints
     reach: Floats
     slope: float
-    neighbours: npt.NDArray[np.bool_]
+    neighbours: Flags
 
     @classmethod
     def of(cls, figure: Figure) -> Flesh:
@@ -61,7 +58,7 @@ class Flesh:
         slope = float(np.sqrt(1.0 + steps.max() ** 2))
         return cls(parent, child, side, table, flat, first, members, reach, slope, neighbours)
 
-    def at(self, X: Floats, G: Floats, without: npt.NDArray[np.bool_] | None = None) -> Cones:
+    def at(self, X: Floats, G: Floats, without: Flags | None = None) -> Cones:
         """The limbs at a pose, those of `without` absent.
 
         X, G    : (joint, xyz) positions, (joint, 3, 3) world rotations

@@ -11,12 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 _BLOCK = 4
 
@@ -41,7 +38,7 @@ class Cones(NamedTuple):
     slope: float
 
 
-def values(cones: Cones, P: Floats, near: npt.NDArray[np.bool_] | None = None) -> tuple[Floats, Floats]:
+def values(cones: Cones, P: Floats, near: Flags | None = None) -> tuple[Floats, Floats]:
     """Field and its approximate unit gradient at points: negative inside, about the distance near the surface.
 
     P       : (point, xyz)

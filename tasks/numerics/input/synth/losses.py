@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.arrays import Flags
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 
@@ -26,7 +26,7 @@ class Dropped:
     joint: int
     begin: int
     end: int
-    limbs: npt.NDArray[np.bool_]
+    limbs: Flags
 
     @classmethod
     def of(cls, figure: Figure, flesh: Flesh, row: Mapping[str, Any], frames: int) -> Dropped:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import Curve, Motion
 from kinetree.tasks.numerics.input.synth.figures import Figure
-
-Floats = npt.NDArray[np.float64]
 
 _SCORED_DEGREES = 15.0
 # A joint that turns less than this in the clip leaves its two sides one rigid part.
@@ -53,7 +51,7 @@ def joint_rotations(figure: Figure, motion: Motion, seconds: Floats) -> tuple[Fl
     return R, shift
 
 
-def forward_kinematics(rest: Floats, parents: npt.NDArray[np.int64], R: Floats, shift: Floats) -> tuple[Floats, Floats]:
+def forward_kinematics(rest: Floats, parents: Ints, R: Floats, shift: Floats) -> tuple[Floats, Floats]:
     """Positions and world rotations: x_j = x_p + G_p (r_j − r_p), G_j = G_p R_j.
 
     rest    : (joint, xyz), parents before their children; parents : (joint,), −1 at the root

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.clearance import clearance
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations
-
-Floats = npt.NDArray[np.float64]
 
 _SECONDS = np.linspace(0.0, 4.0, 61)
 # Limbs stay this share of the height apart, which is more than a voxel from about 2,000 vertices on.

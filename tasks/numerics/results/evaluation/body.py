@@ -1,57 +1,80 @@
-"""The body's surface in every frame, as far as an evaluation needs it: its size, and how thick it is at a joint."""
+"""The body's surface in one frame, as an evaluation needs it: its position, its size, its thickness at a joint."""
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Indices = npt.NDArray[np.integer]
-LEAST_INSIDE = 0.5
-LEAST_SPAN = 0.2
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.results.evaluation.settings import EvaluationSettings
+
+Numbers = npt.NDArray[np.integer]
+"""Indices of joints, of any integer type."""
 
 
-def skinned(V: Floats, influence: Indices, weight: Floats, rest: Floats, R: Floats, X: Floats) -> Floats:
-    """One frame's surface, x(v) = Σ_i w_vi [R_i (v − rest_i) + x_i].
+def blended_skin(V: Floats, influence: Numbers, weight: Floats, rest: Floats, R: Floats, X: Floats) -> Floats:
+    """The surface in one frame by linear blend skinning, x(v) = Σ_i w_vi [R_i (v − rest_i) + x_i].
 
-    V                 : (vertex, xyz) reference mesh, mesh unit
-    influence, weight : (vertex, k) joints each vertex follows, and how much
-    rest, X           : (joint, xyz) joints in the reference and in the frame, mesh unit
-    R                 : (joint, 3, 3) from the reference to the frame
-    returns           : (vertex, xyz) mesh unit
+    V         : (vertex, xyz) reference mesh, mesh unit
+    influence : (vertex, slot) joints that each vertex follows
+    weight    : (vertex, slot) how much it follows each, rows sum to 1
+    rest      : (joint, xyz) joints in the reference pose, mesh unit
+    R         : (joint, 3, 3) rotation of each joint from the reference pose to the frame
+    X         : (joint, xyz) joints in the frame, mesh unit
+    returns   : (vertex, xyz) mesh unit
     """
-    turned = np.einsum("vkab,vkb->vka", R[influence], V[:, None] - rest[influence]) + X[influence]
-    return np.asarray(np.einsum("vk,vka->va", weight, turned))
+    rotated = np.einsum("vkab,vkb->vka", R[influence], V[:, None] - rest[influence]) + X[influence]
+    return np.asarray(np.einsum("vk,vka->va", weight, rotated))
 
 
-def side(V: Floats) -> float:
-    """Longest side of the bounding box, mesh unit: the edge of the cube into which the body fits."""
+def longest_side(V: Floats) -> float:
+    """Longest side of the bounding box, which is the side of the cube into which the body fits.
+
+    V       : (vertex, xyz) mesh unit
+    returns : mesh unit
+    """
     return float(np.ptp(V, axis=0).max())
 
 
-def inside(V: Floats, points: Floats, margin: float = 0.1) -> float:
-    """Share of the points that lie in the bounding box of V grown by `margin` of its diagonal to all sides.
+def share_inside(V: Floats, points: Floats, margin: float) -> float:
+    """Share of the points that lie in the enlarged bounding box of V.
 
-    V, points : (vertex, xyz), (point, xyz) mesh unit
+    V       : (vertex, xyz) mesh unit
+    points  : (point, xyz) mesh unit
+    margin  : by how much the box is enlarged on every side, share of its diagonal
+    returns : 0 to 1
     """
     low, high = V.min(axis=0), V.max(axis=0)
     reach = margin * np.linalg.norm(high - low)
     return float(((points >= low - reach) & (points <= high + reach)).all(axis=1).mean())
 
 
-def fits(V: Floats, points: Floats) -> bool:
-    """Whether points can be the joints of a body: half of them in its box at least, and spanning a fifth of its size.
+def joints_fit(V: Floats, points: Floats, settings: EvaluationSettings | None = None) -> bool:
+    """Whether points can be the joints of a body: enough of them lie in its box, and they span enough of its size (ours).
 
-    V, points : (vertex, xyz), (point, xyz) mesh unit
+    V        : (vertex, xyz) surface of the body in a frame, mesh unit
+    points   : (point, xyz) joints in the same frame, mesh unit
+    settings : box_margin, least_inside and least_span are used
     """
-    return inside(V, points) >= LEAST_INSIDE and side(points) >= LEAST_SPAN * side(V)
+    limit = settings or EvaluationSettings()
+    inside = share_inside(V, points, limit.box_margin) >= limit.least_inside
+    return inside and longest_side(points) >= limit.least_span * longest_side(V)
 
 
-def radii(V: Floats, points: Floats) -> Floats:
-    """(point,) distance to the nearest vertex, mesh unit: half the local diameter at a point in the middle of a limb."""
+def local_radii(V: Floats, points: Floats) -> Floats:
+    """Distance from each point to the nearest vertex: half the body's local diameter where the point is amid a limb.
+
+    V       : (vertex, xyz) mesh unit
+    points  : (point, xyz) mesh unit
+    returns : (point,) mesh unit
+    """
     return np.asarray(KDTree(V).query(points)[0], dtype=np.float64)
 
 
-def nearest(V: Floats, points: Floats) -> Ints:
-    """(point,) the vertex nearest to each point."""
+def nearest_vertices(V: Floats, points: Floats) -> Ints:
+    """The vertex nearest to each point.
+
+    V       : (vertex, xyz) mesh unit
+    points  : (point, xyz) mesh unit
+    returns : (point,) index of a vertex
+    """
     return np.asarray(KDTree(V).query(points)[1], dtype=np.int64)

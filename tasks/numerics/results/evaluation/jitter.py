@@ -1,18 +1,18 @@
-"""How much rougher than the truth a motion is, seen in its second differences."""
+"""How much rougher than the truth a motion is, measured by its second differences."""
 
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Floats
 
 
 def second_differences(X: Floats, frames: Sequence[int]) -> Floats:
-    """(triple, joint, xyz) x(t+1) − 2 x(t) + x(t−1) wherever three frames follow one another at equal steps, mesh unit.
+    """Second differences x(t+1) − 2 x(t) + x(t−1), wherever three frames follow one another at equal steps.
 
-    X      : (frame, joint, xyz) mesh unit
-    frames : (frame,) their numbers, ascending
+    X       : (frame, joint, xyz) mesh unit
+    frames  : (frame,) source frame numbers, ascending
+    returns : (triple, joint, xyz) mesh unit
     """
     step = np.diff(np.asarray(frames))
     at = np.flatnonzero(step[1:] == step[:-1]) + 1
@@ -21,10 +21,11 @@ def second_differences(X: Floats, frames: Sequence[int]) -> Floats:
 
 
 def jitter(X: Floats, Y: Floats, frames: Sequence[int]) -> tuple[float, float]:
-    """Root mean square of the second differences of what was found beyond the true ones, and of the true ones, mesh unit.
+    """Root mean square of the second differences of the error, and of the true motion (ours).
 
-    X, Y    : (frame, joint, xyz) found and true positions of the same joints
-    returns : (of x − y, of y); both 0 where no three frames follow one another or there is no joint
+    X, Y    : (frame, joint, xyz) positions in the result and in the truth, of the same joints, mesh unit
+    frames  : (frame,) source frame numbers, ascending
+    returns : of x − y, and of y, mesh unit a frame²; both 0 where no three frames follow one another or there is no joint
     """
     error, true = second_differences(X - Y, frames), second_differences(Y, frames)
     if not error.size:

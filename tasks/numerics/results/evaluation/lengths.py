@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from kinetree.tasks.numerics.arrays import Floats
 
 
 def length_variation(X: Floats, parents: Sequence[int]) -> Floats:
-    """(bone,) standard deviation over the frames of each bone's length, as a share of its mean; 0 for a rigid bone.
+    """Standard deviation of each bone's length over the frames, as a share of its mean; 0 for a rigid bone.
 
     X       : (frame, joint, xyz) mesh unit
-    parents : (joint,) −1 for a root, which has no bone
+    parents : (joint,) parent of each joint, −1 for a root, which has no bone
+    returns : (bone,) share, one for every joint that has a parent, in their order
     """
     ends = np.array([(p, j) for j, p in enumerate(parents) if p >= 0], dtype=np.int64).reshape(-1, 2)
     length = np.linalg.norm(X[:, ends[:, 1]] - X[:, ends[:, 0]], axis=2)

@@ -1,27 +1,24 @@
-"""Which found joint is which true one, over all frames at once.
+"""Which joint of the result is which true joint, decided once for all frames.
 
-A pair costs its mean distance over the frames; a pair farther than the limit costs as much as no pair, so that a joint that
-was missed cannot push its neighbours' partners around (the assignment of OSPA, Schuhmacher, Vo, Vo 2008, with p = 1).
-Every joint has one partner at most: two joints found beside one true joint are one found and one spurious.
+The cost of a pair is its mean distance over the frames. A pair farther apart than the limit costs as much as no pair, so that a
+missing joint cannot change the partners of its neighbours (the assignment of OSPA with p = 1: Schuhmacher, Vo, Vo 2008). Every
+joint has at most one partner: of two joints found near one true joint, one is its partner and the other is spurious.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Bools = npt.NDArray[np.bool_]
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
 class Matching(NamedTuple):
-    """What was found of the true joints.
+    """The partner of every true joint, and the joints without one.
 
-    partner  : (true,) the found joint that is each true joint, −1 where there is none
-    nearest  : (true,) mean distance to the nearest found joint that may be it, mesh unit; infinite where none may
-    spurious : (joint,) found joints that are no true joint, ascending
+    partner  : (true,) the joint of the result that is each true joint, −1 where it is missing
+    nearest  : (true,) mean distance to the nearest joint that is allowed as partner, mesh unit; infinite where none is
+    spurious : (joint,) joints of the result that are no true joint, ascending
     """
 
     partner: Ints
@@ -29,45 +26,61 @@ class Matching(NamedTuple):
     spurious: Ints
 
 
-def matching(X: Floats, Y: Floats, may: Bools, *, scored: Bools, may_be_spurious: Bools, limit: float) -> Matching:
-    """Assigns found joints to scored true ones, then those that are left to true joints that are not scored.
+def matching(X: Floats, Y: Floats, allowed: Flags, *, scored: Flags, can_be_spurious: Flags, limit: float) -> Matching:
+    """Assigns joints of the result first to scored true joints, then the free ones to true joints that are not scored.
 
-    The second assignment is what makes a joint that truly exists but hardly turns neither missing nor spurious.
+    Because of the second assignment, a joint that exists in truth but hardly turns is neither missing nor spurious.
 
-    X               : (frame, joint, xyz) found, mesh unit
-    Y               : (frame, true, xyz) true, mesh unit
-    may             : (joint, true) which pairs there can be; a root is no elbow
-    scored          : (true,) joints that should be found
-    may_be_spurious : (joint,) found joints that claim something; a root has to be somewhere
-    limit           : mean distance at which a pair is none, mesh unit
+    X               : (frame, joint, xyz) joints of the result, mesh unit
+    Y               : (frame, true, xyz) true joints, mesh unit
+    allowed         : (joint, true) which pairs are possible; a root cannot be an elbow
+    scored          : (true,) joints that the result should have
+    can_be_spurious : (joint,) joints of the result that count as spurious without a partner; a root does not
+    limit           : largest mean distance of a pair, mesh unit
     """
-    cost = np.where(may, mean_distances(X, Y), np.inf)
+    cost = np.where(allowed, mean_distances(X, Y), np.inf)
     partner = np.full(Y.shape[1], -1, dtype=np.int64)
     free = np.ones(X.shape[1], dtype=bool)
     for column in (np.flatnonzero(scored), np.flatnonzero(~scored)):
         row = np.flatnonzero(free)
-        for i, j in assigned(cost[np.ix_(row, column)], limit):
+        for i, j in assignment(cost[np.ix_(row, column)], limit):
             partner[column[j]] = row[i]
             free[row[i]] = False
     nearest = cost.min(axis=0) if len(cost) else np.full(Y.shape[1], np.inf)
-    return Matching(partner, nearest, np.flatnonzero(free & may_be_spurious))
+    return Matching(partner, nearest, np.flatnonzero(free & can_be_spurious))
 
 
 def mean_distances(X: Floats, Y: Floats) -> Floats:
-    """(joint, true) mean over the frames of |x_i(t) − y_j(t)|, mesh unit."""
+    """Mean over the frames of the distance |x_i(t) − y_j(t)| of every pair.
+
+    X       : (frame, joint, xyz) mesh unit
+    Y       : (frame, true, xyz) mesh unit
+    returns : (joint, true) mesh unit
+    """
     total = np.zeros((X.shape[1], Y.shape[1]))
     for x, y in zip(X, Y, strict=True):
         total += np.linalg.norm(x[:, None] - y[None], axis=2)
     return total / max(len(X), 1)
 
 
-def assigned(cost: Floats, limit: float) -> list[tuple[int, int]]:
-    """Pairs of rows and columns that minimise Σ min(cost, limit), those above the limit left out."""
+def assignment(cost: Floats, limit: float) -> list[tuple[int, int]]:
+    """Pairs of rows and columns that minimise Σ min(cost, limit), without the pairs above the limit.
+
+    cost    : (row, column) infinite where a pair is impossible
+    limit   : in the unit of the cost
+    returns : (row, column) of every pair
+    """
     rows, columns = linear_sum_assignment(np.minimum(cost, limit))
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if cost[i, j] <= limit]
 
 
-def errors(X: Floats, Y: Floats, partner: Ints) -> Floats:
-    """(frame, true) distance of every true joint from its partner, mesh unit; NaN where it has none."""
-    apart = np.linalg.norm(X[:, np.maximum(partner, 0)] - Y, axis=2)
-    return np.where(partner >= 0, apart, np.nan)
+def joint_errors(X: Floats, Y: Floats, partner: Ints) -> Floats:
+    """Distance of every true joint from its partner in every frame.
+
+    X       : (frame, joint, xyz) mesh unit
+    Y       : (frame, true, xyz) mesh unit
+    partner : (true,) as in `Matching`
+    returns : (frame, true) mesh unit; NaN where there is no partner
+    """
+    distance = np.linalg.norm(X[:, np.maximum(partner, 0)] - Y, axis=2)
+    return np.where(partner >= 0, distance, np.nan)

@@ -4,25 +4,29 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Indices = npt.NDArray[np.integer]
+from kinetree.tasks.numerics.arrays import Floats, Ints
+
+Numbers = npt.NDArray[np.integer]
+"""Labels and indices, of any integer type."""
 
 
-def leading_parts(label: Indices, influence: Indices, weight: Floats) -> Ints:
-    """(vertex,) the part that a vertex is labelled with, or where it has no label the one that it follows most.
+def leading_parts(label: Numbers, influence: Numbers, weight: Floats) -> Ints:
+    """The part of every vertex: its label, or where it has none the part that it follows most.
 
-    label             : (vertex,) −1 where there is none
-    influence, weight : (vertex, k) parts that a vertex follows, and how much
+    label     : (vertex,) part, −1 where there is none
+    influence : (vertex, slot) parts that a vertex follows
+    weight    : (vertex, slot) how much it follows each
+    returns   : (vertex,) part
     """
     most = influence[np.arange(len(label)), weight.argmax(axis=1)]
     return np.where(label >= 0, label, most).astype(np.int64)
 
 
 def contingency(label: Ints, other: Ints) -> Ints:
-    """(part, other part) how many points have each pair of labels.
+    """Number of points with each pair of labels.
 
-    label, other : (point,) any whole numbers, the same for all points of a part
+    label, other : (point,) label in either division, any whole numbers
+    returns      : (part, other part) counts, parts in ascending order of their labels
     """
     rows, i = np.unique(label, return_inverse=True)
     columns, j = np.unique(other, return_inverse=True)
@@ -32,18 +36,20 @@ def contingency(label: Ints, other: Ints) -> Ints:
 
 
 def rand_index(table: Ints) -> float:
-    """Share of the pairs of points on which both divisions agree, together or apart (Rand 1971).
+    """Share of the pairs of points on which both divisions agree: in one part in both, or in two parts in both (Rand 1971).
 
-    table : (part, other part) counts; at least two points
+    table   : (part, other part) counts as `contingency` gives them; at least two points
+    returns : 0 to 1
     """
     both, one, two, every = _pairs(table)
     return 1.0 - (one + two - 2.0 * both) / every
 
 
 def adjusted_rand_index(table: Ints) -> float:
-    """The Rand index, 0 where chance would have it and 1 where the divisions are the same (Hubert, Arabie 1985).
+    """The Rand index corrected for chance: 0 expected of random labels, 1 for equal divisions (Hubert, Arabie 1985).
 
-    table : (part, other part) counts; at least two points
+    table   : (part, other part) counts as `contingency` gives them; at least two points
+    returns : at most 1
     """
     both, one, two, every = _pairs(table)
     chance = one * two / every
@@ -54,9 +60,10 @@ def adjusted_rand_index(table: Ints) -> float:
 def mean_iou(table: Ints) -> float:
     """Intersection over union of each part of the second division with its partner in the first, averaged.
 
-    Partners are the assignment with the largest sum; a part without a partner counts 0.
+    Partners are the one-to-one assignment with the largest sum; a part without a partner counts as 0.
 
-    table : (part, true part) counts
+    table   : (part, true part) counts as `contingency` gives them
+    returns : 0 to 1
     """
     union = table.sum(axis=1)[:, None] + table.sum(axis=0)[None] - table
     iou = table / np.maximum(union, 1)
@@ -65,10 +72,11 @@ def mean_iou(table: Ints) -> float:
 
 
 def _pairs(table: Ints) -> tuple[float, float, float, float]:
-    """Pairs of points together in both divisions, in the first, in the second, and all."""
-    return _two(table), _two(table.sum(axis=1)), _two(table.sum(axis=0)), _two(table.sum())
+    """Number of pairs of points in one part of both divisions, of the first, of the second, and of all pairs."""
+    return _pair_count(table), _pair_count(table.sum(axis=1)), _pair_count(table.sum(axis=0)), _pair_count(table.sum())
 
 
-def _two(count: "Ints | np.int64") -> float:
+def _pair_count(count: "Ints | np.int64") -> float:
+    """Number of pairs among so many points, summed over the counts."""
     n = np.asarray(count, dtype=np.float64)
     return float((n * (n - 1.0) / 2.0).sum())

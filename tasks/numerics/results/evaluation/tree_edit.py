@@ -1,9 +1,9 @@
-"""Tree edit distance: how many joints must be inserted or deleted to make one tree the other.
+"""Tree edit distance: how many joints must be inserted or deleted to make two trees equal, whatever their positions.
 
-Joints have no labels and no order, and which of them is the root is a convention; so the trees compared are unordered,
-unlabelled and free, where the distance published by rigging papers (Zhang, Shasha 1989) follows the order in which children
-happen to be listed. The general unordered distance is NP-hard; this is the constrained one (Zhang 1996), in which separate
-branches stay separate, minimised over the roots of both trees. It is 0 exactly where the trees are the same.
+Joints have neither labels nor an order, and the choice of the root is a convention. So the trees are compared as unordered,
+unlabelled trees without a root. The distance of rigging papers (Zhang, Shasha 1989) depends on the order in which children are
+listed. The general unordered distance is NP-hard; this one is the constrained distance (Zhang 1996), in which separate branches
+stay separate, minimised over the roots of both trees. It is 0 if and only if the trees are equal.
 """
 
 from collections.abc import Sequence
@@ -14,31 +14,38 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 
-def contracted(parents: Sequence[int], kept: Sequence[bool]) -> list[int]:
-    """(kept joint,) parents among the kept joints: each hangs on its nearest kept ancestor.
+def contracted_tree(parents: Sequence[int], remains: Sequence[bool]) -> list[int]:
+    """The tree without some joints: the parent of each remaining joint is its nearest remaining ancestor.
 
-    parents : (joint,) −1 for a root; parents come before children or after, as they like
-    kept    : (joint,) which joints stay; one of them must be above all others
+    parents : (joint,) parent of every joint, −1 for a root; in any order
+    remains : (joint,) which joints remain; one of them must be above all others
+    returns : (remaining joint,) parent as a number among the remaining joints, −1 for the root
     """
-    place = {j: k for k, j in enumerate(j for j, keep in enumerate(kept) if keep)}
-    ancestors = kept_ancestors(parents, kept)
+    place = {j: k for k, j in enumerate(j for j, remaining in enumerate(remains) if remaining)}
+    ancestors = remaining_ancestors(parents, remains)
     return [place[ancestors[parents[j]]] if parents[j] >= 0 and ancestors[parents[j]] >= 0 else -1 for j in place]
 
 
-def kept_ancestors(parents: Sequence[int], kept: Sequence[bool]) -> list[int]:
-    """(joint,) the nearest kept joint at or above each; −1 where there is none."""
-    out = []
+def remaining_ancestors(parents: Sequence[int], remains: Sequence[bool]) -> list[int]:
+    """The nearest remaining joint at or above each joint.
+
+    parents : (joint,) parent of every joint, −1 for a root
+    remains : (joint,) which joints remain
+    returns : (joint,) a remaining joint, −1 where there is none
+    """
+    ancestors = []
     for j in range(len(parents)):
-        while j >= 0 and not kept[j]:
+        while j >= 0 and not remains[j]:
             j = parents[j]
-        out.append(j)
-    return out
+        ancestors.append(j)
+    return ancestors
 
 
 def tree_edit_distance(parents: Sequence[int], others: Sequence[int]) -> int:
-    """Fewest insertions and deletions of joints that make two free unordered trees the same (after Zhang 1996).
+    """Least number of insertions and deletions of joints that make two unordered trees without root equal (Zhang 1996).
 
-    parents, others : (joint,) parent of every joint, −1 for the root; one root each
+    parents : (joint,) parent of every joint of the first tree, −1 for its only root
+    others  : (joint,) the same of the second tree
     """
     one, two = _neighbours(parents), _neighbours(others)
     if not one or not two:
@@ -50,7 +57,7 @@ def tree_edit_distance(parents: Sequence[int], others: Sequence[int]) -> int:
 
     @cache
     def trees(v: int, v_above: int, w: int, w_above: int) -> int:
-        """The branch at v, seen from above it, against the branch at w."""
+        """Distance of the branch at v, seen from its neighbour above, from the branch at w."""
         best = forests(v, v_above, w, w_above)
         here, there = size(0, v, v_above), size(1, w, w_above)
         for c in one[v]:
@@ -63,7 +70,7 @@ def tree_edit_distance(parents: Sequence[int], others: Sequence[int]) -> int:
 
     @cache
     def forests(v: int, v_above: int, w: int, w_above: int) -> int:
-        """What hangs on v against what hangs on w."""
+        """Distance of the branches below v from the branches below w."""
         left = [c for c in one[v] if c != v_above]
         right = [d for d in two[w] if d != w_above]
         here, there = size(0, v, v_above) - 1, size(1, w, w_above) - 1
@@ -80,7 +87,7 @@ def tree_edit_distance(parents: Sequence[int], others: Sequence[int]) -> int:
 
 
 def _matched(cost: list[list[int]], deleted: list[int], inserted: list[int]) -> int:
-    """Cheapest way to pair branches, delete those of the one tree and insert those of the other."""
+    """Least cost to pair branches of both trees, to delete the others of the first and to insert those of the second."""
     n, m = len(deleted), len(inserted)
     if not n or not m:
         return sum(deleted) + sum(inserted)
@@ -93,6 +100,7 @@ def _matched(cost: list[list[int]], deleted: list[int], inserted: list[int]) -> 
 
 
 def _neighbours(parents: Sequence[int]) -> dict[int, list[int]]:
+    """The neighbours of every joint in the tree without root, ascending."""
     graph: nx.Graph[int] = nx.Graph()
     graph.add_nodes_from(range(len(parents)))
     graph.add_edges_from((p, j) for j, p in enumerate(parents) if p >= 0)

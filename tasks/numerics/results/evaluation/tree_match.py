@@ -1,51 +1,53 @@
-"""How many joints stand between two trees whose joints are known to be the same or not.
+"""Edit distance between two trees whose joints are matched: how many joints must be removed and inserted.
 
-A joint divides the body in two; a tree is what each of its joints divides from what. Two trees are the same if every joint
-separates the same pairs of others. Edits are to remove a joint, which makes one part of two, and to put one in; a joint may
-only become the one that it was matched with. So a trunk that is in two parts where it should be one costs a single edit, which
-distances that keep separate branches separate count as many.
+A joint divides the body in two. Two trees are equal if every joint separates the same pairs of other joints. An edit removes a
+joint, which joins two parts, or inserts one; a joint can only be equal to its partner in the matching. So a trunk in two parts
+instead of one costs a single edit, where distances that keep separate branches separate count several.
 """
 
 import itertools
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Ints = npt.NDArray[np.int64]
-Bools = npt.NDArray[np.bool_]
-SAME_PLACE = 5
-"""Joints at one place up to which every way of pairing them is tried."""
+from kinetree.tasks.numerics.arrays import Flags, Ints
+from kinetree.tasks.numerics.results.evaluation.settings import EvaluationSettings
 
 
 def tree_match_distance(
-    parents: Sequence[int], others: Sequence[int], pairs: Sequence[tuple[int, int]], place: Sequence[int]
+    parents: Sequence[int],
+    others: Sequence[int],
+    pairs: Sequence[tuple[int, int]],
+    place: Sequence[int],
+    settings: EvaluationSettings | None = None,
 ) -> int:
-    """Joints to remove and to put in until the first tree is the second.
+    """Number of joints to remove and to insert until the first tree is the second (ours).
 
-    The pairs that have to be given up because the trees contradict each other there are found greedily, those in most
-    contradictions first; joints at one place are paired as contradicts least.
+    Where the trees contradict each other, pairs are given up greedily, the pair with most contradictions first. Joints at one
+    place are paired so that there are fewest contradictions.
 
-    parents, others : (joint,) parent of every joint in either tree, −1 for the root; a root is no joint between parts
-    pairs           : joints of the first and of the second tree that are the same, roots left out
-    place           : (joint of the second,) equal for joints that lie at one and the same place
+    parents  : (joint,) parent of every joint of the first tree, −1 for the root; a root is no joint between parts
+    others   : (joint,) the same of the second tree
+    pairs    : matched joints (of the first tree, of the second tree), without roots
+    place    : (joint of the second tree,) equal numbers for joints at one place
+    settings : most_permuted is used
     """
     one, two = separations(parents), separations(others)
-    left = _best_pairs(one, two, list(pairs), place)
-    kept = len(left)
-    while left:
-        wrong = contradictions(one, two, left, place)
+    remaining = _best_pairs(one, two, list(pairs), place, (settings or EvaluationSettings()).most_permuted)
+    while remaining:
+        wrong = contradictions(one, two, remaining, place)
         if not wrong.any():
             break
-        left.pop(int(wrong.argmax()))
+        remaining.pop(int(wrong.argmax()))
     joints = sum(p >= 0 for p in parents) + sum(p >= 0 for p in others)
-    return joints - 2 * min(kept, len(left))
+    return joints - 2 * len(remaining)
 
 
-def separations(parents: Sequence[int]) -> Bools:
-    """(a, b, c) whether joint b lies between joints a and c, which are others than b; a root separates nothing.
+def separations(parents: Sequence[int]) -> Flags:
+    """Which joints separate which pairs of other joints.
 
-    parents : (joint,) −1 for the root
+    parents : (joint,) parent of every joint, −1 for the root
+    returns : (a, b, c) whether joint b lies between joints a and c, both different from b; a root separates nothing
     """
     n = len(parents)
     beyond = np.zeros((n, n), dtype=bool)
@@ -54,14 +56,20 @@ def separations(parents: Sequence[int]) -> Bools:
         while above >= 0:
             beyond[above, j] = True
             above = parents[above]
-    between: Bools = beyond.T[:, :, None] != beyond[None]
+    between: Flags = beyond.T[:, :, None] != beyond[None]
     joint = np.array([p >= 0 for p in parents])
     other = ~np.eye(n, dtype=bool)
     return between & joint[None, :, None] & other[:, :, None] & other[None]
 
 
-def contradictions(one: Bools, two: Bools, pairs: Sequence[tuple[int, int]], place: Sequence[int]) -> Ints:
-    """(pair,) in how many triples of pairs, all at different places, that say different things each pair is."""
+def contradictions(one: Flags, two: Flags, pairs: Sequence[tuple[int, int]], place: Sequence[int]) -> Ints:
+    """Number of triples of pairs at three different places in which the trees contradict each other, for every pair.
+
+    one, two : (a, b, c) as `separations` gives them, of the first and of the second tree
+    pairs    : matched joints (of the first tree, of the second tree); at least one
+    place    : (joint of the second tree,) equal numbers for joints at one place
+    returns  : (pair,) triples that contain the pair
+    """
     i, j = (np.array(side, dtype=np.int64) for side in zip(*pairs, strict=True))
     where = np.asarray(place)[j]
     apart = where[:, None] != where[None]
@@ -71,17 +79,19 @@ def contradictions(one: Bools, two: Bools, pairs: Sequence[tuple[int, int]], pla
     return count
 
 
-def _best_pairs(one: Bools, two: Bools, pairs: list[tuple[int, int]], place: Sequence[int]) -> list[tuple[int, int]]:
-    """The pairs, those at one place exchanged where that leaves fewer contradictions."""
+def _best_pairs(
+    one: Flags, two: Flags, pairs: list[tuple[int, int]], place: Sequence[int], most_permuted: int
+) -> list[tuple[int, int]]:
+    """The pairs, with partners at one place exchanged where this leaves fewer contradictions."""
     for where in sorted({place[j] for _, j in pairs}):
-        mine = [k for k, (_, j) in enumerate(pairs) if place[j] == where]
-        if not 1 < len(mine) <= SAME_PLACE:
+        at_place = [k for k, (_, j) in enumerate(pairs) if place[j] == where]
+        if not 1 < len(at_place) <= most_permuted:
             continue
         options = []
-        for order in itertools.permutations([pairs[k][1] for k in mine]):
-            tried = list(pairs)
-            for k, j in zip(mine, order, strict=True):
-                tried[k] = (pairs[k][0], j)
-            options.append(tried)
-        pairs = min(options, key=lambda tried: int(contradictions(one, two, tried, place).sum()))
+        for order in itertools.permutations([pairs[k][1] for k in at_place]):
+            exchanged = list(pairs)
+            for k, j in zip(at_place, order, strict=True):
+                exchanged[k] = (pairs[k][0], j)
+            options.append(exchanged)
+        pairs = min(options, key=lambda option: int(contradictions(one, two, option, place).sum()))
     return pairs

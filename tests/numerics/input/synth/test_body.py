@@ -13,8 +13,9 @@ import trimesh
 import yaml
 
 from kinetree.errors import ConfigError
+from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.input.synth.body import Body
-from kinetree.tasks.numerics.input.synth.defects import punctured, vertex_normals
+from kinetree.tasks.numerics.input.synth.defects import punctured
 from kinetree.tasks.numerics.input.synth.figures import named
 from kinetree.tasks.numerics.input.synth.implicit import values
 

@@ -50,7 +50,7 @@ def test_skeleton_of_one_joint_is_measured_too():
 
 
 def test_overlap_counts_pairs_nearer_than_each_joints_own_tolerance():
-    """Pairs are 0.1 apart; two of three true joints allow that; a fourth joint is found nowhere."""
+    """Pairs are 0.1 apart; two of three true joints allow that; a fourth joint of the result is far from all of them."""
     true = np.array([[[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]])
-    found = np.concatenate([true + [0, 0.1, 0], [[[9.0, 0, 0]]]], axis=1)
-    assert overlap(found, true, np.array([0.2, 0.05, 0.2])) == pytest.approx((4 / 7, 2 / 4, 2 / 3))
+    joints = np.concatenate([true + [0, 0.1, 0], [[[9.0, 0, 0]]]], axis=1)
+    assert overlap(joints, true, np.array([0.2, 0.05, 0.2])) == pytest.approx((4 / 7, 2 / 4, 2 / 3))

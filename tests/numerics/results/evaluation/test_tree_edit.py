@@ -3,7 +3,7 @@
 import networkx as nx
 import pytest
 
-from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted, kept_ancestors, tree_edit_distance
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors, tree_edit_distance
 
 PATH = (-1, 0, 1, 2, 3)
 STAR = (-1, 0, 0, 0, 0)
@@ -33,7 +33,7 @@ def test_distance_is_symmetric():
 @pytest.mark.parametrize("cut", range(1, 13))
 def test_joint_less_is_one_edit(cut):
     kept = [j != cut for j in range(13)]
-    assert tree_edit_distance(HUMAN, contracted(HUMAN, kept)) == 1
+    assert tree_edit_distance(HUMAN, contracted_tree(HUMAN, kept)) == 1
 
 
 @pytest.mark.parametrize("end", range(13))
@@ -62,10 +62,10 @@ def test_long_chain_is_no_trouble():
 
 
 def test_contraction_hangs_joints_on_their_nearest_kept_ancestor():
-    assert contracted(PATH, [True, False, True, False, True]) == [-1, 0, 1]
-    assert contracted((1, -1, 0), [True, True, False]) == [1, -1]
+    assert contracted_tree(PATH, [True, False, True, False, True]) == [-1, 0, 1]
+    assert contracted_tree((1, -1, 0), [True, True, False]) == [1, -1]
 
 
 def test_kept_ancestor_of_a_kept_joint_is_itself():
-    assert kept_ancestors(PATH, [True, False, True, False, True]) == [0, 0, 2, 2, 4]
-    assert kept_ancestors(PATH, [False, True, False, False, False]) == [-1, 1, 1, 1, 1]
+    assert remaining_ancestors(PATH, [True, False, True, False, True]) == [0, 0, 2, 2, 4]
+    assert remaining_ancestors(PATH, [False, True, False, False, False]) == [-1, 1, 1, 1, 1]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted, tree_edit_distance
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, tree_edit_distance
 from kinetree.tasks.numerics.results.evaluation.tree_match import separations, tree_match_distance
 
 DOG = (-1, 0, 1, 1, 1, 0, 0, 0, 2, 3)
@@ -14,7 +14,7 @@ def without(parents, cut):
     """The tree with one joint less, and its pairs with the tree as it was."""
     kept = [j != cut for j in range(len(parents))]
     stay = [j for j in range(len(parents)) if j != cut]
-    return contracted(parents, kept), [(k, j) for k, j in enumerate(stay) if parents[j] >= 0]
+    return contracted_tree(parents, kept), [(k, j) for k, j in enumerate(stay) if parents[j] >= 0]
 
 
 def distance(parents, others, pairs, place=None):

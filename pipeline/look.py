@@ -1,4 +1,4 @@
-"""What a run, the list of runs and a comparison tell: plain dictionaries and lists that read well when they are shown."""
+"""How a run, the list of runs and a comparison look in a shell and in a notebook: plain dictionaries and lists otherwise."""
 
 import html
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import Any
 RUN_COLUMNS = ("name", "status", "ran", "fresh", "failed", "seconds", "output")
 
 
-class RunTold(dict[str, Any]):
+class RunSummary(dict[str, Any]):
     """The content of run.json and the run's name; shown as one line and its failures."""
 
     def __repr__(self) -> str:
@@ -16,13 +16,13 @@ class RunTold(dict[str, Any]):
         return "\n".join(lines + [f"  {f['node']}: {f['error']}: {f['message']}" for f in self["failures"]])
 
 
-class RunsTold(list[dict[str, Any]]):
+class RunList(list[dict[str, Any]]):
     """The runs on record; shown as a table, one line a run."""
 
     def rows(self) -> list[tuple[str, ...]]:
         """The cells of the table."""
-        told = [{**run, **run.get("counts", {})} for run in self]
-        return [tuple(str(run.get(column, "")) for column in RUN_COLUMNS) for run in told]
+        runs = [{**run, **run.get("counts", {})} for run in self]
+        return [tuple(str(run.get(column, "")) for column in RUN_COLUMNS) for run in runs]
 
     def __repr__(self) -> str:
         return "\n".join("  ".join(row) for row in [RUN_COLUMNS, *self.rows()])
@@ -32,11 +32,11 @@ class RunsTold(list[dict[str, Any]]):
 
 
 class Difference(dict[str, Any]):
-    """What differs between two runs; shown as where it begins and how many nodes it reached."""
+    """What differs between two runs; shown as where it starts and how many nodes it reached."""
 
     def __repr__(self) -> str:
         lines = [f"{self['a']} → {self['b']}: {len(self['changed'])} nodes have other results"]
-        lines += [f"  begins at {node}: {'; '.join(reasons)}" for node, reasons in self["begins"].items()]
+        lines += [f"  starts at {node}: {'; '.join(reasons)}" for node, reasons in self["begins"].items()]
         for word, names in (("only in the first", self["only_a"]), ("only in the second", self["only_b"])):
             lines += [f"  {word}: {len(names)} nodes"] if names else []
         return "\n".join(lines)

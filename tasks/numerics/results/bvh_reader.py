@@ -1,49 +1,51 @@
-"""BVH, the motion capture format of Biovision: a tree of joints with offsets, then one line of channels a frame.
+"""Reads BVH, Biovision's format of motion capture: a tree of joints with offsets, then one line of channels a frame.
 
-Local rotation is the product of the rotation channels in their order, angles in degrees; a position channel stands in place of
-the same coordinate of the offset, which is how exporters write joints with six channels and how Blender reads them.
+The rotation of a joint against its parent is the product of its rotation channels in their order, angles in degrees. A position
+channel replaces the same coordinate of the offset: exporters write joints with six channels so, and Blender reads them so.
 """
 
 from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from kinetree.errors import InputError
+from kinetree.tasks.numerics.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
-LARGEST = 1e50
-END = " end"
-"""What is appended to a joint's name to name the end site below it."""
+LARGEST_NUMBER = 1e50
+"""Largest absolute value of a number in a truth: squares of larger ones may overflow, and no unit makes a body so large."""
+END_SUFFIX = " end"
+"""Appended to a joint's name to name the end site below it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bvh:
-    """A hierarchy and its motion, joints in the order of the file, parents before children.
+    """A hierarchy and its motion; joints in the order of the file, parents before children.
 
-    names, parents, ends : (joint,) name, parent or −1, and whether it is an end site
-    R                    : (frame, joint, 3, 3) rotation against the parent
-    X                    : (frame, joint, xyz) position in the file's unit
-    seconds              : from one frame to the next
+    names        : (joint,)
+    parents      : (joint,) parent of every joint, −1 for the root
+    is_end_site  : (joint,) whether it is the end of a bone, without channels
+    R            : (frame, joint, 3, 3) rotation against the parent
+    X            : (frame, joint, xyz) position in the file's unit
+    frame_time   : seconds from one frame to the next
     """
 
     names: tuple[str, ...]
     parents: tuple[int, ...]
-    ends: tuple[bool, ...]
+    is_end_site: tuple[bool, ...]
     R: Floats
     X: Floats
-    seconds: float
+    frame_time: float
 
 
 def read_bvh(text: str, name: str) -> Bvh:
-    """Parses a file and poses the joints in every frame.
+    """Parses a BVH file and computes the position of every joint in every frame.
 
     text   : content of the file
-    name   : what messages call it
-    raises : InputError with the line where the file is not a BVH
+    name   : name of the file, for messages
+    raises : InputError with the number of the line where the file is not a BVH
     """
     reader = _Reader(text, name)
     reader.expect("HIERARCHY")
@@ -51,17 +53,17 @@ def read_bvh(text: str, name: str) -> Bvh:
     try:
         reader.joint(-1)
     except RecursionError:
-        reader.refuse("joints within joints without end; no body has a limb of so many")
+        reader.refuse("joints are nested too deep; no body has so long a chain")
     if reader.peek() == "ROOT":
         reader.refuse("a second ROOT; one body has one")
     reader.expect("MOTION")
-    values, seconds = reader.motion()
+    values, frame_time = reader.motion()
     R, X = _posed(reader, values)
-    return Bvh(tuple(reader.names), tuple(reader.parents), tuple(reader.ends), R, X, seconds)
+    return Bvh(tuple(reader.names), tuple(reader.parents), tuple(reader.is_end_site), R, X, frame_time)
 
 
 class _Reader:
-    """Words of a file one after the other, and the hierarchy read from them."""
+    """Reads the words of a file one after the other into lists, one element a joint."""
 
     def __init__(self, text: str, name: str) -> None:
         self.words = [(word, number) for number, line in enumerate(text.splitlines(), 1) for word in line.split()]
@@ -69,7 +71,7 @@ class _Reader:
         self.name = name
         self.names: list[str] = []
         self.parents: list[int] = []
-        self.ends: list[bool] = []
+        self.is_end_site: list[bool] = []
         self.offsets: list[list[float]] = []
         self.channels: list[list[str]] = []
 
@@ -82,14 +84,14 @@ class _Reader:
 
     def word(self) -> str:
         if self.at == len(self.words):
-            self.refuse("the file ends here, in the middle of it; it is not a whole BVH")
+            self.refuse("the file ends here; it is not a complete BVH")
         self.at += 1
         return self.words[self.at - 1][0]
 
     def expect(self, word: str) -> None:
-        found = self.peek()
-        if found != word:
-            self.refuse(f"expected {word}, got {found[:40]!r}; it is not a BVH" if found else f"expected {word}, the file ends")
+        got = self.peek()
+        if got != word:
+            self.refuse(f"expected {word}, got {got[:40]!r}; it is not a BVH" if got else f"expected {word}, but the file ends")
         self.at += 1
 
     def number(self) -> float:
@@ -100,14 +102,14 @@ class _Reader:
             self.refuse(f"expected a number, got {self.peek()[:40]!r}")
         if not np.isfinite(value):
             self.at -= 1
-            self.refuse(f"{self.peek()} is no finite number")
-        if abs(value) > LARGEST:
+            self.refuse(f"{self.peek()} is not a finite number")
+        if abs(value) > LARGEST_NUMBER:
             self.at -= 1
-            self.refuse(f"{self.peek()[:40]} is beyond {LARGEST:g}; nothing in a body is so large")
+            self.refuse(f"{self.peek()[:40]} is larger than {LARGEST_NUMBER:g}; no body is so large")
         return value
 
     def joint(self, parent: int) -> None:
-        """A joint and all below it, from its name on."""
+        """Reads a joint and all joints below it, from its name on."""
         index = self._add(self.word(), parent, end=False)
         self.expect("{")
         self._offset()
@@ -118,34 +120,34 @@ class _Reader:
                 self.joint(index)
                 continue
             self.expect("Site")
-            self._add(self.names[index] + END, index, end=True)
+            self._add(self.names[index] + END_SUFFIX, index, end=True)
             self.expect("{")
             self._offset()
             self.expect("}")
         self.expect("}")
 
     def motion(self) -> tuple[Floats, float]:
-        """(frame, channel) values, and the seconds of a frame."""
+        """(frame, channel) values, and the seconds from one frame to the next."""
         self.expect("Frames:")
         frames = int(self.number())
         self.expect("Frame")
         self.expect("Time:")
-        seconds = self.number()
-        if frames < 1 or seconds <= 0.0:
-            self.refuse(f"{frames} frames of {seconds} seconds; there is no motion in it")
-        wanted = sum(map(len, self.channels))
-        if not wanted:
+        frame_time = self.number()
+        if frames < 1 or frame_time <= 0.0:
+            self.refuse(f"{frames} frames of {frame_time} seconds; there is no motion in it")
+        channels = sum(map(len, self.channels))
+        if not channels:
             self.refuse("no joint has a channel; there is no motion in it")
-        left = len(self.words) - self.at
-        if left != frames * wanted:
-            self.refuse(f"{frames} frames of {wanted} channels are {frames * wanted} numbers, but {left} follow")
-        values = [self.number() for _ in range(left)]
-        return np.array(values, dtype=np.float64).reshape(frames, wanted), seconds
+        count = len(self.words) - self.at
+        if count != frames * channels:
+            self.refuse(f"{frames} frames of {channels} channels are {frames * channels} numbers, but {count} follow")
+        values = [self.number() for _ in range(count)]
+        return np.array(values, dtype=np.float64).reshape(frames, channels), frame_time
 
     def _add(self, name: str, parent: int, *, end: bool) -> int:
         self.names.append(name)
         self.parents.append(parent)
-        self.ends.append(end)
+        self.is_end_site.append(end)
         self.offsets.append([0.0, 0.0, 0.0])
         self.channels.append([])
         return len(self.names) - 1
@@ -160,12 +162,12 @@ class _Reader:
             channel = self.word()
             if channel not in CHANNELS or channel in self.channels[-1]:
                 self.at -= 1
-                self.refuse(f"channel {channel[:40]!r}; expected some of {', '.join(CHANNELS)}, each once")
+                self.refuse(f"channel {channel[:40]!r}; expected each of {', '.join(CHANNELS)} at most once")
             self.channels[-1].append(channel)
 
 
 def _posed(tree: _Reader, values: Floats) -> tuple[Floats, Floats]:
-    """Rotations against the parent and positions: x_j = x_p + G_p d_j, G_j = G_p R_j."""
+    """(frame, joint, 3, 3) rotations against the parent, (frame, joint, xyz) positions: x_j = x_p + G_p d_j, G_j = G_p R_j."""
     shape = (len(values), len(tree.names))
     R, G, X = np.tile(np.eye(3), (*shape, 1, 1)), np.empty((*shape, 3, 3)), np.empty((*shape, 3))
     column = 0

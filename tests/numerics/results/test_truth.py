@@ -1,4 +1,4 @@
-"""What is read from a truth, and what is refused."""
+"""Truth files of three formats: what is read, and what is refused."""
 
 import json
 
@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from kinetree.errors import InputError
-from kinetree.tasks.numerics.results.evaluation.truth import factor, of_told, read_truth
+from kinetree.tasks.numerics.results.truth import read_truth, truth_of_json
 
-TOLD = {
+CONTENT = {
     "unit": "mm",
     "height": 1500.0,
     "joints": [
@@ -21,15 +21,15 @@ TOLD = {
 
 
 def changed(**fields):
-    return json.dumps({**TOLD, **fields})
+    return json.dumps({**CONTENT, **fields})
 
 
 def joints(**fields):
-    return [TOLD["joints"][0], {**TOLD["joints"][1], **fields}, TOLD["joints"][2]]
+    return [CONTENT["joints"][0], {**CONTENT["joints"][1], **fields}, CONTENT["joints"][2]]
 
 
-def test_what_is_told_is_read():
-    truth = read_truth(json.dumps(TOLD), "truth.json")
+def test_truth_json_is_read():
+    truth = read_truth(json.dumps(CONTENT), "truth.json")
     assert truth.names == ("hips", "knee", "toe")
     assert truth.parents == (-1, 0, 1)
     assert truth.kinds == ("joint", "joint", "tip")
@@ -40,7 +40,7 @@ def test_what_is_told_is_read():
 
 
 def test_skeleton_json_of_another_run_is_a_truth_too():
-    told = {
+    content = {
         "format": "kinetree.skeleton/1",
         "unit": None,
         "fps": 25.0,
@@ -50,19 +50,19 @@ def test_skeleton_json_of_another_run_is_a_truth_too():
             {"name": "b", "parent": 0, "kind": "joint"},
             {"name": "c", "parent": 1, "kind": "leaf"},
         ],
-        "positions": TOLD["positions"],
+        "positions": CONTENT["positions"],
     }
-    truth = of_told(told, "skeleton.json")
+    truth = truth_of_json(content, "skeleton.json")
     assert truth.parents == (-1, 0, 1)
     assert truth.scored == (False, True, False)
     assert truth.frames == (3, 5)
     with pytest.raises(InputError, match=r"format 'kinetree\.skeleton/9' is not known; kinetree\.skeleton/1 is"):
-        of_told({**told, "format": "kinetree.skeleton/9"}, "skeleton.json")
+        truth_of_json({**content, "format": "kinetree.skeleton/9"}, "skeleton.json")
 
 
 def test_joint_that_turns_too_little_is_not_scored_where_the_file_does_not_say():
     rows = [{k: v for k, v in row.items() if k != "scored"} for row in joints(turns_deg=14.9)]
-    assert of_told({**TOLD, "joints": rows}, "t").scored == (False, False, False)
+    assert truth_of_json({**CONTENT, "joints": rows}, "t").scored == (False, False, False)
 
 
 def test_bvh_scores_what_turns_and_never_the_root():
@@ -81,48 +81,41 @@ def test_bvh_scores_what_turns_and_never_the_root():
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("{", "truth.json: not JSON: "),
-        ("[]", "no joints and positions in it"),
-        ('{"joints": []}', "no joints and positions in it"),
+        ("[]", "it has no joints and positions"),
+        ('{"joints": []}', "it has no joints and positions"),
         (changed(joints=[]), "joints must be a list of objects, each with a name"),
         (changed(joints=joints(name="hips")), "two joints are called 'hips'"),
         (changed(joints=joints(parent="hip")), "the parent of knee is 'hip', which is none of its joints"),
-        (changed(joints=joints(parent=None)), "2 joints have no parent; one tree has one root"),
-        (changed(joints=joints(parent="toe")), "knee is below itself; joints must make a tree"),
-        (changed(joints=joints(kind="ball")), "knee is a 'ball'; there are root, joint, tip, leaf"),
-        (changed(joints=joints(turns_deg="many")), "turns_deg of knee is 'many', which is no number"),
+        (changed(joints=joints(parent=None)), "2 joints have no parent; a tree has exactly one root"),
+        (changed(joints=joints(parent="toe")), "knee is its own ancestor; joints must form a tree"),
+        (changed(joints=joints(kind="ball")), "knee has kind 'ball'; expected one of root, joint, tip, leaf"),
+        (changed(joints=joints(turns_deg="many")), "turns_deg of knee is 'many', which is not a finite number"),
         (changed(positions=[[[0, 0, 0]]]), "positions must be (frame, 3 joints, 3), got (1, 1, 3)"),
         (changed(positions=[]), "positions must be (frame, 3 joints, 3)"),
-        (changed(positions=[[[0, 0, 0]] * 3, [[0, 0, 0]] * 2]), "the same for every frame"),
+        (changed(positions=[[[0, 0, 0]] * 3, [[0, 0, 0]] * 2]), "equally many in every frame"),
         (changed(positions=[[[0, 0, 0]] * 3, [[0, 0, 0], [0, float("nan"), 0], [0, 0, 0]]]), "joint 1 in frame 1 is not"),
-        (changed(height=0), "height is 0, expected a number above 0"),
-        (changed(fps=-25), "fps is -25, expected a number above 0"),
-        (changed(height=10**400), "height is 1000000000000000000000000000000000000000, which is no number"),
-        (changed(height=1e-300), "height is 1e-300, expected a number above 0 of a size that occurs"),
-        (changed(joints=joints(kind=["tip"])), "knee is a ['tip']; there are root, joint, tip, leaf"),
+        (changed(height=0), "height is 0; expected a positive number"),
+        (changed(fps=-25), "fps is -25; expected a positive number"),
+        (changed(height=10**400), "height is 1000000000000000000000000000000000000000, which is not a finite number"),
+        (changed(height=1e-300), "height is 1e-300; expected a positive number from 1e-50 to 1e+50"),
+        (changed(joints=joints(kind=["tip"])), "knee has kind ['tip']; expected one of root, joint, tip, leaf"),
         (changed(joints=joints(parent=True)), "the parent of knee is True, which is none of its joints"),
         (changed(positions=[[[0, 0, 0]] * 3, [[0, 0, 0], [0, 1e200, 0], [0, 0, 0]]]), "positions go up to 1e+200"),
-        ("[" * 100_000, "lists within lists without end"),
+        ("[" * 100_000, "lists are nested too deep"),
         (changed(frames=[0]), "frames must be 2 whole numbers"),
         (changed(frames=[4, 4]), "frames must ascend"),
     ],
 )
-def test_what_is_no_truth_is_refused_in_words(text, told):
+def test_invalid_truth_is_refused_in_words(text, message):
     with pytest.raises(InputError) as refused:
         read_truth(text, "truth.json")
-    assert told in str(refused.value)
+    assert message in str(refused.value)
     assert str(refused.value).startswith("truth.json")
 
 
 def test_file_of_another_kind_is_refused():
     with pytest.raises(InputError, match=r"walk\.c3d: a truth is a truth\.json, .* or a \.bvh file"):
         read_truth("", "walk.c3d")
-
-
-def test_units_are_converted_where_both_are_known():
-    assert factor("m", "mm", "t") == pytest.approx(1000.0)
-    assert factor("cm", None, "t") == factor(None, "cm", "t") == factor("ell", "ell", "t") == 1.0
-    with pytest.raises(InputError, match="t is in ell and the sequence in mm; ell is none of mm, cm"):
-        factor("ell", "mm", "t")

@@ -1,10 +1,10 @@
-"""A BVH with a known answer, and broken ones."""
+"""A BVH file whose positions are known, and damaged ones."""
 
 import numpy as np
 import pytest
 
 from kinetree.errors import InputError
-from kinetree.tasks.numerics.results.evaluation.bvh import read_bvh
+from kinetree.tasks.numerics.results.bvh_reader import read_bvh
 
 ARM = """HIERARCHY
 ROOT hips
@@ -42,19 +42,19 @@ def test_hierarchy_is_read_in_its_order():
     clip = read_bvh(ARM, "arm.bvh")
     assert clip.names == ("hips", "knee", "knee end", "arm", "arm end")
     assert clip.parents == (-1, 0, 1, 0, 3)
-    assert clip.ends == (False, False, True, False, True)
-    assert clip.seconds == 0.04
+    assert clip.is_end_site == (False, False, True, False, True)
+    assert clip.frame_time == 0.04
 
 
-def test_positions_are_those_another_program_finds():
+def test_positions_equal_those_of_another_program():
     """From pybvh 0.9.0: read_bvh_file("arm.bvh").node_positions()."""
     clip = read_bvh(ARM, "arm.bvh")
-    told = [
+    expected = [
         [[10, 20, 30], [10.3264, 18.1492, 29.3160], [10.3302, 17.9821, 28.3300], [10.8232, 20.3188, 29.5302],
          [11.8413, 20.7764, 29.5930]],
         [[11, 21, 31], [11, 19, 31], [12, 19, 31], [12, 21, 31], [13, 21, 31.5]],
     ]  # fmt: skip
-    assert np.allclose(clip.X, told, rtol=0, atol=6e-5)
+    assert np.allclose(clip.X, expected, rtol=0, atol=6e-5)
 
 
 def test_position_channels_of_a_joint_stand_in_place_of_its_offset():
@@ -71,15 +71,15 @@ def test_rotations_are_against_the_parent_in_the_order_of_the_channels():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ("HIERARCHY", "ply", "line 1: expected HIERARCHY, got 'ply'; it is not a BVH"),
         ("ROOT hips", "JOINT hips", "line 2: expected ROOT"),
         ("OFFSET 1 2 3", "OFFSET 1 2", "line 5: expected a number, got 'CHANNELS'"),
-        ("OFFSET 1 2 3", "OFFSET 1 2 nan", "line 4: nan is no finite number"),
-        ("OFFSET 1 2 3", "OFFSET 1 2 1e300", "line 4: 1e300 is beyond 1e+50"),
+        ("OFFSET 1 2 3", "OFFSET 1 2 nan", "line 4: nan is not a finite number"),
+        ("OFFSET 1 2 3", "OFFSET 1 2 1e300", "line 4: 1e300 is larger than 1e+50"),
         ("Zrotation Xrotation Yrotation\n  JOINT", "Zrotation Zrotation Yrotation\n  JOINT", "line 5: channel 'Zrotation'"),
-        ("Xposition Y", "Xpos Y", "line 5: channel 'Xpos'; expected some of Xposition"),
+        ("Xposition Y", "Xpos Y", "line 5: channel 'Xpos'; expected each of Xposition"),
         ("Frames: 2", "Frames: 3", "line 28: 3 frames of 12 channels are 36 numbers, but 24 follow"),
         ("Frames: 2", "Frames: 0", "0 frames of 0.04 seconds"),
         (" 25\n", " 25 1\n", "24 numbers, but 25 follow"),
@@ -88,10 +88,10 @@ def test_rotations_are_against_the_parent_in_the_order_of_the_channels():
         ("\nMOTION", "\n", "expected MOTION, got 'Frames:'"),
     ],
 )
-def test_broken_file_is_refused_with_its_line(old, new, told):
+def test_broken_file_is_refused_with_its_line(old, new, message):
     with pytest.raises(InputError) as refused:
         read_bvh(ARM.replace(old, new, 1), "arm.bvh")
-    assert told in str(refused.value)
+    assert message in str(refused.value)
     assert str(refused.value).startswith("arm.bvh, line ")
 
 
@@ -104,6 +104,6 @@ def test_file_that_is_cut_off_is_refused(length):
 def test_hierarchy_without_channels_or_without_end_is_refused():
     head = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n"
     nested = "JOINT b\n{\nOFFSET 0 1 0\n" * 5000
-    for below, told in (("", "no joint has a channel"), (nested, "joints within joints without end")):
-        with pytest.raises(InputError, match=told):
+    for below, message in (("", "no joint has a channel"), (nested, "joints are nested too deep")):
+        with pytest.raises(InputError, match=message):
             read_bvh(f"{head}{below}}}\nMOTION\nFrames: 2000000000\nFrame Time: 0.1\n", "a.bvh")

@@ -1,0 +1,152 @@
+"""The commands that compute or delete: `run` and `gc`."""
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.options import AsJson, Force, Output, Set, StoreAt, Target, Until, err, out, pipeline_of, print_json
+from kinetree.pipeline.printable import printable
+
+if TYPE_CHECKING:
+    from kinetree.pipeline.events import Listener
+    from kinetree.pipeline.inspect import Pipeline
+
+REMARKS_PRINTED = 12
+"""Remarks on the results that are printed after a run."""
+FAILURES_PRINTED = 20
+"""Failures that are printed after a run; run.json has all."""
+
+
+def run(
+    config: Target = None,
+    output: Output = None,
+    store: StoreAt = None,
+    sets: Set = None,
+    until: Until = None,
+    force: Force = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", help="How many nodes to compute at the same time; default: one per core.")
+    ] = None,
+    executor: Annotated[str | None, typer.Option("--executor", help="sync, threads or processes.")] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a dask scheduler that runs at this address."),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")] = False,
+    log_json: Annotated[
+        Path | None,
+        typer.Option("--log-json", metavar="FILE", help="Append every event of the run to this file, one JSON a line."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run the steps that are out of date and say where the results are.
+
+    What is up to date is not computed again. An interrupted run goes on where it stopped.
+    """
+    from kinetree.pipeline import config as configuration
+    from kinetree.pipeline.inspect import Pipeline
+
+    pipeline = pipeline_of(config, output, store, sets)
+    compute = configuration.with_compute(pipeline.config, workers=workers, executor=executor, scheduler=scheduler)
+    compute_and_report(Pipeline.of(compute), until=until, force=force, quiet=quiet, log_json=log_json, as_json=as_json)
+
+
+def compute_and_report(
+    pipeline: "Pipeline",
+    *,
+    until: list[str] | None = None,
+    force: list[str] | None = None,
+    quiet: bool = False,
+    log_json: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Runs a pipeline with its progress and prints the summary, as `run` does.
+
+    raises : typer.Exit with code 1 where nodes failed; what `Pipeline.run` raises; ConfigError where the log cannot be written
+    """
+    with _progress(pipeline, quiet or as_json, log_json) as listeners:
+        summary = pipeline.run(until=until or (), force=force or (), listeners=listeners)
+    if as_json:
+        print_json(summary)
+    elif not quiet:
+        _print_summary(summary, pipeline)
+    if summary["status"] == "failed":
+        if quiet:
+            _print_failures(summary)
+        raise typer.Exit(1)
+
+
+def gc(
+    config: Target = None,
+    keep: Annotated[
+        list[str] | None, typer.Option("--keep", metavar="RUN", help="Keep what this run needs; may be repeated.")
+    ] = None,
+    keep_last: Annotated[
+        int | None, typer.Option("--keep-last", min=0, help="Keep what the last N runs of each output folder need.")
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Delete nothing; only say what would be deleted.")] = False,
+    store: StoreAt = None,
+    as_json: AsJson = False,
+) -> None:
+    """Delete from the store what no longer belongs to a run you keep.
+
+    Without options the last run of each output folder is kept. A run that is under way keeps what it uses.
+    """
+    from kinetree.pipeline import gc as collection
+
+    pipeline = pipeline_of(config, store=store)
+    garbage = collection.collect(pipeline.store, keep=keep or (), last=keep_last, dry=dry_run)
+    if as_json:
+        print_json(garbage.json())
+    else:
+        verb = "would delete" if dry_run else "deleted"
+        out.print(f"{verb} {garbage} in {printable(pipeline.store.url)}", markup=False)
+
+
+@contextlib.contextmanager
+def _progress(pipeline: "Pipeline", quiet: bool, log: Path | None) -> "Iterator[list[Listener]]":
+    from kinetree.pipeline.events import JsonLog
+    from kinetree.pipeline.progress import LiveProgress, PlainProgress
+
+    with contextlib.ExitStack() as stack:
+        listeners: list[Listener] = []
+        if log is not None:
+            try:
+                listeners.append(JsonLog(stack.enter_context(log.open("a", encoding="utf-8", errors="backslashreplace"))))
+            except OSError as error:
+                raise ConfigError(f"--log-json {log}: cannot be written: {error.strerror}; name another file") from None
+        if not quiet:
+            workers = pipeline.config.compute.worker_count
+            if err.is_terminal:
+                listeners.append(stack.enter_context(LiveProgress(err, workers)))
+            else:
+                listeners.append(stack.enter_context(PlainProgress(err, workers)))
+        yield listeners
+
+
+def _print_summary(summary: dict[str, Any], pipeline: "Pipeline") -> None:
+    from kinetree.pipeline.progress import clock
+
+    counts = summary["nodes"]
+    line = ", ".join(f"{count} {name}" for name, count in counts.items() if count or name in ("ran", "fresh"))
+    _print_failures(summary)
+    out.print(f"{summary['status']}: {line} in {clock(summary['seconds'])}")
+    remarks = pipeline.remarks()
+    for node, text in remarks[:REMARKS_PRINTED]:
+        out.print(f"{node}: {printable(text)}", markup=False)
+    if len(remarks) > REMARKS_PRINTED:
+        out.print(f"… and {len(remarks) - REMARKS_PRINTED} more remarks")
+    out.print(f"results: {printable(pipeline.config.output)}", markup=False)
+
+
+def _print_failures(summary: dict[str, Any]) -> None:
+    failures = summary["failures"]
+    for failure in failures[:FAILURES_PRINTED]:
+        line = printable(f"{failure['node']}: {failure['error']}: {failure['message']}")
+        err.print(line, markup=False, style="red")
+    if len(failures) > FAILURES_PRINTED:
+        err.print(f"… and {len(failures) - FAILURES_PRINTED} more, all in run.json", markup=False, style="red")

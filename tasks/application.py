@@ -1,0 +1,121 @@
+"""What kinetree is to the loom: its methods, presets and commands. Cheap to import."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NoReturn
+
+from kinetree.pipeline.application import Application, Command, Section, Shortcut, built_in
+from kinetree.pipeline.cli import main as run_command_line
+
+if TYPE_CHECKING:
+    from kinetree.pipeline.graph import Graph
+
+
+def _methods() -> "Mapping[str, Graph]":
+    from kinetree.tasks.methods import METHODS
+
+    return METHODS
+
+
+def _command(name: str, summary: str, *examples: str) -> Command:
+    """A command of our own, in the file of its name."""
+    return Command(name, summary, f"kinetree.tasks.commands.{name}:{name}", examples)
+
+
+APPLICATION = Application(
+    name="kinetree",
+    summary="Kinematic structure of a moving body from 3D video: a tree of joints and bones from meshes whose vertices and"
+    " connectivity change in every frame.",
+    methods=_methods,
+    presets="kinetree.configs",
+    sections=(
+        Section(
+            "Start",
+            (
+                _command(
+                    "demo",
+                    "Compute an example and say where the results are.",
+                    "kinetree demo",
+                    "kinetree demo --output walk-demo",
+                ),
+                built_in("run", "kinetree run --input scans/ --output walk/", "kinetree run walk.yaml --until mesh"),
+                _command(
+                    "view",
+                    "Open the report of a run in a browser.",
+                    "kinetree view walk/",
+                    "kinetree view walk/ --print",
+                ),
+            ),
+        ),
+        Section(
+            "Look",
+            (
+                built_in("show", 'kinetree show "mesh[frame=3]" walk/', "kinetree show skeleton walk/"),
+                built_in("plan", "kinetree plan walk.yaml", "kinetree plan walk/ --set mesh.component_share=0.1 --json"),
+                built_in("why", 'kinetree why "mesh[frame=3]" walk/', "kinetree why leaves walk/"),
+                built_in("graph", "kinetree graph", "kinetree graph walk/ --format dot | dot -Tsvg > graph.svg"),
+                built_in("tasks", "kinetree tasks --json"),
+                built_in("runs", "kinetree runs walk/"),
+                built_in("diff", "kinetree diff 20250301-081500-123ab 20250302-081500-4560c walk/"),
+            ),
+        ),
+        Section(
+            "Take away",
+            (
+                _command(
+                    "export",
+                    "Write the result of a run as a file for other programs.",
+                    "kinetree export walk/ --to csv",
+                    "kinetree export walk/ --to glb -o walk.glb --set glb.up=z",
+                    "kinetree export walk/ --to ply -o coloured/",
+                ),
+                _command(
+                    "plot",
+                    "Draw a result of a run: curves, surfaces, the tree, errors.",
+                    "kinetree plot walk/ correlation -o correlation.pdf",
+                    "kinetree plot walk/ mu --frames 0,12,30",
+                ),
+                _command(
+                    "evaluate",
+                    "Compare the skeleton of a run with the true one, joint by joint.",
+                    "kinetree evaluate walk/ walk/truth.json",
+                    "kinetree evaluate walk/ dance.bvh --set truth.unit=cm",
+                    "kinetree evaluate walk/ other-run/skeleton.json --plot errors.png",
+                ),
+            ),
+        ),
+        Section("Configure", (built_in("config", "kinetree config > walk.yaml", "kinetree config paper-2014"),)),
+        Section(
+            "Make",
+            (
+                _command(
+                    "synth",
+                    "Write a synthetic sequence with its true skeleton.",
+                    "kinetree synth human -o walk/",
+                    "kinetree synth quadruped -o dog/ --frames 60 --vertices 12000",
+                    "kinetree synth human -o hip/ --contact hand_r:hip_r:12:26 --noise 0.001",
+                ),
+            ),
+        ),
+        Section("Care", (built_in("gc", "kinetree gc walk/ --dry-run", "kinetree gc walk/ --keep-last 3"),)),
+    ),
+    shortcuts=(
+        Shortcut(
+            ("--input", "-i"),
+            "source.input",
+            "Folder or glob of meshes, one per frame; or one .npz or zarr file with all frames.",
+            "FOLDER",
+            is_input=True,
+        ),
+        Shortcut(("--frames",), "source.frames", "Which frames to use, e.g. 10:60:2.", "START:STOP:STEP"),
+    ),
+    first_steps=(
+        ("kinetree demo", "compute an example, in a few minutes"),
+        ("kinetree run --input FOLDER --output OUT", "compute your own sequence: a folder of meshes, one per frame"),
+        ("kinetree view OUT", "look at the result"),
+    ),
+)
+
+
+def main() -> NoReturn:
+    """The command `kinetree`."""
+    run_command_line(APPLICATION)

@@ -1,0 +1,19 @@
+"""The papers' table of contents: a method is a sum of shelves, each of which lists its operations in the papers' order.
+
+mesoscopic: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
+what was measured to be better in place of some of its steps. mesoscopic-2014: the same to the paper's letter.
+"""
+
+from kinetree.pipeline.graph import Graph
+from kinetree.tasks.input import INPUT
+from kinetree.tasks.paper_2014 import PAPER_2014
+from kinetree.tasks.registration import REGISTRATION
+from kinetree.tasks.results import FIGURES, FIGURES_2014, RESULTS
+from kinetree.tasks.structure import STRUCTURE
+from kinetree.tasks.topology import TOPOLOGY
+
+METHODS = {
+    "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
+    "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, *FIGURES_2014, *RESULTS)),
+}
+"""The graph of each method, checked when this module is imported."""

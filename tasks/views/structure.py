@@ -1,0 +1,49 @@
+"""What people see of the skeleton."""
+
+from kinetree.pipeline.views import remarks_of, text_of
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.schemas.structure.skeleton import Skeleton
+
+
+@remarks_of(KinematicTree)
+def kinematic_tree_remarks(tree: KinematicTree) -> tuple[str, ...]:
+    """None: the skeleton says it."""
+    return ()
+
+
+@remarks_of(Skeleton)
+def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
+    """How many joints there are, or that there are none and why."""
+    turning = skeleton.kinds.count("joint")
+    if not turning:
+        return ("no joints: nothing on this body turns against anything else; it is one rigid part",)
+    return (f"{turning} joints and {skeleton.kinds.count('leaf')} ends of bones under {skeleton.names[0]}",)
+
+
+@text_of(Skeleton)
+def skeleton_text(skeleton: Skeleton) -> tuple[str, ...]:
+    """The tree, a line a joint: length of its bone, range of its turning, how well it is supported."""
+    names = [f"{_branch(skeleton, joint)}{name}" for joint, name in enumerate(skeleton.names)]
+    width = max(map(len, names))
+    return tuple(f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names))
+
+
+def _branch(skeleton: Skeleton, joint: int) -> str:
+    """The lines that lead to a joint, as a tree of folders is drawn."""
+    parent, lead = skeleton.parents[joint], ""
+    while parent >= 0:
+        is_last = joint == max(j for j, p in enumerate(skeleton.parents) if p == parent)
+        mark = ("└─ " if is_last else "├─ ") if not lead else ("   " if is_last else "│  ")
+        joint, parent, lead = parent, skeleton.parents[parent], mark + lead
+    return lead
+
+
+def _measures(skeleton: Skeleton, joint: int) -> str:
+    if skeleton.kinds[joint] == "root":
+        return f"root, {len(skeleton.frames)} frames"
+    unit = f" {skeleton.unit}" if skeleton.unit else ""
+    length = f"bone {skeleton.lengths[joint]:.4g}{unit}"
+    if skeleton.kinds[joint] == "leaf":
+        return length
+    seen = f"seen in {skeleton.support[joint]} of {len(skeleton.frames)} frames"
+    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, ±{skeleton.drift[joint]:.2g}{unit}, {seen}"

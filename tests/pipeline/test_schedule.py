@@ -1,0 +1,89 @@
+"""Laws of the schedule: it alone changes its entries, and what a run tells it leaves no node where it cannot go on."""
+
+import ast
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from kinetree.errors import StoreError
+from kinetree.pipeline import schedule as module
+from kinetree.pipeline.schedule import MENDS, Entry
+
+HOME = Path(str(module.__file__))
+
+
+def changed(path: Path) -> set[str]:
+    """Attributes of something other than `self` that a file assigns, or to whose items it assigns."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        each = [t for target in targets for t in (target.elts if isinstance(target, ast.Tuple) else [target])]
+        owned = [t.value if isinstance(t, ast.Subscript) else t for t in each]
+        attributes = [t for t in owned if isinstance(t, ast.Attribute)]
+        found |= {t.attr for t in attributes if not (isinstance(t.value, ast.Name) and t.value.id == "self")}
+    return found
+
+
+def test_nobody_else_changes_the_entries_of_a_schedule():
+    names = {field.name for field in fields(Entry)}
+    assert {"state", "key", "artifact", "damaged"} <= changed(HOME) & names
+    for path in HOME.parent.glob("*.py"):
+        assert path == HOME or not changed(path) & names, path.name
+
+
+@pytest.fixture
+def schedule(toys):
+    """The toys as they are when frame 0 was read and its points are being made rough."""
+    toys.run(until=("points",))
+    return toys.pipeline().schedule(until=["smooth"])
+
+
+def of(schedule, task, frame=0):
+    return next(e for e in schedule.entries.values() if (e.node.task, e.node.at) == (task, (frame,)))
+
+
+def test_a_lost_input_is_made_again_before_its_reader_runs(schedule):
+    (smooth,) = schedule.send(next(schedule.ready()))
+    points = of(schedule, "points")
+    assert (smooth.label, smooth.state, points.state) == ("smooth[frame=0]", "running", "fresh")
+    assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") == [(points, "fresh")]
+    assert (smooth.state, smooth.waits, points.state) == ("waits", {points.node}, "stale")
+    assert [str(r) for r in points.reasons] == ["artifact: lost bytes"]
+    assert points.node in [e.node for e in schedule.ready()]
+
+
+def test_an_input_that_is_whole_again_is_not_thrown_away(schedule):
+    (smooth,) = schedule.send(next(schedule.ready()))
+    points = of(schedule, "points")
+    schedule.mend(smooth.node, str(points.artifact), "lost bytes")
+    schedule.send(points)
+    assert points.damaged is None
+    assert schedule.store.holds(points.record)
+
+
+def test_after_several_rounds_nothing_more_is_tried(schedule):
+    (smooth,) = schedule.send(next(schedule.ready()))
+    points = of(schedule, "points")
+    for _ in range(MENDS):
+        assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") is not None
+    state = (smooth.state, points.state)
+    assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") is None
+    assert (smooth.state, points.state) == state
+
+
+def test_an_input_that_no_node_makes_is_refused_in_words(schedule):
+    (smooth,) = schedule.send(next(schedule.ready()))
+    with pytest.raises(StoreError, match=r"^smooth\[frame=0\]: artifact 0123456789ab lost bytes and nothing here makes it$"):
+        schedule.mend(smooth.node, "0123456789abcdef", "lost bytes")
+    assert smooth.state == "running"
+
+
+def test_a_node_that_was_not_computed_waits_again_unless_it_is_skipped(toys):
+    schedule = toys.pipeline().schedule(until=["smooth"])
+    points, smooth = schedule.send(next(schedule.ready()))
+    schedule.put_back(smooth.node)
+    assert (smooth.state, smooth.waits) == ("waits", {points.node})
+    assert schedule.fail(points.node, "broken") == [smooth.node]
+    schedule.put_back(smooth.node)
+    assert (smooth.state, smooth.cause) == ("skipped", "points[frame=0]")
