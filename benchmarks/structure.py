@@ -11,8 +11,8 @@ every vertex by a smooth random displacement of that share of the height, correl
 alignment's error. --noise moves every coordinate of every vertex by a normal deviate of that share of the height (2014,
 Fig. 21: 1 mm of 1,500) and prints how far joints have come, in % of the height, and how many are new or gone.
 
-Stages: `hung`, all parts in a tree; `pruned`, after those that are none were dropped; `fitted`, the finished skeleton with
-bones of one length. --peer gives Dem Bones (py-dem-bones) that many bones and hangs them in the same tree with the same
+Stages: `tree`, all parts in a tree; `pruned`, after those that are none were dropped; `fitted`, the finished skeleton with
+bones of one length. --peer gives Dem Bones (py-dem-bones) that many bones and joins them in the same tree with the same
 joints. Found are joints within 5 % of the height, assigned as `kinetree evaluate` does; errors in % of the height.
 Seconds are the processor's, after a first run that compiles.
 """
@@ -159,18 +159,18 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     tips = kept[extrema(mu(bases.distance, bases.weight), faces).vertex]
     area = Surface.of(case.V, case.F).area
     begun = time.process_time()
-    trust = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
-    found = rigid_parts(case.V, case.F, case.x, trust, leaves=tips)
+    confidence = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
+    found = rigid_parts(case.V, case.F, case.x, confidence, leaves=tips)
     parted = time.process_time()
-    made = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
+    skeleton, _ = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, confidence)
     done = time.process_time()
     body, held = MovingSurface(case.V, case.F, case.x, area), MovingParts(found.label, found.R, found.t, found.residual)
-    kept_parts = pruned(body, held, tips)
-    turning = np.array([kind == "joint" for kind in made.kinds])
+    left = pruned(body, held, tips)
+    turning = np.array([kind == "joint" for kind in skeleton.kinds])
     joints = {
-        "hung": carried(held, part_tree(body, held)),
-        "pruned": carried(kept_parts.parts, kept_parts.part_tree),
-        "fitted": made.positions[:, turning],
+        "tree": carried(held, part_tree(body, held)),
+        "pruned": carried(left.parts, left.part_tree),
+        "fitted": skeleton.positions[:, turning],
     }
     return joints, (parted - begun) / len(case.x), (done - parted) / len(case.x)
 
