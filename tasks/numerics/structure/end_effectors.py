@@ -1,4 +1,4 @@
-"""Where bones end: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
+"""End effectors: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
 
 from typing import Any
 
@@ -13,25 +13,26 @@ from kinetree.tasks.numerics.geometry.neighbours import rings
 
 
 def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
-    """(end, 2) part and vertex of every end of a bone, by part, a part's most distant first.
+    """Where chains of bones end on the surface.
 
-    Every leaf is one. A part on which nothing hangs and that has no leaf ends where its surface is farthest, along its edges,
-    from its border; a body of one part has no ends but its leaves.
+    Every leaf is an end effector. A part without a leaf and with no part below it ends where its surface is farthest, along
+    its edges, from its border; a body of one part has no ends but its leaves.
 
     V, F    : (vertex, xyz) mesh unit · (face, corner)
     label   : (vertex,) part, parents : (part,) −1 for the root
     leaves  : (leaf,) vertices
+    returns : (end, 2) part and vertex, by part, a part's most distant first
     """
     start, ring = rings(F, len(V))
     edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
     ends: list[tuple[int, int]] = []
     for part in range(len(parents)):
-        mine = [int(v) for v in leaves if label[v] == part]
+        tips = [int(v) for v in leaves if label[v] == part]
         bare = part > 0 and not (parents == part).any()
-        far = _from_border(V, edge, label, part) if bare or len(mine) > 1 else np.zeros(len(V))
-        if bare and not mine:
-            mine = [int(np.argmax(far))]
-        ends += [(part, v) for v in sorted(mine, key=lambda v: (-far[v], *V[v]))]
+        far = _from_border(V, edge, label, part) if bare or len(tips) > 1 else np.zeros(len(V))
+        if bare and not tips:
+            tips = [int(np.argmax(far))]
+        ends += [(part, v) for v in sorted(tips, key=lambda v: (-far[v], *V[v]))]
     return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
 
@@ -49,7 +50,7 @@ def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer
 
 
 def _from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
-    """(vertex,) way along the part's own edges from its border, mesh unit; 0 elsewhere, and where no border can be reached."""
+    """(vertex,) distance along the part's own edges from its border, mesh unit; 0 elsewhere or where there is no path."""
     edge = edge[label[edge[:, 0]] == part]
     inside = label[edge[:, 1]] == part
     border = np.unique(edge[~inside, 0])

@@ -1,8 +1,9 @@
 """Readable names for the joints of a tree, the same on every run and under small changes of the body.
 
 `root`; `spine_1`, `spine_2` … for joints beyond which the body branches; `limb_a_1`, `limb_a_2` … along a limb, which does not
-branch; `…_end` for ends of bones. Limbs are lettered from the root outwards in an order of lengths and places that
-is decided, again and again, at the widest gap: two limbs change letters only if what differs most in them no longer does.
+branch; `…_end` for ends of bones. Limbs are lettered from the root outwards in an order of lengths and places,
+decided at the widest gap of any of them, then again within both halves: so two limbs change letters only if the largest
+difference between them goes.
 """
 
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
 class JointNames(NamedTuple):
-    """An order of joints, a parent before what hangs on it, branch by branch, and their names.
+    """An order of joints, parents before children, branch by branch, and their names.
 
     order : (joint,) the given joint at each place, names : of each place
     """
@@ -23,7 +24,7 @@ class JointNames(NamedTuple):
 
 
 def joint_names(rest: Floats, parents: Ints, ends: Flags) -> JointNames:
-    """Order and name all joints.
+    """Orders and names all joints (ours).
 
     rest    : (joint, xyz) in the reference, parents : (joint,) −1 for the root, which is the first
     ends    : (joint,) whether it is the end of a bone
@@ -63,7 +64,7 @@ def joint_names(rest: Floats, parents: Ints, ends: Flags) -> JointNames:
 
 
 def widest_gaps(features: Floats) -> list[int]:
-    """Rows in an order decided at the widest gap of any column, then within both halves; the greater half comes first."""
+    """Rows of (row, column) in an order decided at the widest gap of any column, then within both halves, the greater first."""
     rows = list(range(len(features)))
     if len(rows) < 2:
         return rows

@@ -1,4 +1,4 @@
-"""Which part each vertex follows: the one whose motion explains its surroundings, all of a part in one piece."""
+"""Which part each vertex follows: the one whose motion is nearest to its surroundings' motion, each part connected (ours)."""
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from kinetree.tasks.numerics.structure.part_motion import squared_distance
 def relabelled(
     V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: Ints, start: Ints, ring: Ints, steps: int
 ) -> Ints:
-    """Every vertex given to the part, of its own and those next to it, that leaves least around the vertex.
+    """Every vertex labelled with the part, of its own and those next to it, of the least mean residual around the vertex.
 
     V, x        : (vertex, xyz) · (frame, vertex, xyz) mesh unit
-    weight      : (frame, vertex) belief
+    weight      : (frame, vertex) confidence, 0 to 1
     R, t        : (frame, part, 3, 3) · (frame, part, xyz)
     label       : (vertex,) part before
-    start, ring : neighbours of every vertex, see `rings.rings`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
     steps       : means over a vertex and its neighbours that residuals go through: how far the surroundings reach
-    returns     : (vertex,) part; what is cut off from the bulk of its part goes to those around it
+    returns     : (vertex,) part; vertices cut off from the bulk of their part go to the parts around them
     """
     parts = R.shape[1]
     near = border_edges(label, parts, start, ring)
@@ -43,7 +43,11 @@ def relabelled(
 
 @compiled
 def border_edges(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
-    """(part, part) edges of the mesh between any two parts; each counted once from either side."""
+    """(part, part) edges of the mesh between any two parts, each counted once from either side.
+
+    label       : (vertex,) part, below `parts`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    """
     near = np.zeros((parts, parts), np.int64)
     for v in range(len(label)):
         for q in range(start[v], start[v + 1]):
@@ -56,7 +60,9 @@ def border_edges(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
 def connected(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
     """Every part reduced to its largest connected piece, the rest given to the labels around it, nearest first.
 
-    returns : (vertex,) a piece with no other label around it keeps its own
+    label       : (vertex,) part, below `parts`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    returns     : (vertex,) part; a piece with no other label around it keeps its own
     """
     piece = np.full(len(label), -1, np.int64)
     stack = np.empty(len(label), np.int64)

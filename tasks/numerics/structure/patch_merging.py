@@ -1,4 +1,4 @@
-"""Patches of a surface merged as long as they move as one (Ward's criterion on rigid motion)."""
+"""Patches of a surface merged as long as they move as one (Ward 1963, on the residual of rigid motion; ours)."""
 
 import heapq
 
@@ -53,6 +53,7 @@ def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:
 
 
 def _offer(queue: list[tuple[float, int, int, int, int]], sums: Floats, own: Floats, version: list[int], pairs: Ints) -> None:
+    """Puts the growth of the residual of pairs on the queue, with the versions of both that it holds for."""
     if not len(pairs):
         return
     for (a, b), together in zip(pairs.tolist(), _union_costs(sums, pairs).tolist(), strict=True):
@@ -61,7 +62,7 @@ def _offer(queue: list[tuple[float, int, int, int, int]], sums: Floats, own: Flo
 
 @compiled
 def costs(M: Floats) -> Floats:
-    """(set,) Σ over frames of the rigid residual of every set, mesh unit² times weight."""
+    """(set,) Σ over frames of the rigid residual of every set, mesh unit² times weight; M (set, frame, 17)."""
     out = np.zeros(len(M))
     for k in range(len(M)):
         for t in range(M.shape[1]):
@@ -71,6 +72,7 @@ def costs(M: Floats) -> Floats:
 
 @compiled
 def _union_costs(M: Floats, pairs: Ints) -> Floats:
+    """(pair,) cost of the union of two sets each."""
     out = np.zeros(len(pairs))
     m = np.empty(MOMENTS)
     for p in range(len(pairs)):

@@ -1,7 +1,7 @@
 """Smooth skinning weights from labels and motion: at most four parts a vertex, not negative, summing to one.
 
 Least squares over the part of the vertex and its neighbours in the tree, held near the weights of the surface around
-(after Le and Deng 2014): where the motion says nothing, the surface decides.
+(after Le and Deng 2014): where the motion does not determine them, the surface does.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""To which parts the vertices of a part go that is none."""
+"""To which parts the vertices of a dropped part go (ours)."""
 
 import numpy as np
 
@@ -7,9 +7,16 @@ from kinetree.tasks.numerics.compiled import compiled
 
 
 def reassigned(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
-    """Labels after a part is gone: its vertices go, from its borders inwards, to the part that moves most like them.
+    """Labels without one part: its vertices go, from its borders inwards, to the part that moves most like them.
 
-    Each vertex goes to a part that lies next to it, so that every part stays in one piece.
+    Each vertex goes to a part that lies next to it, so that every part stays connected.
+
+    V, x        : (vertex, xyz) · (frame, vertex, xyz) mesh unit
+    label       : (vertex,) part
+    gone        : the part that is dropped
+    R, t        : (frame, part, 3, 3) · (frame, part, xyz)
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    returns     : (vertex,) part
     """
     out = label.copy()
     waiting = np.flatnonzero(label == gone)
