@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 WHAT = (
-    "alignment", "angles", "cones", "confidence", "correlation", "errors", "lengths", "merging", "mu", "skeleton",
+    "alignment", "angles", "cones", "confidence", "correlation", "elimination", "errors", "lengths", "merging", "mu", "skeleton",
     "structure", "tree",
 )  # fmt: skip
 """What can be drawn; `kinetree.tasks.results.plots` draws it."""
