@@ -10,10 +10,10 @@ from kinetree.schemas.paper_2014.integration import Integration
 def cut_correspondence_remarks(correspondence: CutCorrespondence) -> tuple[str, ...]:
     """Intervals whose reference has handles, and intervals with too few leaves to tell places apart."""
     few = ("no leaf", "one leaf", "two leaves")
-    closed = "as a ring has or limbs that touch: a tree of joints cannot close it"
+    reason = "limbs touch or the body is a ring, and a tree of joints has no loop"
     handles = enumerate(correspondence.genus)
-    rings = tuple(f"interval {i} has {n} handle{'s' * (n > 1)}, {closed}" for i, n in handles if n > 0)
-    return rings + tuple(
+    loops = tuple(f"the reference of interval {i} has {n} handle{'s' * (n > 1)}: {reason}" for i, n in handles if n > 0)
+    return loops + tuple(
         f"interval {i} has {few[n]}: the geodesic mapping cannot tell places apart there"
         for i, n in enumerate(correspondence.leaf_count.tolist())
         if n < len(few)
