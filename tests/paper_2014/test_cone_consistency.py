@@ -14,7 +14,7 @@ def test_cone_that_an_interval_does_not_see_is_recovered_there() -> None:
     consistent = mesoscopic().cone_consistency
     assert consistent.leaf.tolist() == [[0, 1, 2], [0, -1, 1]]
     assert (consistent.annulus[1, consistent.rows(1)] == consistent.annulus[1, consistent.rows(0)]).all()
-    assert views.remarks(consistent) == ("cone 1 is not seen in interval 1 and was recovered from its neighbours",)
+    assert views.remarks(consistent) == ("cone 1 is missing in interval 1; it was recovered from the neighbouring intervals",)
 
 
 def test_every_interval_has_the_same_cones() -> None:

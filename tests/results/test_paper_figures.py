@@ -1,4 +1,4 @@
-"""Contract of the evidence of the 2014 method: its own steps as chapters, whatever was found."""
+"""Figures of the 2014 method: its steps as chapters, with and without joints."""
 
 import numpy as np
 from mesoscopic import SPANS, mesoscopic
@@ -26,9 +26,9 @@ def figures(*, at_rest: bool = False) -> StructureFigures:
 def test_cones_and_bones_have_chapters_with_what_was_decided_in_words() -> None:
     here = figures()
     assert [c.anchor for c in here.chapters] == ["cones", "bones"]
-    assert "cone 1 is not seen in interval 1 and was recovered from its neighbours" in here.chapters[0].told
+    assert "cone 1 is missing in interval 1; it was recovered from the neighbouring intervals" in here.chapters[0].paragraphs
     assert [len(c.pictures) for c in here.chapters] == [2, 2]
-    assert len(here.varies) == len(mesoscopic().skeleton.names)
+    assert len(here.length_variation) == len(mesoscopic().skeleton.names)
 
 
 def test_body_without_joints_has_its_chapters_all_the_same() -> None:
@@ -36,6 +36,6 @@ def test_body_without_joints_has_its_chapters_all_the_same() -> None:
 
 
 def test_chapters_stand_on_any_page() -> None:
-    assert artifacts()["evidence"] != figures()
+    assert artifacts()["structure_figures"] != figures()
     text = page(sections=sections(figures()))
     assert text.index('<section id="cones">') < text.index('<section id="bones">')

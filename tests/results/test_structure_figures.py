@@ -1,4 +1,4 @@
-"""Contract of the evidence: chapters with pictures that are whole files."""
+"""Figures of the structure: chapters whose pictures are complete files."""
 
 import numpy as np
 from pages import UP
@@ -13,11 +13,11 @@ def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_traces
     told = structure_figures(body, traces_of(body), UP)
     begins = {"png": b"\x89PNG", "svg": b"<?xml"}
     for chapter in told.chapters:
-        files = told.shown(chapter)
+        files = told.picture_files(chapter)
         assert len(files) == len(chapter.pictures) > 0
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
     assert told.end[-1] == len(told.content)
-    np.testing.assert_array_equal(told.varies, traces_of(body).variation)
+    np.testing.assert_array_equal(told.length_variation, traces_of(body).variation)
 
 
 def test_same_traces_are_the_same_bytes() -> None:
