@@ -17,7 +17,7 @@ def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
     turning = skeleton.kinds.count("joint")
     if not turning:
         return ("no joints: nothing on this body turns against anything else; it is one rigid part",)
-    return (f"{turning} joints and {skeleton.kinds.count('leaf')} ends of bones under {skeleton.names[0]}",)
+    return (f"{turning} joints and {skeleton.kinds.count('leaf')} end effectors under {skeleton.names[0]}",)
 
 
 @text_of(Skeleton)
