@@ -61,7 +61,7 @@ def test_ring_is_one_rigid_part_and_the_run_speaks_of_its_loop(tmp_path: Path) -
 def test_body_that_does_not_move_is_one_rigid_part_and_the_run_says_so(tmp_path: Path, noise: float) -> None:
     made, told = found(tmp_path, limbs(*CROSS, turns={}, noise=noise))
     assert made.kinds.count("joint") == 0
-    assert "no joints: nothing on this body turns against anything else; it is one rigid part" in told
+    assert "no joints found: no part of the body turns against another, so the body is one rigid part" in told
 
 
 def test_one_joint_that_turns_on_a_body_that_is_stiff_otherwise_is_the_only_one(tmp_path: Path) -> None:

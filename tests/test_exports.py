@@ -153,7 +153,7 @@ def test_labels_come_back_to_the_vertices_of_every_file(out):
 def test_skeleton_that_moved_the_body_explains_it(configured, out):
     told = Pipeline.of(configured).artifact("segmentation")
     assert told.error < 1e-6
-    assert "skinned to the skeleton" in views.remarks(told)[0]
+    assert "distance between the skinned mesh and the aligned meshes" in views.remarks(told)[0]
 
 
 def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):

@@ -1,1 +1,1 @@
-"""What is stored and what may be set on the shelf `results`."""
+"""Artifacts and parameters of the shelf `results`."""

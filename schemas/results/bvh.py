@@ -1,4 +1,4 @@
-"""The motion as motion-capture programs take it: a BVH file."""
+"""The motion as a BVH file, for motion-capture programs."""
 
 from kinetree.schemas.results.exports import Exported
 
@@ -7,4 +7,4 @@ class Bvh(Exported):
     """skeleton.bvh: the joint tree with constant offsets, and its rotations in every frame."""
 
     between: int
-    """Frames put in between where the sequence leaves some out: BVH has one frame time."""
+    """Number of interpolated frames: BVH has one frame time, so missing frames are interpolated."""

@@ -1,4 +1,4 @@
-"""How good a result is against the truth, in the terms of both papers and of rigging papers."""
+"""How good a result is against the truth, by the measures of both papers and of rigging papers."""
 
 from typing import Annotated
 
@@ -9,41 +9,41 @@ from kinetree.schemas.dims import FRAME, JOINT
 
 
 class EvaluationParams(Params):
-    """What counts as found."""
+    """When a true joint counts as found."""
 
     found: float = Field(default=0.05, gt=0, le=1)
-    """Mean distance from the true joint, share of the height, up to which a joint is found."""
+    """Largest mean distance over the frames at which a true joint counts as found, share of the body's height."""
     close: float = Field(default=0.025, gt=0, le=1)
-    """The same for a joint that is found closely."""
+    """The same for a joint that counts as found closely."""
 
 
 class JointScore(Params):
-    """One true joint, or tip of a limb, and what was found of it."""
+    """One true joint, or tip of a limb, and its partner in the result."""
 
     name: str = ""
     """Its name in the truth."""
     kind: str = "joint"
-    """joint or tip."""
+    """joint, or tip: the end of a bone."""
     scored: bool = False
-    """Whether it turns enough to be asked for."""
+    """Whether a result should have it, because it turns enough."""
     turns: float | None = None
-    """Degrees that it turns over the clip; None where the truth does not say."""
+    """Range of its angle over the clip, degrees; None where the truth does not have it."""
     found: str | None = None
-    """Name of the joint that was found there; None where there is none within the limit."""
+    """Name of its partner in the result; None where no joint is within the limit."""
     mean: float | None = None
-    """Distance between the two, averaged over the frames, length."""
+    """Mean distance from its partner over the frames, length."""
     deviation: float | None = None
     """Standard deviation of that distance over the frames, length."""
     worst: float | None = None
-    """Largest of the frames, length."""
+    """Largest distance in any frame, length."""
     percent: float | None = None
-    """The mean in % of the height."""
+    """Mean distance, % of the height."""
     nearest: float | None = None
-    """Mean distance of the nearest joint that may be it, whoever's partner that is, % of the height."""
+    """Mean distance of the nearest joint of a suitable kind, even if that is another joint's partner, % of the height."""
 
 
 class Chamfer(Params):
-    """Symmetric Chamfer distances between two skeletons, hundredths of the cube into which the body fits (RigNet 2020)."""
+    """Symmetric Chamfer distances between two skeletons, % of the side of the cube into which the body fits (RigNet 2020)."""
 
     j2j: float = 0.0
     """Between joints."""
@@ -54,54 +54,54 @@ class Chamfer(Params):
 
 
 class Overlap(Params):
-    """Joints nearer than half the body's local diameter to their partner of a Hungarian matching (RigNet 2020)."""
+    """Pairs of a Hungarian matching that are nearer than half the body's local diameter (RigNet 2020)."""
 
     iou: float = 0.0
-    """Twice the pairs by all joints of both skeletons, %."""
+    """Twice the pairs divided by the joints of both skeletons, %."""
     precision: float = 0.0
-    """Pairs by joints found, %."""
+    """Pairs divided by the joints of the result, %."""
     recall: float = 0.0
-    """Pairs by true joints, %."""
+    """Pairs divided by true joints, %."""
 
 
 class PartScore(Params):
     """How the parts agree with the true ones, over the vertices of all frames."""
 
     rand: float = 0.0
-    """Share of pairs of vertices on which both agree, together or apart."""
+    """Rand index: share of pairs of vertices on which both agree, 0 to 1."""
     adjusted_rand: float = 0.0
-    """The same, 0 where chance would have it."""
+    """Adjusted Rand index: the same corrected for chance, 0 expected of random labels."""
     mean_iou: float = 0.0
-    """Intersection over union of each true part with its partner, averaged."""
+    """Mean over the true parts of the intersection over union with their partners."""
     parts: int = 0
-    """Parts found."""
+    """Number of parts of the result."""
     true_parts: int = 0
-    """True parts."""
+    """Number of true parts."""
 
 
 class Summary(Params):
-    """The sequence in one line."""
+    """Counts and means over the sequence."""
 
     scored: int = 0
-    """True joints that should be found."""
+    """True joints that the result should have."""
     found: int = 0
-    """Of these, found."""
+    """Scored joints found."""
     close: int = 0
-    """Of these, found closely."""
+    """Scored joints found closely."""
     missing: int = 0
-    """Of these, not found."""
+    """Scored joints not found."""
     spurious: int = 0
-    """Joints found where there is none."""
+    """Joints of the result that are no true joint."""
     excused: int = 0
-    """Joints found where the truth has one that is not asked for."""
+    """Joints of the result that are a true joint which is not scored."""
     tips: int = 0
     """True tips of limbs."""
     tips_found: int = 0
-    """Of these, found."""
+    """True tips found."""
     error: float | None = None
-    """Mean distance of the scored joints found, length; None where none is."""
+    """Mean distance of the scored joints that are found, length; None where none is."""
     percent: float | None = None
-    """The same in % of the height."""
+    """The same, % of the height."""
     deviation: float | None = None
     """Standard deviation over the frames, averaged over these joints, length."""
     detection: float = 0.0
@@ -111,15 +111,15 @@ class Summary(Params):
     chamfer: Chamfer = Chamfer()
     """Against all joints of the truth."""
     chamfer_moving: Chamfer = Chamfer()
-    """Against root, tips and the joints that are scored."""
+    """Against the root, the tips and the scored joints."""
     overlap: Overlap = Overlap()
     """Against all joints of the truth."""
     overlap_moving: Overlap = Overlap()
-    """Against root, tips and the joints that are scored."""
+    """Against the root, the tips and the scored joints."""
     tree_edit: int = 0
-    """Joints to remove and to put in until the tree is the true one, a joint being the one it was matched with."""
+    """Joints to remove and to insert until the tree is the true one, joints being identified by the matching."""
     tree_shape: int = 0
-    """The same by the shape of both trees alone, wherever their joints are (after Zhang 1996)."""
+    """The same by the shape of the trees alone, without the matching (Zhang 1996)."""
     parts: PartScore | None = None
     """Agreement of the parts; None where the true parts are not known."""
     length_variation: float = 0.0
@@ -127,32 +127,32 @@ class Summary(Params):
     true_length_variation: float = 0.0
     """The same of the true skeleton."""
     jitter: float | None = None
-    """Second differences of the error by those of the truth, root mean square; None where the truth stands still."""
+    """Root mean square of the error's second differences divided by that of the truth; None where the truth does not move."""
     jitter_percent: float = 0.0
-    """Second differences of the error, root mean square, % of the height."""
+    """Root mean square of the error's second differences, % of the height a frame²."""
 
 
 class Evaluation(Artifact):
-    """A skeleton against the truth; empty where no truth is given."""
+    """A skeleton compared with the truth; empty where no truth is given."""
 
     truth: str
-    """Name of the truth's file, or synth; empty where there is none."""
+    """Name of the truth's file; synth for a generated sequence; empty where there is no truth."""
     frames: tuple[int, ...]
-    """Source frame numbers of the frames compared, ascending."""
+    """Source frame numbers of the compared frames, ascending."""
     true_frames: int
-    """How many frames the truth has."""
+    """Number of frames of the truth."""
     unit: str | None
-    """Unit of all lengths; None where nobody knows."""
+    """Unit of all lengths; None where it is not known."""
     height: float
-    """What errors are a share of, length; 0 where there is no truth."""
+    """Height of the body, of which errors are shares, length; 0 where there is no truth."""
     joints: tuple[JointScore, ...]
-    """Every true joint and tip."""
+    """All true joints and tips."""
     spurious: tuple[str, ...]
-    """Names of joints found where there is none."""
+    """Names of the joints of the result that are no true joint."""
     summary: Summary | None
-    """All of it in one line; None where there is no truth."""
+    """Counts and means; None where there is no truth."""
     error: Annotated[Floats, Array("float64", FRAME, JOINT, unit="length", finite=False)]
-    """Distance of each true joint from its partner in each frame; NaN where it has none."""
+    """Distance of each true joint from its partner; NaN where it has none."""
     detection: Annotated[Floats, Array("float64", FRAME)]
     """R_detection of each frame (2009, Eq. 8)."""
     distance: Annotated[Floats, Array("float64", FRAME)]

@@ -1,4 +1,4 @@
-"""What all files for other programs have in common: they are bytes with names."""
+"""Files for other programs, as all exports store them: bytes with names."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, Self
@@ -11,10 +11,10 @@ from kinetree.schemas.dims import BYTE
 
 
 class Exported(Artifact):
-    """Files of one format; each export is a class of its own, written by a task of its own."""
+    """Files of one format; each export has its own subclass and its own task."""
 
     names: tuple[str, ...]
-    """Name of every file, relative to the output folder."""
+    """Path of every file, relative to the output folder."""
     sizes: tuple[int, ...]
     """Bytes of every file."""
     content: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
@@ -22,6 +22,6 @@ class Exported(Artifact):
 
     @classmethod
     def of(cls, files: Mapping[str, bytes], **more: Any) -> Self:
-        """The artifact that holds these files, `more` being its other fields."""
+        """The artifact of some files by name; `more` are its other fields."""
         content = np.frombuffer(b"".join(files.values()), np.uint8)
         return cls(names=tuple(files), sizes=tuple(map(len, files.values())), content=content, **more)

@@ -1,1 +1,1 @@
-"""What the task gives is `Evidence`, as the default's is: chapters of a report, on the paper's own steps."""
+"""The task leaves `StructureFigures`, as the default method's does: chapters of a report about the steps of 2014."""

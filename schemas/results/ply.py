@@ -1,8 +1,8 @@
-"""The user's own meshes with their parts: a PLY file a frame."""
+"""The input meshes with their parts as PLY files, one a frame."""
 
 
 from kinetree.schemas.results.exports import Exported
 
 
 class Ply(Exported):
-    """One frame's mesh as it was given, every vertex with the colour and the number of its part."""
+    """The input mesh of one frame; every vertex has the colour and the number of its part."""

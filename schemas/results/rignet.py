@@ -1,7 +1,7 @@
-"""The rig as learning programs take it: RigNet's text."""
+"""The rig in RigNet's text format, for learning programs."""
 
 from kinetree.schemas.results.exports import Exported
 
 
 class Rignet(Exported):
-    """skeleton.txt with joints, hierarchy and skin, and skeleton.obj, the mesh whose vertices it numbers."""
+    """skeleton.txt with joints, hierarchy and skin, and skeleton.obj, the mesh to whose vertices it refers."""

@@ -1,4 +1,4 @@
-"""What a method found its joints by, for people to look at: chapters of a report, whatever the method."""
+"""Chapters of a report that show how a method found its joints; every method leaves them in this form."""
 
 from typing import Annotated, Literal
 
@@ -13,38 +13,38 @@ class Picture(Params):
     """One picture."""
 
     caption: str
-    """What is seen."""
+    """What it shows."""
     kind: Literal["png", "svg"]
     """png for surfaces, svg for lines."""
 
 
 class Chapter(Params):
-    """One chapter: words and pictures."""
+    """One chapter: pictures and paragraphs."""
 
     anchor: str
-    """Name of the place in a page."""
+    """Identifier of the chapter in the page, for links."""
     heading: str
-    """What it is called."""
-    told: tuple[str, ...] = ()
-    """Paragraphs of plain text, after the pictures."""
+    """Its heading."""
+    paragraphs: tuple[str, ...] = ()
+    """Plain text, after the pictures."""
     pictures: tuple[Picture, ...] = ()
-    """In order."""
+    """Its pictures, in order."""
 
 
 class StructureFigures(Artifact):
-    """The chapters that only this method can write."""
+    """The chapters of one method, with their pictures."""
 
     chapters: tuple[Chapter, ...]
-    """In order."""
-    varies: Annotated[Floats, Array("float64", JOINT, finite=False)]
-    """By what the bone to the parent varies before its length is held, % of its mean; NaN where nobody knows."""
+    """The chapters, in order."""
+    length_variation: Annotated[Floats, Array("float64", JOINT, finite=False)]
+    """Standard deviation of the length of the bone to the parent before it is fixed, % of its mean; NaN where not known."""
     end: Annotated[NDArray[np.int64], Array("int64", PICTURE)]
-    """Where each picture of all chapters, one after another, ends in `content`."""
+    """Position in `content` at which each picture ends, the pictures of all chapters in order."""
     content: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
-    """The pictures' files."""
+    """The files of all pictures, one after another."""
 
-    def shown(self, chapter: Chapter) -> tuple[bytes, ...]:
-        """The files of a chapter's pictures."""
+    def picture_files(self, chapter: Chapter) -> tuple[bytes, ...]:
+        """The files of a chapter's pictures, in order."""
         before = sum(len(c.pictures) for c in self.chapters[: self.chapters.index(chapter)])
         begin = [0, *self.end.tolist()]
         at = range(before, before + len(chapter.pictures))

@@ -1,4 +1,4 @@
-"""Numbers as people who measure take them: CSV files."""
+"""Positions, confidence, angles and lengths as CSV files."""
 
 from kinetree.schemas.results.exports import Exported
 

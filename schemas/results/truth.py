@@ -1,4 +1,4 @@
-"""The true skeleton of a sequence, where somebody knows it."""
+"""The true skeleton of a sequence, where it is known."""
 
 from typing import Annotated, Literal
 
@@ -10,29 +10,29 @@ from kinetree.schemas.dims import FRAME, JOINT, VERTEX, XYZ
 
 
 class TruthParams(Params):
-    """Where the truth is; a synthetic sequence brings its own."""
+    """The files of the truth; a generated sequence has its own."""
 
     file: Annotated[str, PathLike()] = ""
-    """A truth.json as kinetree synth writes it, the skeleton.json of another run, or a BVH; nothing: no evaluation."""
+    """A truth.json as kinetree synth writes it, the skeleton.json of another run, or a BVH; empty: no evaluation."""
     body: Annotated[str, PathLike()] = ""
-    """An npz of the true body, whose skinning weights say which part each point of the surface belongs to."""
+    """An npz of the true body with skinning weights, from which the true part of every vertex is known; empty: none."""
     unit: str | None = None
-    """Unit of the truth's coordinates where its file does not say, e.g. cm; None takes the sequence's."""
+    """Unit of the truth's coordinates where its file has none, e.g. cm; None: the sequence's unit."""
 
 
 class Truth(Artifact):
     """The true joints in every frame; without joints where no truth is given."""
 
     source: str
-    """Name of the file, as messages call it; empty where there is none."""
+    """Name of the file, for messages; synth for a generated sequence; empty where there is no truth."""
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     fps: float | None
-    """Frames a second; None where nobody knows."""
+    """Frames a second; None where not known."""
     unit: str | None
-    """Unit of all lengths; None where nobody knows."""
+    """Unit of all lengths; None where not known."""
     height: float | None
-    """What errors are a share of, length; None where nobody says."""
+    """Height of the body, of which errors are shares, length; None where not known."""
     names: tuple[str, ...]
     """Name of every joint."""
     parents: tuple[int, ...]
@@ -40,14 +40,14 @@ class Truth(Artifact):
     kinds: tuple[Literal["joint", "tip"], ...]
     """joint: may turn; tip: the end of a bone."""
     scored: tuple[bool, ...]
-    """Whether each joint turns enough to be asked for."""
+    """Whether a result should have each joint, because it turns enough."""
     turns: Annotated[Floats, Array("float64", JOINT, unit="°", finite=False)]
-    """How far each joint turns against its parent over the clip; NaN where nobody says."""
+    """Range of each joint's angle against its parent over the clip; NaN where not known."""
     positions: Annotated[Floats, Array("float64", FRAME, JOINT, XYZ, unit="length")]
-    """Of every joint in every frame."""
+    """Position of every joint in every frame."""
     vertices: Annotated[NDArray[np.float32], Array("float32", FRAME, VERTEX, XYZ, unit="length")]
     """The true body in every frame; no vertices where it is not known."""
     carrier: Annotated[Ints, Array("int32", VERTEX)]
     """The joint that each vertex of the true body follows most."""
     bone_end: Annotated[Ints, Array("int32", VERTEX)]
-    """The other end of the one bone that the vertex follows; −1 where the joint carries all its bones as one."""
+    """The other end of the one bone that the vertex follows; −1 where the joint carries all its bones as one rigid group."""

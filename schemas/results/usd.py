@@ -1,4 +1,4 @@
-"""The body as film and simulation programs take it: a USD file."""
+"""The animated body as a USD file, for film and simulation."""
 
 from typing import Literal
 
@@ -7,10 +7,10 @@ from kinetree.schemas.results.exports import Exported
 
 
 class UsdParams(Params):
-    """What the file says of the input's coordinates, which stay as they are."""
+    """How the file describes the input's coordinates, which are not changed."""
 
     up: Literal["y", "z"] = "y"
-    """Axis of the input that points up; USD knows these two."""
+    """Axis of the input that points up; USD allows these two."""
 
 
 class Usd(Exported):

@@ -38,15 +38,15 @@ def evaluate(
     Says how far every joint is from the true one, which joints are missing and which are spurious. Frames are compared by
     their numbers in the source. Nothing but the comparison is computed.
     """
-    from kinetree.tasks.results.plots.drawing import FORMATS, written
-    from kinetree.tasks.results.plots.evaluation import drawn
+    from kinetree.tasks.results.plots.drawing import FORMATS, write_figure
+    from kinetree.tasks.results.plots.evaluation import evaluation_figure
     from kinetree.tasks.views.results import evaluation_files
 
     if plot is not None and plot.suffix.lower() not in FORMATS:
         raise ConfigError(f"--plot {plot}: pictures end in {', '.join(FORMATS)}")
     evaluation = evaluated(run, truth, body, sets)
     if plot is not None:
-        written(drawn(evaluation), plot)
+        write_figure(evaluation_figure(evaluation), plot)
     if as_json:
         print_json(json.loads(evaluation_files(evaluation, ())["evaluation.json"]))
         return
@@ -59,8 +59,8 @@ def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list
     """The comparison of a run with a truth; raises InputError where they are not of the same sequence."""
     from kinetree.schemas.results.evaluation import Evaluation
 
-    given = {"truth.file": truth, "truth.body": body}
-    changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in given.items() if path is not None]
+    paths = {"truth.file": truth, "truth.body": body}
+    changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in paths.items() if path is not None]
     pipeline = pipeline_of(run, sets=[*(sets or ()), *changes])
     try:
         schedule = pipeline.computed("evaluation")
@@ -75,12 +75,12 @@ def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list
 
 
 def _print(evaluation: "Evaluation") -> None:
-    """One line a joint, then what sums it up."""
+    """Prints one line a joint, then the summary."""
     unit = evaluation.unit or "length"
     from kinetree.pipeline.views import remarks
 
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for name, left in (("joint", True), ("turns", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
+    for name, left in (("joint", True), ("range", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
         table.add_column(name, justify="left" if left else "right", overflow="fold")
     for row in sorted(evaluation.joints, key=lambda j: (j.kind == "tip", not j.scored)):
         if row.scored or row.kind == "tip" or row.found is not None:
@@ -96,10 +96,11 @@ def _print(evaluation: "Evaluation") -> None:
 
 
 def _cells(row: "JointScore") -> list[str]:
+    """The cells of one joint in the table."""
     turns = "" if row.turns is None or row.kind == "tip" else f"{row.turns:.0f}°"
-    name = row.name if row.scored or row.kind == "tip" else f"{row.name} (not asked for)"
+    name = row.name if row.scored or row.kind == "tip" else f"{row.name} (not scored)"
     if row.found is None:
-        near = "" if row.nearest is None else f"missing; the nearest is at {row.nearest:.1f} %"
+        near = "" if row.nearest is None else f"missing; the nearest joint is {row.nearest:.1f} % away"
         return [name, turns, near, "", "", ""]
     return [name, turns, row.found, f"{row.mean:.4g}", f"{row.deviation:.2g}", f"{row.percent:.2f}"]
 
@@ -107,21 +108,21 @@ def _cells(row: "JointScore") -> list[str]:
 def _lines(s: "Summary") -> list[str]:
     """The summary in words."""
     lines = [
-        f"found closely: {s.close} of {s.scored}; found though not asked for: {s.excused}; tips: {s.tips_found} of {s.tips}",
+        f"found closely: {s.close} of {s.scored}; tips found: {s.tips_found} of {s.tips}; found but not scored: {s.excused}",
         f"R_detection {s.detection:.2f}, E_dist {s.distance:.4f} of the height (2009, Eqs. 7–9)",
-        f"tree edit distance {s.tree_edit}, by shape alone {s.tree_shape}",
+        f"tree edit distance {s.tree_edit}, of the shape alone {s.tree_shape}",
     ]
-    sides = (("all true joints", s.chamfer, s.overlap), ("those that move", s.chamfer_moving, s.overlap_moving))
-    for name, c, o in sides:
+    measures = (("all true joints", s.chamfer, s.overlap), ("moving true joints", s.chamfer_moving, s.overlap_moving))
+    for name, c, o in measures:
         lines.append(
             f"against {name}: CD-J2J {c.j2j:.2f}, CD-J2B {c.j2b:.2f}, CD-B2B {c.b2b:.2f} ×10⁻²;"
             f" IoU {o.iou:.1f} %, precision {o.precision:.1f} %, recall {o.recall:.1f} %"
         )
     if s.parts is not None:
         p = s.parts
-        agree = f"Rand {p.rand:.3f}, adjusted {p.adjusted_rand:.3f}, mean IoU {p.mean_iou:.3f}"
-        lines.append(f"parts: {p.parts} found, {p.true_parts} true; {agree}")
-    rough = "" if s.jitter is None else f", {s.jitter:.2f} of the truth's own"
+        agreement = f"Rand {p.rand:.3f}, adjusted {p.adjusted_rand:.3f}, mean IoU {p.mean_iou:.3f}"
+        lines.append(f"parts: {p.parts} found, {p.true_parts} true; {agreement}")
+    relative = "" if s.jitter is None else f", {s.jitter:.2f} times that of the truth"
     lines.append(f"bone lengths vary by {s.length_variation:.2g} %")
-    lines.append(f"jitter {s.jitter_percent:.3f} % of the height a frame²{rough}")
+    lines.append(f"jitter {s.jitter_percent:.3f} % of the height a frame²{relative}")
     return lines

@@ -32,7 +32,7 @@ def plot(
 ) -> None:
     """Draw a result of a run: curves, surfaces, the tree, errors."""
     from kinetree.schemas.structure.skeleton import Skeleton
-    from kinetree.tasks.results.plots import OF, draw
+    from kinetree.tasks.results.plots import PLOTS_OF_METHOD, draw
 
     pipeline = pipeline_of(run)
     schedule = pipeline.schedule()
@@ -43,7 +43,7 @@ def plot(
     def fetch(name: str, **index: int) -> Any:
         return pipeline.artifact(skeleton if name == "skeleton" else name, within=schedule, **index)
 
-    draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), OF[pipeline.config.method])
+    draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method])
     typer.echo(str(path))
 
 

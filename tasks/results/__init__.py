@@ -1,4 +1,4 @@
-"""What people take away: comparison with the truth, files for other programs, figures, the report."""
+"""Results for people and programs: comparison with the truth, exported files, figures, the report."""
 
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.evaluation import evaluation

@@ -1,4 +1,4 @@
-"""The body as animators take it."""
+"""Exports the animated body as GLB, for animators."""
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.glb import ASSUMED_FPS, Glb, GlbParams
@@ -12,5 +12,5 @@ def glb(skeleton: Skeleton, params: GlbParams) -> Glb:
     """Writes skeleton.glb, the reference mesh skinned to the animated skeleton (ours)."""
     assumed = ASSUMED_FPS if skeleton.fps is None else None
     scale = params.scale or METRES.get(skeleton.unit or "", 1.0)
-    known = "as said" if params.scale else skeleton.unit if skeleton.unit in METRES else None
+    known = "set by glb.scale" if params.scale else skeleton.unit if skeleton.unit in METRES else None
     return Glb.of({"skeleton.glb": gltf(skeleton, params.up, scale)}, assumed_fps=assumed, scale=scale, unit=known)

@@ -1,4 +1,4 @@
-"""The user's own meshes with their parts."""
+"""Exports the input meshes with their parts as PLY."""
 
 from kinetree.errors import MeshError
 from kinetree.pipeline.task import task
@@ -8,13 +8,15 @@ from kinetree.schemas.results.ply import Ply
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.input.source import name, surface
 from kinetree.tasks.results.formats.labels import input_labels
-from kinetree.tasks.results.formats.ply import ply as written
+from kinetree.tasks.results.formats.ply import ply as ply_bytes
 
 
 @task(over="frame", on_request=True)
 def ply(source: Source, projection: Projection, skeleton: Skeleton) -> Ply:
-    """Writes one frame's own mesh with its vertices coloured and numbered by part (ours)."""
+    """Writes the input mesh of one frame with its vertices coloured and numbered by part (ours)."""
     V, F = surface(source)
     if len(V) != len(projection.face):
-        raise MeshError(f"{name(source)}: it has {len(V)} vertices, but {len(projection.face)} were aligned; run again")
-    return Ply.of({"frame.ply": written(V, F, input_labels(skeleton, projection), skeleton)})
+        raise MeshError(
+            f"{name(source)}: the file has {len(V)} vertices now, but had {len(projection.face)} when it was read; run again"
+        )
+    return Ply.of({"frame.ply": ply_bytes(V, F, input_labels(skeleton, projection), skeleton)})

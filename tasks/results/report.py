@@ -1,4 +1,4 @@
-"""One page that shows what a run found: the body playing, the curves and the tables a person needs to trust it."""
+"""One page that shows the result of a run: the moving body, and the curves and tables by which a person judges it."""
 
 from collections.abc import Mapping
 from html import escape
@@ -24,11 +24,11 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.page.chapters import sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
-from kinetree.tasks.results.page.heed import counted, heeded, off
 from kinetree.tasks.results.page.scene import Limits, scene
+from kinetree.tasks.results.page.warnings import LIMITS, counted, skin_distance, warnings
 from kinetree.tasks.results.plots.alignment import alignment as alignment_figure
-from kinetree.tasks.results.plots.alignment import at_rest
-from kinetree.tasks.results.plots.evaluation import drawn as errors_figure
+from kinetree.tasks.results.plots.alignment import reference_frame
+from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.results.plots.macroscopic import correlation as correlation_figure
 from kinetree.tasks.results.plots.macroscopic import mu as mu_figure
 from kinetree.tasks.results.plots.motion import angles
@@ -37,11 +37,13 @@ from kinetree.tasks.results.plots.structure import skeleton as skeleton_figure
 from kinetree.tasks.views.results import evaluation_remarks
 from kinetree.tasks.views.topology import UNSURE
 
+VARIATION = "length varies by, %"
+
 
 @task()
 def report(
     skeleton: Skeleton,
-    evidence: StructureFigures,
+    structure_figures: StructureFigures,
     sequence: Sequence,
     connectivity: Connectivity,
     correlation: Correlation,
@@ -55,77 +57,83 @@ def report(
     geodesics: Mapping[int, Geodesics],
     params: ReportParams,
 ) -> Report:
-    """Draws and tells the run on one page that needs no network (ours)."""
-    once = {"skeleton": skeleton, "correlation": correlation, "intervals": intervals, "leaves": leaves}
-    framed = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
+    """Draws the result of the run on one page that needs no network (ours)."""
+    of_sequence = {"skeleton": skeleton, "correlation": correlation, "intervals": intervals, "leaves": leaves}
+    by_frame = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
 
     def fetch(name: str, frame: int | None = None) -> Any:
-        return once[name] if frame is None else framed[name][frame]
+        return of_sequence[name] if frame is None else by_frame[name][frame]
 
     limits = Limits(params.frames, params.vertices, params.input_vertices)
     up = up_direction.axis
     frames = [skeleton.frames[t] for t in evenly_spread(len(skeleton.frames), params.views)]
+    has_truth = evaluation.summary is not None
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
-        warnings=heeded(skeleton, intervals, leaves, alignment, mesh),
+        warnings=warnings(skeleton, intervals, leaves, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, evidence)),
-            *([Section("truth", "Against the truth", _judged(evaluation))] if evaluation.summary is not None else []),
-            *sections(evidence),
-            Section("intervals", "Topology over time", _macroscopic(fetch, frames, up)),
-            Section("alignment", "Alignment", _aligned(fetch, frames, up, connectivity)),
+            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, structure_figures)),
+            *([Section("truth", "Comparison with the truth", _comparison(evaluation))] if has_truth else []),
+            *sections(structure_figures),
+            Section("intervals", "Topology over time", _topology(fetch, frames, up)),
+            Section("alignment", "Alignment", _alignment(fetch, frames, up, connectivity)),
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
 def _structure(
-    fetch: Any, frames: list[int], up: int, skeleton: Skeleton, intervals: Intervals, evidence: StructureFigures
+    fetch: Any, frames: list[int], up: int, skeleton: Skeleton, intervals: Intervals, figures: StructureFigures
 ) -> str:
-    unit = skeleton.unit or "unit of the input"
+    """Pictures of the skeleton and a table of its joints."""
+    unit = skeleton.unit or "the unit of the input"
     pictures = (
         picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
-        + picture(tree(fetch, frames, up), "The tree of joints with lengths of bones and ranges of turning.")
-        + picture(confidence(fetch, frames, up), "Confidence of every joint over time, and by what its two parts disagree.")
+        + picture(tree(fetch, frames, up), "The tree of joints with bone lengths and the range of every joint's angle.")
         + picture(
-            angles(fetch, frames, up), "Turning of every joint since the reference pose; bold where confidence is below a half."
+            confidence(fetch, frames, up),
+            "Confidence of every joint over time, and the drift of every joint: the distance between its two parts.",
+        )
+        + picture(
+            angles(fetch, frames, up), "Angle of every joint against the reference pose; bold where confidence is below 0.5."
         )
     )
-    told = f"<p>Lengths in {escape(unit)}. Intervals are those in which a joint's confidence is at least a half.</p>"
-    return pictures + told + table(*_joints(skeleton, intervals, evidence))
+    note = f"<p>Lengths in {escape(unit)}. Intervals are listed where a joint's mean confidence is at least 0.5.</p>"
+    return pictures + note + table(*_joint_table(skeleton, intervals, figures))
 
 
-def _joints(skeleton: Skeleton, intervals: Intervals, evidence: StructureFigures) -> tuple[list[str], list[list[object]]]:
-    """A row for every joint; what no joint has is no column."""
+def _joint_table(skeleton: Skeleton, intervals: Intervals, figures: StructureFigures) -> tuple[list[str], list[list[object]]]:
+    """Names of the columns and a row for every joint, without the column of lengths where none is known."""
     parents = np.array(skeleton.parents)
     columns: dict[str, list[object]] = {
         "joint": list(skeleton.names),
         "kind": list(skeleton.kinds),
         "parent": [skeleton.names[p] if p >= 0 else "–" for p in parents],
-        "bone": skeleton.lengths.tolist(),
-        "varies by, %": [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, evidence.varies)],
-        "turns, °": skeleton.degrees.tolist(),
-        "parts disagree by": skeleton.drift.tolist(),
+        "bone length": skeleton.lengths.tolist(),
+        VARIATION: [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, figures.length_variation)],
+        "range, °": skeleton.degrees.tolist(),
+        "drift": skeleton.drift.tolist(),
         "frames": skeleton.support.tolist(),
-        "intervals": [_supporting(skeleton, intervals, j) for j in range(len(parents))],
+        "intervals": [_confident_intervals(skeleton, intervals, j) for j in range(len(parents))],
         "confidence": skeleton.confidence.mean(axis=0).tolist(),
     }
-    if not np.isfinite(evidence.varies).any():
-        del columns["varies by, %"]
+    if not np.isfinite(figures.length_variation).any():
+        del columns[VARIATION]
     return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
 
 
-def _supporting(skeleton: Skeleton, intervals: Intervals, j: int) -> str:
-    """The intervals in which a joint is rather to be believed than not."""
+def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> str:
+    """The intervals in which the mean confidence of a joint is not low."""
     spans = zip(intervals.begin, intervals.end, strict=True)
     means = [float(skeleton.confidence[int(a) : int(b) + 1, j].mean()) for a, b in spans]
-    held = [str(number) for number, mean in enumerate(means) if mean >= 0.5]
-    return "all" if len(held) == len(means) else ", ".join(held) or "none"
+    confident = [str(number) for number, mean in enumerate(means) if mean >= LIMITS.confidence]
+    return "all" if len(confident) == len(means) else ", ".join(confident) or "none"
 
 
-def _judged(evaluation: Evaluation) -> str:
+def _comparison(evaluation: Evaluation) -> str:
+    """A picture of the errors and a table of the scored joints."""
     rows = [
         (
             joint.name,
@@ -137,37 +145,43 @@ def _judged(evaluation: Evaluation) -> str:
         for joint in evaluation.joints
         if joint.scored
     ]
-    told = "".join(f"<p>{escape(text)}</p>" for text in evaluation_remarks(evaluation))
-    head = ("true joint", "turns, °", "found as", evaluation.unit or "length", "% of the height")
-    caption = "Error of every joint over time, mean and deviation beside it (2014, Fig. 16); below, the measures of 2009."
-    return told + picture(errors_figure(evaluation), caption) + table(head, rows)
+    remarks = "".join(f"<p>{escape(text)}</p>" for text in evaluation_remarks(evaluation))
+    head = ("true joint", "range, °", "found as", evaluation.unit or "length", "% of the height")
+    caption = "Error of every joint over time with its mean and deviation (2014, Fig. 16); below, the measures of 2009."
+    return remarks + picture(evaluation_figure(evaluation), caption) + table(head, rows)
 
 
-def _macroscopic(fetch: Any, frames: list[int], up: int) -> str:
+def _topology(fetch: Any, frames: list[int], up: int) -> str:
+    """Pictures of the correlation, the intervals and μ."""
     return picture(
         correlation_figure(fetch, frames, up),
-        "C(t) of Eq. 2 with the cuts and the intervals; below, how near every cue came to its threshold.",
-    ) + picture(mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high, with the leaves.", vector=False)
+        "Correlation C(t) (Eq. 2) with cuts and intervals; below, every cue relative to its threshold.",
+    ) + picture(
+        mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high (bright), with the leaves.", vector=False
+    )
 
 
-def _aligned(fetch: Any, frames: list[int], up: int, connectivity: Connectivity) -> str:
+def _alignment(fetch: Any, frames: list[int], up: int, connectivity: Connectivity) -> str:
+    """A picture of the residuals, where anything was aligned."""
     if connectivity.fixed:
-        return "<p>Every frame has the same faces: a vertex is where it is, and there is nothing to align.</p>"
-    caption = "Distance of the aligned mesh to every frame, over time and on the surface."
+        return "<p>All frames have the same faces, so nothing had to be aligned.</p>"
+    caption = "Distance of the aligned mesh from every frame, over time and on the surface."
     return picture(alignment_figure(fetch, frames, up), caption, vector=False)
 
 
 def _facts(
-    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, up_direction: UpDirection, aligned: Mapping[int, Alignment]
+    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, up_direction: UpDirection, alignments: Mapping[int, Alignment]
 ) -> list[tuple[str, str]]:
+    """The numbers at the head of the page, with their names."""
+    distance = f"{100 * skin_distance(skeleton, alignments):.2g} % of the body's diagonal"
     return [
         ("frames", str(len(skeleton.frames))),
         ("joints", str(skeleton.kinds.count("joint"))),
-        ("ends of bones", str(skeleton.kinds.count("leaf"))),
+        ("leaves", str(skeleton.kinds.count("leaf"))),
         ("intervals", str(len(intervals.begin))),
-        ("reference frame", str(at_rest(skeleton, aligned))),
-        ("skin off the aligned meshes by", f"{100 * off(skeleton, aligned):.2g} % of the body's diagonal"),
+        ("reference frame", str(reference_frame(skeleton, alignments))),
+        ("skin to aligned mesh", distance),
         ("unit", sequence.unit or "not known"),
         ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),
-        ("up", up_direction.up + (", a guess" if up_direction.confidence < UNSURE else "")),
+        ("up", up_direction.up + (", not certain" if up_direction.confidence < UNSURE else "")),
     ]

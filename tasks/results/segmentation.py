@@ -1,4 +1,4 @@
-"""What the analysis says of every vertex the user gave."""
+"""Part labels of all input vertices, and the aligned meshes."""
 
 from collections.abc import Mapping
 
@@ -15,16 +15,18 @@ from kinetree.tasks.results.formats.rig import skinned
 
 @task()
 def segmentation(skeleton: Skeleton, alignment: Mapping[int, Alignment], projection: Mapping[int, Projection]) -> Segmentation:
-    """Gathers part labels on the input's own vertices and the aligned meshes (2014, Sec. 6)."""
+    """Gathers the part labels of the input's vertices and the aligned meshes (2014, Sec. 6)."""
     labels = [input_labels(skeleton, projection[frame]) for frame in skeleton.frames]
     end = np.cumsum([len(label) for label in labels])
     aligned = np.stack([alignment[frame].vertices.astype(np.float32) for frame in skeleton.frames])
-    off = [np.linalg.norm(skinned(skeleton, t) - alignment[frame].vertices, axis=1) for t, frame in enumerate(skeleton.frames)]
+    distance = [
+        np.linalg.norm(skinned(skeleton, t) - alignment[frame].vertices, axis=1) for t, frame in enumerate(skeleton.frames)
+    ]
     return Segmentation(
         names=skeleton.names,
         unit=skeleton.unit,
-        error=float(np.sqrt(np.mean(np.square(off)))),
-        error_95=float(np.quantile(off, 0.95)),
+        error=float(np.sqrt(np.mean(np.square(distance)))),
+        error_95=float(np.quantile(distance, 0.95)),
         frame=np.array(skeleton.frames),
         begin=end - [len(label) for label in labels],
         end=end,

@@ -1,12 +1,12 @@
-"""The skeleton as programs take it."""
+"""Exports the skeleton as JSON, for programs."""
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.skeleton_json import SkeletonJson
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.results.formats.document import written
+from kinetree.tasks.results.formats.document import skeleton_file
 
 
 @task()
 def skeleton_json(skeleton: Skeleton) -> SkeletonJson:
     """Writes skeleton.json, the joint tree and every joint's position in every frame (ours)."""
-    return SkeletonJson.of({"skeleton.json": written(skeleton)})
+    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton)})

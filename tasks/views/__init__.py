@@ -1,1 +1,1 @@
-"""What people see of results and take away: remarks, texts, files and pages by artifact class, one file a shelf."""
+"""Views of the product's artifacts: remarks, texts, files and pages by artifact class, one module a shelf."""

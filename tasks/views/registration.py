@@ -1,4 +1,4 @@
-"""What people see of the alignment."""
+"""Views of the artifacts of the shelf `registration`."""
 
 from itertools import pairwise
 
@@ -9,44 +9,48 @@ from kinetree.schemas.array import Bools
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.reference import Reference
 
-LOOP = 0.12
-"""Reach of a loop that a limb makes where it touches another; fingers that fuse make shorter ones."""
+CONTACT_LOOP = 0.12
+"""Least reach of a loop that counts as contact of limbs, share of the range of μ; fused fingers make shorter loops. Not
+recorded what it was chosen on; a smaller value warns of more references."""
+PARTLY_DOUBTED = 0.05
+"""Share of the body's vertices in doubt above which a frame is mentioned. Not recorded what it was chosen on."""
 
 
 @remarks_of(Reference)
 def reference_remarks(reference: Reference) -> tuple[str, ...]:
-    """The frame, and where it could not be a good one."""
-    told = [f"reference: frame {reference.frame}"]
+    """The reference frame, and why it may be a bad one."""
+    lines = [f"reference: frame {reference.frame}"]
     if reference.leaves < 3:
-        seen = ("no limb is", "one limb is", "two limbs are")[reference.leaves]
-        told.append(f"{seen} seen in any frame: nothing tells contact from freedom, the reference may be a poor one")
+        limbs = ("no limb", "only one limb", "only two limbs")[reference.leaves]
+        lines.append(f"{limbs} found in any frame; contact cannot be recognised, so the reference may contain one")
     if len(reference.frames) == 2:
-        told.append("two frames show one movement: joints that it does not turn cannot be found")
-    stay = "limbs that touch in it stay joined"
+        lines.append("only two frames; joints that do not turn between them cannot be found")
+    joined = "parts that touch in it stay joined"
     if not reference.free:
-        told.append(f"no frame is free of contact for long: frame {reference.frame} lacks least; {stay}")
-    elif reference.loop >= LOOP:
-        told.append(f"frame {reference.frame} has a loop, as a hand on the hip makes one: {stay}")
-    return tuple(told)
+        lines.append(f"no contact-free frame; frame {reference.frame} is the best available, but {joined}")
+    elif reference.loop >= CONTACT_LOOP:
+        lines.append(f"the surface of frame {reference.frame} has a loop, such as a hand on the hip makes; {joined}")
+    return tuple(lines)
 
 
 @remarks_of(FrameConfidence)
 def frame_confidence_remarks(confidence: FrameConfidence) -> tuple[str, ...]:
-    """Frames that are not trusted, and frames of which a part is not."""
-    told = []
-    strange, partly = ~confidence.trusted, confidence.trusted & (confidence.doubted > 0.05)
-    if strange.any():
-        told.append(f"{_runs(confidence, strange)} not trusted: the body does not explain what is seen there")
+    """Frames whose alignment failed, and frames in which parts of it are unreliable."""
+    lines = []
+    failed, partly = ~confidence.trusted, confidence.trusted & (confidence.doubted > PARTLY_DOUBTED)
+    if failed.any():
+        lines.append(f"alignment failed in {_runs(confidence, failed)}: the aligned body does not fit the mesh there")
     if partly.any():
         most = float(confidence.doubted[partly].max())
-        told.append(f"{_runs(confidence, partly)} trusted in part: up to {most:.0%} of the body is out of sight or in doubt")
-    return tuple(told)
+        where = _runs(confidence, partly)
+        lines.append(f"alignment partly unreliable in {where}: up to {most:.0%} of the body is hidden or does not fit")
+    return tuple(lines)
 
 
 def _runs(confidence: FrameConfidence, flags: Bools) -> str:
-    """Frame numbers, runs as first–last, and the verb."""
+    """The frames of the flags in words: frame 3, or frames 3–5, 9."""
     at = np.flatnonzero(flags)
     ends = [-1, *(i for i, (a, b) in enumerate(pairwise(at)) if b > a + 1), len(at) - 1]
     spans = [(confidence.frames[at[a + 1]], confidence.frames[at[b]]) for a, b in pairwise(ends)]
     numbers = ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in spans)
-    return f"frame {numbers} is" if len(at) == 1 else f"frames {numbers} are"
+    return f"frame{'s' * (len(at) > 1)} {numbers}"

@@ -1,4 +1,4 @@
-"""What people see of the skeleton."""
+"""Views of the artifacts of the shelf `structure`."""
 
 from kinetree.pipeline.views import remarks_of, text_of
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
@@ -13,23 +13,24 @@ def kinematic_tree_remarks(tree: KinematicTree) -> tuple[str, ...]:
 
 @remarks_of(Skeleton)
 def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
-    """How many joints there are, or that there are none and why."""
+    """How many joints there are, or why there are none."""
     turning = skeleton.kinds.count("joint")
     if not turning:
-        return ("no joints: nothing on this body turns against anything else; it is one rigid part",)
-    return (f"{turning} joints and {skeleton.kinds.count('leaf')} end effectors under {skeleton.names[0]}",)
+        return ("no joints found: no part of the body turns against another, so the body is one rigid part",)
+    leaves = skeleton.kinds.count("leaf")
+    return (f"{turning} joint{'s' * (turning != 1)} and {leaves} lea{'f' if leaves == 1 else 'ves'} under {skeleton.names[0]}",)
 
 
 @text_of(Skeleton)
 def skeleton_text(skeleton: Skeleton) -> tuple[str, ...]:
-    """The tree, a line a joint: length of its bone, range of its turning, how well it is supported."""
+    """The tree, one line a joint: length of its bone, range of its angle, uncertainty, frames that support it."""
     names = [f"{_branch(skeleton, joint)}{name}" for joint, name in enumerate(skeleton.names)]
     width = max(map(len, names))
     return tuple(f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names))
 
 
 def _branch(skeleton: Skeleton, joint: int) -> str:
-    """The lines that lead to a joint, as a tree of folders is drawn."""
+    """The lines that connect a joint with its parent, as a tree of folders is printed."""
     parent, lead = skeleton.parents[joint], ""
     while parent >= 0:
         is_last = joint == max(j for j, p in enumerate(skeleton.parents) if p == parent)
@@ -39,6 +40,7 @@ def _branch(skeleton: Skeleton, joint: int) -> str:
 
 
 def _measures(skeleton: Skeleton, joint: int) -> str:
+    """What is measured of a joint, in words."""
     if skeleton.kinds[joint] == "root":
         return f"root, {len(skeleton.frames)} frames"
     unit = f" {skeleton.unit}" if skeleton.unit else ""

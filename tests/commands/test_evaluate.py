@@ -71,7 +71,7 @@ def test_table_names_every_joint_and_sums_up(run: str, truth: Path) -> None:
     assert result.exit_code == 0, result.exception
     lines = result.output.splitlines()
     assert any(line.split()[:4] == ["knee_l", line.split()[1], "knee_l", line.split()[3]] for line in lines)
-    assert "joints found at 0.00 % of the height" in result.output
+    assert "joints found, mean error 0.00 % of the height" in result.output
     assert "tree edit distance 0" in result.output
     assert "CD-J2J" in result.output
 

@@ -11,9 +11,9 @@ from rigs import spider
 
 from kinetree.errors import ConfigError
 from kinetree.tasks.commands import plot
-from kinetree.tasks.results.plots import OF, WHAT, draw
+from kinetree.tasks.results.plots import PLOTS, PLOTS_OF_METHOD, draw
 from kinetree.tasks.results.plots.drawing import view
-from kinetree.tasks.results.plots.motion import turns
+from kinetree.tasks.results.plots.motion import joint_angles
 
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -26,10 +26,10 @@ def fetch() -> Any:
 
 
 def test_help_of_the_command_names_every_picture() -> None:
-    assert all(sorted(pictures) == sorted(plot.WHAT) for pictures in OF.values())
+    assert all(sorted(pictures) == sorted(plot.WHAT) for pictures in PLOTS_OF_METHOD.values())
 
 
-@pytest.mark.parametrize("what", sorted(WHAT))
+@pytest.mark.parametrize("what", sorted(PLOTS))
 @pytest.mark.parametrize("ending", sorted(MAGIC))
 def test_every_picture_is_drawn_in_every_format(fetch: Any, tmp_path: Path, what: str, ending: str) -> None:
     draw(what, fetch, [0, 6], tmp_path / f"a{ending}")
@@ -38,7 +38,7 @@ def test_every_picture_is_drawn_in_every_format(fetch: Any, tmp_path: Path, what
 
 
 def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(fetch: Any, tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="there are: .*correlation, .*mu"):
+    with pytest.raises(ConfigError, match="known plots: .*correlation, .*mu"):
         draw("skelton", fetch, [0], tmp_path / "a.png")
     with pytest.raises(ConfigError, match=r"pictures end in \.png"):
         draw("mu", fetch, [0], tmp_path / "a.gif")
@@ -48,7 +48,7 @@ def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(f
 
 
 def test_errors_without_a_truth_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="nobody knows the truth"):
+    with pytest.raises(ConfigError, match="this run has no truth"):
         draw("errors", lambda name: unjudged(spider()), [0], tmp_path / "a.png")
     assert list(tmp_path.iterdir()) == []
 
@@ -74,4 +74,4 @@ def test_turning_of_a_hinge_is_the_angle_it_was_turned_by() -> None:
     c, s, zero, one = np.cos(angle), np.sin(angle), 0 * angle, 0 * angle + 1
     rotation = np.array(body.rotation)
     rotation[:, arm] = rotation[:, 0] @ np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
-    np.testing.assert_allclose(turns(spider(rotation=rotation))[:, arm], np.degrees(angle), atol=1e-5)
+    np.testing.assert_allclose(joint_angles(spider(rotation=rotation))[:, arm], np.degrees(angle), atol=1e-5)

@@ -52,7 +52,7 @@ def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_r
     assert not made.fixed
     assert [(o.frame, o.welded, o.vertices, o.faces) for o in made.odd] == [(10, 1, -1, -3)]
     (said,) = views.remarks(made)
-    assert "frame 10 does not: 1 vertex lies on another and was welded there (mesh.merge)" in said
+    assert "frame 10 does not: 1 of its vertices lies on another one and was merged with it (mesh.merge)" in said
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_r
     [
         (frame(origin=[0, 1, 2, 3, -1]), "its file has 1 vertex more"),
         (frame(faces=F[:2]), "after cleaning it has 0 vertices more and 2 faces fewer"),
-        (frame(faces=F[::-1]), "its faces are others, or in another order"),
+        (frame(faces=F[::-1]), "its faces join other vertices, or are in another order"),
     ],
     ids=["another file", "fewer faces", "another order"],
 )

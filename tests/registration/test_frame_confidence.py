@@ -30,12 +30,13 @@ def test_even_alignment_is_trusted_and_says_nothing() -> None:
 def test_frames_that_stand_out_are_told_as_runs() -> None:
     made = told([0.001, 0.2, 0.3, 0.001, 0.001, 0.2, 0.001, 0.001, 0.001])
     assert made.trusted.tolist() == [True, False, False, True, True, False, True, True, True]
-    assert views.remarks(made) == ("frames 11–12, 15 are not trusted: the body does not explain what is seen there",)
+    assert views.remarks(made) == ("alignment failed in frames 11–12, 15: the aligned body does not fit the mesh there",)
 
 
 def test_limb_that_is_not_seen_is_told_where_the_frame_is_trusted() -> None:
     made = told([0.001] * 5, doubted=[0.0, 0.0, 0.12, 0.1, 0.0])
-    assert views.remarks(made) == ("frames 12–13 are trusted in part: up to 12% of the body is out of sight or in doubt",)
+    expected = "alignment partly unreliable in frames 12–13: up to 12% of the body is hidden or does not fit"
+    assert views.remarks(made) == (expected,)
 
 
 def test_aligned_walk_is_trusted() -> None:

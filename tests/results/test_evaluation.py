@@ -71,7 +71,7 @@ def test_perfect_skeleton_is_found_whole():
     assert s.overlap_moving.iou == pytest.approx(100.0)
     assert s.length_variation < 60
     assert told.height == HEIGHT
-    assert views.remarks(told) == (f"{s.scored} of {s.scored} joints found at 0.00 % of the height",)
+    assert views.remarks(told) == (f"{s.scored} of {s.scored} joints found, mean error 0.00 % of the height",)
 
 
 def test_generated_sequence_brings_its_own_truth_and_its_true_parts():
@@ -199,7 +199,7 @@ def test_frames_are_compared_by_their_numbers():
             some[field] = some[field][1::2]
     told = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **some, "frames": (1, 3, 5)}))
     assert told.summary.percent == 0.0
-    assert views.remarks(told)[-1] == "synth has 6 frames, of which 3 are compared"
+    assert views.remarks(told)[-1] == "3 of the 6 frames of synth are compared; the sequence has no others"
 
 
 def test_bvh_of_a_skeleton_is_its_truth(tmp_path):

@@ -99,9 +99,9 @@ def test_unknown_pace_is_thirty_frames_a_second_and_said_to_be_a_guess():
     unknown = spider(fps=None, unit=None)
     assert read(unknown).times[-1] == pytest.approx(11 / 30)
     assert read(unknown).json["asset"]["extras"]["fps_is_assumed"] is True
-    pace, size = views.remarks(glb(unknown, GlbParams()))
-    assert "played at 30.0 frames a second" in pace
-    assert "one was taken for 1 m" in size
+    rate, size = views.remarks(glb(unknown, GlbParams()))
+    assert "30 frames a second assumed" in rate
+    assert "one unit is assumed to be 1 m" in size
 
 
 def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
@@ -109,7 +109,7 @@ def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
     assert views.remarks(glb(body, GlbParams())) == ()
     assert glb(body, GlbParams(scale=2.0)).scale == 2.0
     assert views.remarks(glb(spider(unit="ell"), GlbParams())) == (
-        "nobody says what the unit is: one was taken for 1 m; set sequence.unit or glb.scale",
+        "unit not known: one unit is assumed to be 1 m; set sequence.unit or glb.scale",
     )
 
 

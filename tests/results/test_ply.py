@@ -42,7 +42,7 @@ def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
 
 
 def test_frame_that_is_not_the_one_that_was_aligned_is_refused(source):
-    with pytest.raises(MeshError, match=r"scan\.ply: it has \d+ vertices, but 2 were aligned"):
+    with pytest.raises(MeshError, match=r"scan\.ply: the file has \d+ vertices now, but had 2"):
         ply(source, onto([0, 1], np.eye(3)[:2]), spider())
 
 

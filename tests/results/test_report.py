@@ -1,4 +1,4 @@
-"""The report of a small body: what is on the page, what is said first, and what can never be on it."""
+"""The report of a small body: its facts, its warnings, its chapters, and text from outside that must not become markup."""
 
 import re
 from html import unescape
@@ -17,20 +17,20 @@ from kinetree.tasks.results.report import report
 
 
 def page(params: ReportParams | None = None, **changes: Any) -> str:
-    told = {**artifacts(changes.get("skeleton")), **changes}
-    return report(**told, params=params or ReportParams(frames=4, views=1)).text.tobytes().decode()
+    arguments = {**artifacts(changes.get("skeleton")), **changes}
+    return report(**arguments, params=params or ReportParams(frames=4, views=1)).text.tobytes().decode()
 
 
-def heeded(text: str) -> list[str]:
-    """The warnings at the top."""
+def warnings(text: str) -> list[str]:
+    """The sentences in the box of warnings."""
     box = re.search(r'<aside class="warnings".*?</aside>', text, re.DOTALL)
-    return [unescape(found) for found in re.findall("<li>(.*?)</li>", box.group())] if box else []
+    return [unescape(sentence) for sentence in re.findall("<li>(.*?)</li>", box.group())] if box else []
 
 
 def facts(text: str) -> dict[str, str]:
-    told = re.search(r'<ul class="facts">(.*?)</ul>', text, re.DOTALL)
-    assert told is not None
-    return {name: unescape(value) for name, value in re.findall("<li>(.*?) <b>(.*?)</b></li>", told.group(1))}
+    items = re.search(r'<ul class="facts">(.*?)</ul>', text, re.DOTALL)
+    assert items is not None
+    return {name: unescape(value) for name, value in re.findall("<li>(.*?) <b>(.*?)</b></li>", items.group(1))}
 
 
 def headings(text: str) -> list[str]:
@@ -42,7 +42,7 @@ def plain() -> str:
     return page()
 
 
-def test_facts_are_told_first(plain: str) -> None:
+def test_facts_are_at_the_head_of_the_page(plain: str) -> None:
     told = facts(plain)
     assert (told["frames"], told["joints"], told["intervals"]) == ("12", "2", "2")
     assert (told["unit"], told["frames a second"]) == ("mm", "10")
@@ -63,34 +63,34 @@ def test_truth_has_a_chapter_only_where_there_is_one(plain: str) -> None:
     assert "missing" in told
 
 
-def test_nothing_to_heed_is_no_box_at_all() -> None:
+def test_page_without_warnings_has_no_box_for_them() -> None:
     leaves = artifacts()["leaves"].model_copy(update={"positions": np.zeros((4, 12, 3))})
-    assert heeded(page(leaves=leaves)) == []
+    assert warnings(page(leaves=leaves)) == []
 
 
-def test_what_to_heed_is_said_in_plain_words() -> None:
+def test_box_of_warnings_names_frames_and_joints() -> None:
     told = artifacts()
     low = {"doubted": 0.9}
     doubt = {f: a.model_copy(update=low if f in (3, 4) else {}) for f, a in told["alignment"].items()}
     cleaned = Cleaning(components=2, components_kept=1)
     removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in told["mesh"].items()}
     body = spider(support=np.full(len(spider().names), 2))
-    said = heeded(page(alignment=doubt, mesh=removed, skeleton=body))
-    assert "the alignment is not trusted in frames 3, 4; poses there come from the whole model" in said
-    assert "components that are not the body were removed in frame 7" in said
-    assert any("little support" in text and "joints arm, knee" in text for text in said)
+    sentences = warnings(page(alignment=doubt, mesh=removed, skeleton=body))
+    assert "the alignment is unreliable in frames 3, 4; poses there follow from the other frames" in sentences
+    assert "components apart from the body were removed in frame 7" in sentences
+    assert any("supported by fewer than 5 frames" in text and "joints arm, knee" in text for text in sentences)
 
 
 def test_body_without_joints_says_that_it_is_one_rigid_part() -> None:
     whole = spider()
     kinds = tuple("leaf" if kind == "joint" else kind for kind in whole.kinds)
     told = page(skeleton=spider(kinds=kinds))
-    assert any("one rigid part" in text for text in heeded(told))
+    assert any("one rigid part" in text for text in warnings(told))
     assert "0 joints in 12 frames" in told
 
 
-def test_ring_is_said_to_be_no_tree_and_a_skin_that_does_not_follow_to_explain_nothing(plain: str) -> None:
-    assert not any("handle" in text or "explain" in text for text in heeded(plain))
+def test_handle_of_the_surface_and_a_skin_far_from_the_meshes_are_warned_of(plain: str) -> None:
+    assert not any("handle" in text or "explain" in text for text in warnings(plain))
     ring = trimesh.creation.torus(3.0, 1.0, major_sections=24, minor_sections=12)
     count = len(ring.vertices)
     zero = np.zeros((count, 4))
@@ -103,19 +103,19 @@ def test_ring_is_said_to_be_no_tree_and_a_skin_that_does_not_follow_to_explain_n
         f: Alignment(vertices=rest[t] * (1 + 0.1 * t), residual=0 * one, stretch=one, trust=one, uncovered=0.0)
         for t, f in enumerate(body.frames)
     }
-    said = heeded(page(skeleton=body, alignment=grows))
-    assert any("1 handle, as a ring has" in text for text in said)
-    assert any("does not explain the motion" in text for text in said)
+    sentences = warnings(page(skeleton=body, alignment=grows))
+    assert any("1 handle, where limbs touch or the body forms a ring" in text for text in sentences)
+    assert any("does not explain the motion" in text for text in sentences)
 
 
-def test_two_frames_are_said_to_be_few() -> None:
+def test_sequence_of_two_frames_is_warned_of() -> None:
     two = {name: getattr(spider(), name)[:2] for name in ("frames", "positions", "rotation", "confidence")}
-    assert any(text.startswith("2 frames only") for text in heeded(page(skeleton=spider(**two))))
+    assert any(text.startswith("only 2 frames") for text in warnings(page(skeleton=spider(**two))))
 
 
 def test_alignment_is_drawn_only_where_something_was_aligned(plain: str) -> None:
-    assert "there is nothing to align" in plain
-    assert "Distance of the aligned mesh to every frame" in page(**artifacts(anew=True))
+    assert "so nothing had to be aligned" in plain
+    assert "Distance of the aligned mesh from every frame" in page(**artifacts(anew=True))
 
 
 def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
@@ -134,7 +134,7 @@ def test_no_word_from_outside_becomes_markup(field: str) -> None:
         told = page(skeleton=spider(names=(bad, *spider().names[1:])))
     assert "<script>alert" not in told
     assert "<img src=x" not in told
-    assert told.count(RUN) == 1, "the place for what ran is one"
+    assert told.count(RUN) == 1, "the record of the run has one place"
 
 
 def test_page_is_whole_and_asks_for_nothing(plain: str) -> None:

@@ -38,4 +38,4 @@ def test_error_is_the_distance_between_skinned_and_aligned():
     _, _, found = gathered(shift=0.25)
     np.testing.assert_allclose([found.error, found.error_95], 0.25, rtol=1e-6)
     (told,) = views.remarks(found)
-    assert told.endswith("off the aligned ones by 0.25 mm (root mean square), 95 % below 0.25 mm")
+    assert told.endswith("and the aligned meshes: 0.25 mm root mean square, 95 % below 0.25 mm")

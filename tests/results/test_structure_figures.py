@@ -33,11 +33,11 @@ def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_tree()
     told = of(body)
     begins = {"png": b"\x89PNG", "svg": b"<?xml"}
     for chapter in told.chapters:
-        files = told.shown(chapter)
+        files = told.picture_files(chapter)
         assert len(files) == len(chapter.pictures) == len(FIGURES)
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
     assert told.end[-1] == len(told.content)
-    np.testing.assert_array_equal(told.varies, tree_of(body).length_variation)
+    np.testing.assert_array_equal(told.length_variation, tree_of(body).length_variation)
 
 
 def test_same_derivation_gives_the_same_bytes() -> None:

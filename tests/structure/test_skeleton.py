@@ -47,4 +47,4 @@ def test_fitted_frames_are_put_in_their_places() -> None:
 
 def test_skeleton_says_how_many_joints_it_has() -> None:
     known, _ = arms()
-    assert views.remarks(skeleton(articulation(known), ())) == ("3 joints and 1 end effectors under root",)
+    assert views.remarks(skeleton(articulation(known), ())) == ("3 joints and 1 leaf under root",)

@@ -18,5 +18,5 @@ def test_nothing_to_tell_by_is_said_to_be_a_guess() -> None:
     whole = followed(spider())
     told = up_direction(whole.model_copy(update={"positions": whole.positions[:0] * np.nan}), UpDirectionParams())
     assert (told.up, told.axis, told.confidence) == ("y", 1, 0.0)
-    assert "which is a guess" in views.remarks(told)[0]
+    assert "up direction not certain" in views.remarks(told)[0]
     assert "--set up_direction.up=" in views.remarks(told)[0]

@@ -1,1 +1,1 @@
-"""What people take away: comparison with the truth, files for other programs, figures, the report."""
+"""Numerics of the results: reading a truth, comparison with it, the scene of the report."""

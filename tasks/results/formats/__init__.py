@@ -1,1 +1,1 @@
-"""Files that other programs read: one module a format, each a function from a skeleton to bytes."""
+"""Files for other programs: one module for each format, with a function from a skeleton to its bytes."""

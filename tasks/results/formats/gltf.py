@@ -1,7 +1,7 @@
-"""A skeleton as GLB (glTF 2.0): JSON and one block of numbers.
+"""A skeleton as GLB (glTF 2.0): JSON and one block of numbers (ours).
 
-Written here and not by a library: the libraries that are kept write no skins (trimesh) or are the format's JSON as classes
-(pygltflib), which saves nothing. The Khronos validator is the judge.
+No library writes the file, because none helps: trimesh writes no skins, and pygltflib only represents the JSON as classes. The
+tests check the file with the Khronos validator.
 """
 
 import json
@@ -19,35 +19,38 @@ from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.results.formats.colours import linear, part_colours
 from kinetree.tasks.results.formats.rig import children, local_offsets, local_rotations, quaternions, rest_frames, seconds
 
-COMPONENTS = {"float32": 5126, "uint32": 5125, "uint16": 5123, "uint8": 5121}
-TYPES = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
+COMPONENT_TYPES = {"float32": 5126, "uint32": 5125, "uint16": 5123, "uint8": 5121}
+ELEMENT_TYPES = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 VERTICES, ELEMENTS = 34962, 34963
-UP = {
+"""Codes of the specification: types of numbers, shapes of elements, targets of buffer views."""
+UP_ROTATIONS = {
     "y": ((1, 0, 0), (0, 1, 0), (0, 0, 1)), "-y": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
     "z": ((1, 0, 0), (0, 0, 1), (0, -1, 0)), "-z": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
     "x": ((0, 0, 1), (1, 0, 0), (0, 1, 0)), "-x": ((0, 0, 1), (-1, 0, 0), (0, -1, 0)),
 }  # fmt: skip
-"""Rows of the turn that takes each axis to glTF's up, +y."""
+"""Rotation that brings each axis to glTF's up, +y, by rows."""
 
 
 def gltf(skeleton: Skeleton, up: str = "y", scale: float = 1.0) -> bytes:
-    """The reference mesh skinned to the moving joints, as the bytes of a GLB file.
+    """The reference mesh skinned to the animated joints, as the bytes of a GLB file.
 
-    Node 0 carries what turns `up` to glTF's y and one unit to `scale` metres; below it lie the joints in the skeleton's
-    order, so that everything under it is in the input's own frame and unit. Every joint's
-    y axis points along its bone in the reference pose.
+    Node 0 rotates `up` to glTF's y and scales to metres. Below it are the joints in the skeleton's order, in the coordinates
+    and the unit of the input. The y axis of every joint points along its bone in the reference pose.
+
+    up    : axis of the input that points up: x, y, z, -x, -y or -z
+    scale : metres of one unit of the input
     """
     block = _Block()
     joints = len(skeleton.names)
     B = rest_frames(skeleton.rest, skeleton.parents)
     fps = skeleton.fps or ASSUMED_FPS
-    told = {"unit": skeleton.unit, "fps": fps, "fps_is_assumed": skeleton.fps is None, "frames": list(skeleton.frames)}
+    extras = {"unit": skeleton.unit, "fps": fps, "fps_is_assumed": skeleton.fps is None, "frames": list(skeleton.frames)}
     document = {
-        "asset": {"version": "2.0", "generator": "kinetree", "extras": told},
+        "asset": {"version": "2.0", "generator": "kinetree", "extras": extras},
         "scene": 0,
         "scenes": [{"nodes": [0, joints + 1]}],
         "nodes": [
-            _stand(up, scale),
+            _world_node(up, scale),
             *_joints(skeleton, B),
             {"name": "body", "mesh": 0, "skin": 0},
         ],
@@ -63,11 +66,11 @@ def gltf(skeleton: Skeleton, up: str = "y", scale: float = 1.0) -> bytes:
         ],
         "animations": [_animation(block, skeleton, B, fps)],
     }
-    return _packed(document | block.told(), block.bytes)
+    return _packed(document | block.json(), block.bytes)
 
 
 class _Block:
-    """Arrays in one buffer, each in a view of its own, beginning at multiples of four bytes."""
+    """Arrays in one buffer, each in its own view, which begins at a multiple of four bytes."""
 
     def __init__(self) -> None:
         self.bytes = bytearray()
@@ -75,9 +78,9 @@ class _Block:
         self._accessors: list[dict[str, Any]] = []
 
     def add(self, array: NDArray[Any], target: int | None = None, *, bounded: bool = False, share: bool = False) -> int:
-        """Adds an array of elements and returns its accessor; `share` makes bytes stand for 0 to 1."""
-        element: dict[str, Any] = {"bufferView": len(self._views), "componentType": COMPONENTS[str(array.dtype)]}
-        element |= {"count": len(array), "type": TYPES[array.shape[1:]]}
+        """Adds an array of elements and returns its accessor; with `share`, bytes mean numbers from 0 to 1."""
+        element: dict[str, Any] = {"bufferView": len(self._views), "componentType": COMPONENT_TYPES[str(array.dtype)]}
+        element |= {"count": len(array), "type": ELEMENT_TYPES[array.shape[1:]]}
         if bounded:
             rows = array.reshape(len(array), -1)
             element |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
@@ -88,37 +91,41 @@ class _Block:
         self.bytes += bytes(-len(self.bytes) % 4)
         return len(self._accessors) - 1
 
-    def told(self) -> dict[str, Any]:
+    def json(self) -> dict[str, Any]:
+        """The block's part of the document."""
         return {"accessors": self._accessors, "bufferViews": self._views, "buffers": [{"byteLength": len(self.bytes)}]}
 
 
-def _stand(up: str, scale: float) -> dict[str, Any]:
-    turn = quaternions(np.array([UP[up]], np.float64))[0]
+def _world_node(up: str, scale: float) -> dict[str, Any]:
+    """The node above all joints, which rotates and scales them."""
+    rotation = quaternions(np.array([UP_ROTATIONS[up]], np.float64))[0]
     node: dict[str, Any] = {"name": "skeleton", "children": [1]}
     if up != "y":
-        node["rotation"] = turn.tolist()
+        node["rotation"] = rotation.tolist()
     if scale != 1.0:
         node["scale"] = [scale] * 3
     return node
 
 
 def _joints(skeleton: Skeleton, B: Floats) -> list[dict[str, Any]]:
+    """The nodes of the joints in the reference pose."""
     offsets = local_offsets(skeleton.rest, B, skeleton.parents)
-    still = np.broadcast_to(np.eye(3), (1, len(B), 3, 3))
-    turns = quaternions(local_rotations(still, B, skeleton.parents))[0]
+    identity = np.broadcast_to(np.eye(3), (1, len(B), 3, 3))
+    rotations = quaternions(local_rotations(identity, B, skeleton.parents))[0]
     nodes: list[dict[str, Any]] = []
     for joint, below in enumerate(children(skeleton.parents)):
-        node = {"name": skeleton.names[joint], "translation": offsets[joint].tolist(), "rotation": turns[joint].tolist()}
+        node = {"name": skeleton.names[joint], "translation": offsets[joint].tolist(), "rotation": rotations[joint].tolist()}
         nodes.append(node | ({"children": [c + 1 for c in below]} if below else {}))
     return nodes
 
 
 def _primitive(block: _Block, skeleton: Skeleton) -> dict[str, Any]:
+    """The reference mesh with normals, part colours and skinning weights."""
     V = skeleton.vertices.astype(np.float32)
     N = smoothed_normals(skeleton.vertices, skeleton.faces, rounds=0)
     N[np.linalg.norm(N, axis=1) == 0] = (0.0, 0.0, 1.0)
-    shade = np.rint(255 * linear(part_colours(skeleton.label, skeleton.faces)))
-    colour = np.concatenate([shade, np.full((len(shade), 1), 255.0)], axis=1).astype(np.uint8)[skeleton.label]
+    rgb = np.rint(255 * linear(part_colours(skeleton.label, skeleton.faces)))
+    colour = np.concatenate([rgb, np.full((len(rgb), 1), 255.0)], axis=1).astype(np.uint8)[skeleton.label]
     joint, weight = influences(skeleton)
     attributes = {
         "POSITION": block.add(V, VERTICES, bounded=True),
@@ -131,15 +138,18 @@ def _primitive(block: _Block, skeleton: Skeleton) -> dict[str, Any]:
 
 
 def influences(skeleton: Skeleton) -> tuple[NDArray[Any], NDArray[np.float32]]:
-    """(vertex, 4) joints, 0 where there is no weight, and their weights, which sum to 1 as 32-bit floats."""
+    """Joints and weights of every vertex as glTF requires them.
+
+    returns : (vertex, 4) joints, 0 where the weight is 0; (vertex, 4) weights, which sum to 1 as 32-bit floats
+    """
     weight = skeleton.weight.astype(np.float32)
     weight[:, 0] = 1.0 - weight[:, 1:].sum(axis=1, dtype=np.float32)
-    kind = np.uint8 if len(skeleton.names) <= 256 else np.uint16
-    return np.where(weight > 0, skeleton.influence, 0).astype(kind), weight
+    integer = np.uint8 if len(skeleton.names) <= 256 else np.uint16
+    return np.where(weight > 0, skeleton.influence, 0).astype(integer), weight
 
 
 def _inverse_binds(rest: Floats, B: Floats) -> NDArray[np.float32]:
-    """(joint, 4, 4) from the reference mesh into each joint, columns first as glTF has it."""
+    """(joint, 4, 4) transformation from the reference mesh to each joint, columns first as in glTF."""
     M = np.tile(np.eye(4), (len(rest), 1, 1))
     M[:, :3, :3] = B  # columns first: the transpose of Bᵀ
     M[:, 3, :3] = -np.einsum("jyx,jy->jx", B, rest)
@@ -147,14 +157,15 @@ def _inverse_binds(rest: Floats, B: Floats) -> NDArray[np.float32]:
 
 
 def _animation(block: _Block, skeleton: Skeleton, B: Floats, fps: float) -> dict[str, Any]:
+    """The translation of the root and the rotation of every joint over time."""
     times = block.add(seconds(skeleton, fps).astype(np.float32), bounded=True)
-    turns = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents)).astype(np.float32)
-    moved = [(0, "translation", skeleton.positions[:, 0].astype(np.float32))]
-    moved += [(j, "rotation", turns[:, j]) for j, kind in enumerate(skeleton.kinds) if kind != "leaf"]
+    rotations = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents)).astype(np.float32)
+    curves = [(0, "translation", skeleton.positions[:, 0].astype(np.float32))]
+    curves += [(j, "rotation", rotations[:, j]) for j, kind in enumerate(skeleton.kinds) if kind != "leaf"]
     return {
         "name": "motion",
-        "samplers": [{"input": times, "output": block.add(values), "interpolation": "LINEAR"} for _, _, values in moved],
-        "channels": [{"sampler": n, "target": {"node": j + 1, "path": path}} for n, (j, path, _) in enumerate(moved)],
+        "samplers": [{"input": times, "output": block.add(values), "interpolation": "LINEAR"} for _, _, values in curves],
+        "channels": [{"sampler": n, "target": {"node": j + 1, "path": path}} for n, (j, path, _) in enumerate(curves)],
     }
 
 

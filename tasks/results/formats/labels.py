@@ -1,4 +1,4 @@
-"""Parts on the user's own vertices."""
+"""Part labels of the input's own vertices (2014, Sec. 6)."""
 
 import numpy as np
 
@@ -8,13 +8,14 @@ from kinetree.schemas.structure.skeleton import Skeleton
 
 
 def input_labels(skeleton: Skeleton, projection: Projection) -> Ints:
-    """(input_vertex,) the part that holds most of a vertex's point on the reference mesh; −1 where the surface is not
-    rigid there, and where cleaning dropped the vertex.
+    """The part of every input vertex: that with the largest share of its projection onto the reference mesh.
+
+    returns : (input_vertex,) part; −1 where the surface is not rigid, and where cleaning removed the vertex
     """
     label = np.full(len(projection.face), -1, np.int32)
-    seen = projection.face >= 0
-    corners = skeleton.label[skeleton.faces[projection.face[seen]]]
-    share = projection.share[seen]
-    held = np.stack([np.sum(share * (corners == corners[:, [k]]), axis=1) for k in range(3)], axis=1)
-    label[seen] = np.take_along_axis(corners, np.argmax(held, axis=1)[:, None], axis=1)[:, 0]
+    known = projection.face >= 0
+    corners = skeleton.label[skeleton.faces[projection.face[known]]]
+    share = projection.share[known]
+    share_of_part = np.stack([np.sum(share * (corners == corners[:, [k]]), axis=1) for k in range(3)], axis=1)
+    label[known] = np.take_along_axis(corners, np.argmax(share_of_part, axis=1)[:, None], axis=1)[:, 0]
     return label

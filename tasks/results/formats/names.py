@@ -1,22 +1,22 @@
-"""Names of joints as strict formats take them."""
+"""Names of joints for formats that allow only identifiers."""
 
 import re
 from collections.abc import Sequence
 
-TAKEN = re.compile(r"[^A-Za-z0-9_]")
+NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_]")
 
 
 def identifiers(names: Sequence[str]) -> list[str]:
-    """The names in ASCII letters, digits and underscores, beginning with no digit, still unique.
+    """The names as unique identifiers of ASCII letters, digits and underscores that do not begin with a digit.
 
-    Any other character becomes an underscore; names that thereby become equal are numbered.
+    Every other character becomes an underscore; names that become equal are numbered.
     """
-    found: list[str] = []
+    unique: list[str] = []
     for name in names:
-        plain = TAKEN.sub("_", name)
+        plain = NOT_ALLOWED.sub("_", name)
         plain = plain if plain and not plain[0].isdigit() else f"_{plain}"
         numbered, number = plain, 2
-        while numbered in found:
+        while numbered in unique:
             numbered, number = f"{plain}_{number}", number + 1
-        found.append(numbered)
-    return found
+        unique.append(numbered)
+    return unique

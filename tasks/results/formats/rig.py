@@ -1,4 +1,4 @@
-"""What every format that moves bones needs: rest orientations along the bones, and how each joint turns against its parent."""
+"""Rest orientations along the bones, rotations of joints against their parents, and the skinned mesh: shared by formats."""
 
 from collections.abc import Sequence
 
@@ -7,28 +7,32 @@ from scipy.spatial.transform import Rotation
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.results.evaluation.body import blended_skin
 
-OPPOSITE = 1e-6
-"""Below this length of their sum two directions are opposite."""
+OPPOSITE_SUM = 1e-6
+"""Length of the sum of two unit vectors below which they count as opposite."""
 
 
 def children(parents: Sequence[int]) -> list[list[int]]:
-    """Per joint the joints whose parent it is, in their own order."""
-    found: list[list[int]] = [[] for _ in parents]
+    """The children of every joint, ascending.
+
+    parents : (joint,) parent of every joint, −1 for the root
+    """
+    below: list[list[int]] = [[] for _ in parents]
     for joint, parent in enumerate(parents):
         if parent >= 0:
-            found[parent].append(joint)
-    return found
+            below[parent].append(joint)
+    return below
 
 
 def rest_frames(rest: Floats, parents: Sequence[int]) -> Floats:
-    """Orientation of every joint in the reference pose: y along its bone, turned out of its parent's by the least turn.
+    """Orientation of every joint in the reference pose: y along its bone, rotated as little as possible from its parent's.
 
-    The bone of a joint with several children leads to the one with the longest bones, all below it counted; a leaf goes on
-    as its parent does, and so does a bone without length. The root starts from the axes of space.
+    The bone of a joint with several children leads to the child with the longest bones, all below it counted. A leaf, and a
+    bone without length, has its parent's orientation. The root is rotated from the axes of space.
 
-    rest    : (joint, xyz) mesh unit
-    parents : parents first, −1 for the root
+    rest    : (joint, xyz) joints in the reference pose, mesh unit
+    parents : (joint,) parents before children, −1 for the root
     returns : (joint, 3, 3), columns are the axes
     """
     below = children(parents)
@@ -39,29 +43,40 @@ def rest_frames(rest: Floats, parents: Sequence[int]) -> Floats:
     for joint, parent in enumerate(parents):
         before = B[parent] if parent >= 0 else np.eye(3)
         ahead = max(below[joint], key=lambda c: (reach[c], -c), default=joint)
-        B[joint] = _turned(before, rest[ahead] - rest[joint])
+        B[joint] = _rotated(before, rest[ahead] - rest[joint])
     return B
 
 
 def local_rotations(R: Floats, B: Floats, parents: Sequence[int]) -> Floats:
-    """Turn of every joint against its parent, both in their rest orientations: (R_p B_p)ᵀ R_j B_j.
+    """Rotation of every joint against its parent, both in their rest orientations: (R_p B_p)ᵀ R_j B_j.
 
-    R       : (frame, joint, 3, 3) from the reference pose to each frame
+    R       : (frame, joint, 3, 3) rotation from the reference pose to each frame
     B       : (joint, 3, 3) rest orientations
+    parents : (joint,) parent of every joint, −1 for the root
     returns : (frame, joint, 3, 3)
     """
     G = R @ B
-    turns = [G[:, j] if p < 0 else G[:, p].transpose(0, 2, 1) @ G[:, j] for j, p in enumerate(parents)]
-    return np.stack(turns, axis=1)
+    rotations = [G[:, j] if p < 0 else G[:, p].transpose(0, 2, 1) @ G[:, j] for j, p in enumerate(parents)]
+    return np.stack(rotations, axis=1)
 
 
 def local_offsets(rest: Floats, B: Floats, parents: Sequence[int]) -> Floats:
-    """(joint, xyz) every joint as its parent in rest orientation sees it, B_pᵀ (rest_j − rest_p); the root in space."""
+    """Position of every joint in the coordinates of its parent at rest, B_pᵀ (rest_j − rest_p); the root's own position.
+
+    rest    : (joint, xyz) joints in the reference pose, mesh unit
+    B       : (joint, 3, 3) rest orientations
+    parents : (joint,) parent of every joint, −1 for the root
+    returns : (joint, xyz) mesh unit
+    """
     return np.stack([rest[j] if p < 0 else B[p].T @ (rest[j] - rest[p]) for j, p in enumerate(parents)])
 
 
 def quaternions(R: Floats) -> Floats:
-    """(frame, …, 3, 3) → (frame, …, xyzw) unit; of the two that mean one turn the one nearer to the frame before."""
+    """Unit quaternions; of the two for one rotation, the one nearer to that of the frame before.
+
+    R       : (frame, …, 3, 3) rotations
+    returns : (frame, …, xyzw)
+    """
     q = np.asarray(Rotation.from_matrix(R.reshape(-1, 3, 3)).as_quat()).reshape(*R.shape[:-2], 4)
     flips = np.sum(q[1:] * q[:-1], axis=-1) < 0
     q[1:] *= np.where(np.cumsum(flips, axis=0) % 2, -1.0, 1.0)[..., None]
@@ -69,26 +84,31 @@ def quaternions(R: Floats) -> Floats:
 
 
 def seconds(skeleton: Skeleton, fps: float) -> Floats:
-    """(frame,) since the first frame; frames left out leave a gap."""
+    """Time of every frame since the first one; missing frames leave a gap.
+
+    fps     : frames a second
+    returns : (frame,) seconds
+    """
     return (np.array(skeleton.frames, np.float64) - skeleton.frames[0]) / fps
 
 
 def skinned(skeleton: Skeleton, t: int) -> Floats:
-    """(vertex, xyz) the reference mesh as the skeleton carries it in its t-th frame, Σ_i w_vi [R_i (v − rest_i) + x_i]."""
-    at = skeleton.influence
-    moved = np.einsum("vixy,viy->vix", skeleton.rotation[t][at], skeleton.vertices[:, None] - skeleton.rest[at])
-    out: Floats = np.einsum("vi,vix->vx", skeleton.weight, moved + skeleton.positions[t][at])
-    return out
+    """The reference mesh as the skeleton carries it in its t-th frame, by linear blend skinning.
+
+    returns : (vertex, xyz) mesh unit
+    """
+    s = skeleton
+    return blended_skin(s.vertices, s.influence, s.weight, s.rest, s.rotation[t], s.positions[t])
 
 
-def _turned(frame: Floats, along: Floats) -> Floats:
-    """A frame turned by the least turn that takes its y axis along a direction: mirrored across y, then across what halves."""
+def _rotated(frame: Floats, along: Floats) -> Floats:
+    """Axes rotated as little as possible so that y points along a direction: mirrored across y, then across the bisector."""
     length = float(np.linalg.norm(along))
     if length == 0.0:
         return frame
     y, d = frame[:, 1], along / length
     half = y + d
-    if np.linalg.norm(half) < OPPOSITE:
+    if np.linalg.norm(half) < OPPOSITE_SUM:
         return np.asarray(frame * np.array([1.0, -1.0, -1.0]))
     half /= np.linalg.norm(half)
     mirrored = frame - 2.0 * np.outer(y, y @ frame)

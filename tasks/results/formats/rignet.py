@@ -1,4 +1,4 @@
-"""A skeleton as RigNet's text (Xu et al. 2020): joints, root, hierarchy and skin of the reference mesh."""
+"""A skeleton in the text format of RigNet (Xu et al. 2020): joints, root, hierarchy and skin of the reference mesh."""
 
 from collections.abc import Iterator, Mapping
 
@@ -7,9 +7,10 @@ from kinetree.tasks.results.formats.names import identifiers
 
 
 def rignet(skeleton: Skeleton) -> Mapping[str, bytes]:
-    """skeleton.txt and skeleton.obj.
+    """The files skeleton.txt and skeleton.obj by name.
 
-    joints NAME X Y Z · root NAME · hier PARENT CHILD · skin VERTEX NAME WEIGHT NAME WEIGHT …, vertices counted from 0
+    Lines of skeleton.txt: joints NAME X Y Z · root NAME · hier PARENT CHILD · skin VERTEX NAME WEIGHT NAME WEIGHT …; vertices
+    are those of skeleton.obj, counted from 0.
     """
     names = identifiers(skeleton.names)
     return {
@@ -19,6 +20,7 @@ def rignet(skeleton: Skeleton) -> Mapping[str, bytes]:
 
 
 def _rig(skeleton: Skeleton, names: list[str]) -> Iterator[str]:
+    """The lines of skeleton.txt."""
     for name, (x, y, z) in zip(names, skeleton.rest.tolist(), strict=True):
         yield f"joints {name} {x:.9g} {y:.9g} {z:.9g}"
     yield f"root {names[0]}"
@@ -31,6 +33,7 @@ def _rig(skeleton: Skeleton, names: list[str]) -> Iterator[str]:
 
 
 def _mesh(skeleton: Skeleton) -> Iterator[str]:
+    """The lines of skeleton.obj."""
     for x, y, z in skeleton.vertices.tolist():
         yield f"v {x:.9g} {y:.9g} {z:.9g}"
     for a, b, c in skeleton.faces.tolist():

@@ -1,4 +1,4 @@
-"""A skeleton as tables: a row a frame, a column a joint's coordinate; angles between bones; lengths."""
+"""A skeleton as tables: positions, confidence, angles between bones and bone lengths (ours)."""
 
 import csv
 import io
@@ -11,17 +11,18 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.formats.rig import children
 
 DIGITS = 9
+"""Significant digits of every number."""
 
 
 def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
-    """The files by name, as RFC 4180 has them, in UTF-8.
+    """CSV files by name (RFC 4180), in UTF-8.
 
     positions.csv   frame, seconds, then x, y, z of every joint in the sequence's unit
     confidence.csv  frame, seconds, then every joint's confidence, 0 to 1
-    angles.csv      frame, seconds, then per pair of bones that meet in a joint the angle between them in degrees, 180 where
-                    they are in line; a column is named parent/joint/child
+    angles.csv      frame, seconds, then for every pair of bones with a common joint the angle between them in degrees, 180
+                    where they are in line; columns are named parent/joint/child
     bones.csv       parent, child, length, unit
-    Seconds are empty where nobody knows how fast the sequence is.
+    Seconds are empty where the frame rate is not known.
     """
     names, X = skeleton.names, skeleton.positions
     pairs, angles = bone_angles(skeleton)
@@ -36,7 +37,10 @@ def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
 
 
 def bone_angles(skeleton: Skeleton) -> tuple[list[tuple[int, int, int]], Floats]:
-    """Every parent, joint and child in a row, and (frame, pair) the angle at the joint in degrees, 180 where straight."""
+    """Angles between bones with a common joint.
+
+    returns : (parent, joint, child) of every pair of bones; (frame, pair) degrees, 180 where the bones are in line
+    """
     below, X = children(skeleton.parents), skeleton.positions
     pairs = [(p, j, c) for j, p in enumerate(skeleton.parents) if p >= 0 for c in below[j]]
     angles = np.empty((len(X), len(pairs)))
@@ -48,6 +52,7 @@ def bone_angles(skeleton: Skeleton) -> tuple[list[tuple[int, int, int]], Floats]
 
 
 def _series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> bytes:
+    """A table with one row a frame."""
     first = skeleton.frames[0]
     seconds = ["" if skeleton.fps is None else _number((frame - first) / skeleton.fps) for frame in skeleton.frames]
     rows = zip(skeleton.frames, seconds, values, strict=True)
@@ -55,10 +60,12 @@ def _series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> bytes
 
 
 def _text(rows: Iterable[Sequence[object]]) -> bytes:
-    out = io.StringIO()
-    csv.writer(out).writerows(rows)
-    return out.getvalue().encode()
+    """Rows as the bytes of a CSV file."""
+    file = io.StringIO()
+    csv.writer(file).writerows(rows)
+    return file.getvalue().encode()
 
 
 def _number(x: float) -> str:
+    """A number as text."""
     return f"{x:.{DIGITS}g}"

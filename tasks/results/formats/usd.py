@@ -1,4 +1,4 @@
-"""A skeleton as USD (UsdSkel), through Pixar's own library: the extra `usd`."""
+"""A skeleton as USD (UsdSkel), written by Pixar's library, which the extra `usd` installs (ours)."""
 
 from functools import cache
 from importlib import import_module
@@ -20,9 +20,9 @@ from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, q
 
 
 def usd(skeleton: Skeleton, params: UsdParams) -> bytes:
-    """The reference mesh bound to the moving joints, as the text of a .usda file.
+    """The reference mesh bound to the animated joints, as the text of a .usda file.
 
-    Time codes are the frames' own numbers; metersPerUnit follows the sequence's unit where it is a known one.
+    Time codes are source frame numbers; metersPerUnit is that of the sequence's unit, 1 where it is not known.
     raises : ConfigError where the extra is not installed
     """
     pxr = _pxr()
@@ -47,7 +47,7 @@ def usd(skeleton: Skeleton, params: UsdParams) -> bytes:
 
 @cache
 def _pxr() -> Any:
-    """The library, which has no types; raises ConfigError where it is not installed."""
+    """The modules of the library, which have no types; raises ConfigError where it is not installed."""
     try:
         return SimpleNamespace(**{name: import_module(f"pxr.{name}") for name in ("Usd", "UsdGeom", "UsdSkel", "Vt")})
     except ImportError:
@@ -55,30 +55,31 @@ def _pxr() -> Any:
 
 
 def _skeleton(stage: Any, skeleton: Skeleton) -> Any:
-    """The joints with their animation: in UsdSkel, positions and turns of each against its parent."""
+    """The joints with their animation: positions and rotations of each against its parent."""
     pxr = _pxr()
     B = rest_frames(skeleton.rest, skeleton.parents)
     offsets = local_offsets(skeleton.rest, B, skeleton.parents)
-    still = local_rotations(np.broadcast_to(np.eye(3), (1, *B.shape)), B, skeleton.parents)[0]
+    rest_rotations = local_rotations(np.broadcast_to(np.eye(3), (1, *B.shape)), B, skeleton.parents)[0]
     bones = pxr.UsdSkel.Skeleton.Define(stage, "/body/skeleton")
     paths = pxr.Vt.TokenArray(_paths(skeleton))
     bones.CreateJointsAttr(paths)
     bones.CreateJointNamesAttr(pxr.Vt.TokenArray(list(skeleton.names)))
     bones.CreateBindTransformsAttr(_matrices(B, skeleton.rest))
-    bones.CreateRestTransformsAttr(_matrices(still, offsets))
+    bones.CreateRestTransformsAttr(_matrices(rest_rotations, offsets))
     motion = pxr.UsdSkel.Animation.Define(stage, "/body/skeleton/motion")
     motion.CreateJointsAttr(paths)
-    turns = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents))
+    quaternion = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents))
     rotations, translations = motion.CreateRotationsAttr(), motion.CreateTranslationsAttr()
     motion.CreateScalesAttr(pxr.Vt.Vec3hArray.FromNumpy(np.ones((len(B), 3), np.float16)))
     for t, frame in enumerate(skeleton.frames):
-        rotations.Set(pxr.Vt.QuatfArray.FromNumpy(turns[t].astype(np.float32)), frame)
+        rotations.Set(pxr.Vt.QuatfArray.FromNumpy(quaternion[t].astype(np.float32)), frame)
         translations.Set(_points(np.concatenate([skeleton.positions[t, :1], offsets[1:]])), frame)
     pxr.UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets([motion.GetPath()])
     return bones
 
 
 def _mesh(stage: Any, skeleton: Skeleton) -> Any:
+    """The reference mesh with part colours."""
     pxr = _pxr()
     mesh = pxr.UsdGeom.Mesh.Define(stage, "/body/mesh")
     mesh.CreatePointsAttr(_points(skeleton.vertices))
@@ -92,6 +93,7 @@ def _mesh(stage: Any, skeleton: Skeleton) -> Any:
 
 
 def _weights(binding: Any, skeleton: Skeleton) -> None:
+    """Adds the skinning weights to the binding of the mesh."""
     slots = skeleton.influence.shape[1]
     joints = np.where(skeleton.weight > 0, skeleton.influence, 0).astype(np.int32)
     binding.CreateJointIndicesPrimvar(False, slots).Set(_pxr().Vt.IntArray.FromNumpy(joints.ravel()))
@@ -101,15 +103,15 @@ def _weights(binding: Any, skeleton: Skeleton) -> None:
 
 
 def _extent(skeleton: Skeleton) -> Floats:
-    """(2, xyz) a box that the skin never leaves: around all joints, wider by the farthest that a vertex follows one."""
-    arms = np.linalg.norm(skeleton.vertices[:, None] - skeleton.rest[skeleton.influence], axis=2)
-    reach = float(np.max(arms, where=skeleton.weight > 0, initial=0.0))
+    """(2, xyz) a box that contains the skin in all frames: all joints, and the largest distance of a vertex from its joints."""
+    distance = np.linalg.norm(skeleton.vertices[:, None] - skeleton.rest[skeleton.influence], axis=2)
+    reach = float(np.max(distance, where=skeleton.weight > 0, initial=0.0))
     X = skeleton.positions
     return np.stack([X.min(axis=(0, 1)) - reach, X.max(axis=(0, 1)) + reach])
 
 
 def _paths(skeleton: Skeleton) -> list[str]:
-    """The joints as UsdSkel names them: root/spine/…"""
+    """The joints as paths, as UsdSkel requires: root/spine/…"""
     names = identifiers(skeleton.names)
     paths: list[str] = []
     for name, parent in zip(names, skeleton.parents, strict=True):
@@ -118,7 +120,7 @@ def _paths(skeleton: Skeleton) -> list[str]:
 
 
 def _matrices(R: Floats, x: Floats) -> Any:
-    """USD multiplies rows: a matrix holds the turn transposed, and the shift in its last row."""
+    """Transformations as USD has them: the rotation transposed, the translation in the last row."""
     M = np.tile(np.eye(4), (len(x), 1, 1))
     M[:, :3, :3] = R.transpose(0, 2, 1)
     M[:, 3, :3] = x
@@ -126,4 +128,5 @@ def _matrices(R: Floats, x: Floats) -> Any:
 
 
 def _points(X: NDArray[Any]) -> Any:
+    """Points as an array of the library."""
     return _pxr().Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(X, np.float32))

@@ -1,4 +1,4 @@
-"""Chapters that a method writes on its own evidence, and how they come to stand on the page."""
+"""Chapters that show how a method found its joints: made into an artifact, and laid out on the page."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A figure with what is seen in it; `vector` for lines, not for surfaces."""
+    """A figure with its caption; `vector` is true for lines and false for surfaces."""
 
     figure: "Figure"
     caption: str
@@ -26,18 +26,18 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Written:
-    """A chapter before its figures are files."""
+    """A chapter whose figures are not rendered to files yet."""
 
     anchor: str
     heading: str
     drawn: Sequence[Drawn]
-    told: Sequence[str] = ()
+    paragraphs: Sequence[str] = ()
 
 
-def evidence_of(chapters: Sequence[Written], varies: Floats) -> StructureFigures:
-    """The artifact of some chapters.
+def evidence_of(chapters: Sequence[Written], length_variation: Floats) -> StructureFigures:
+    """Renders the figures of some chapters and returns them as an artifact.
 
-    varies : (joint,) see `Evidence`
+    length_variation : (joint,) %, see `StructureFigures`
     """
     files = [rendered(d.figure, vector=d.vector) for chapter in chapters for d in chapter.drawn]
     return StructureFigures(
@@ -45,23 +45,23 @@ def evidence_of(chapters: Sequence[Written], varies: Floats) -> StructureFigures
             Chapter(
                 anchor=c.anchor,
                 heading=c.heading,
-                told=tuple(c.told),
+                paragraphs=tuple(c.paragraphs),
                 pictures=tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in c.drawn),
             )
             for c in chapters
         ),
-        varies=varies,
+        length_variation=length_variation,
         end=np.cumsum([len(f) for f in files], dtype=np.int64),
         content=np.frombuffer(b"".join(files), dtype=np.uint8),
     )
 
 
-def sections(evidence: StructureFigures) -> list[Section]:
+def sections(figures: StructureFigures) -> list[Section]:
     """The chapters as sections of a page."""
-    out = []
-    for chapter in evidence.chapters:
-        shown = zip(evidence.shown(chapter), chapter.pictures, strict=True)
-        body = "".join(embedded(content, p.caption, p.kind) for content, p in shown)
-        body += "".join(f"<p>{escape(text)}</p>" for text in chapter.told)
-        out.append(Section(chapter.anchor, chapter.heading, body))
-    return out
+    laid_out = []
+    for chapter in figures.chapters:
+        rows = zip(figures.picture_files(chapter), chapter.pictures, strict=True)
+        body = "".join(embedded(content, p.caption, p.kind) for content, p in rows)
+        body += "".join(f"<p>{escape(text)}</p>" for text in chapter.paragraphs)
+        laid_out.append(Section(chapter.anchor, chapter.heading, body))
+    return laid_out

@@ -1,4 +1,4 @@
-"""The page as one file of HTML: what was found, drawn and told, every word from outside escaped."""
+"""The page as one file of HTML; all text from outside is escaped."""
 
 import base64
 import io
@@ -11,16 +11,19 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Literal
 
 from kinetree.schemas.results.report import RUN
+from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, SURFACE_LEAF
 from kinetree.tasks.results.page.scene import Scene
 from kinetree.tasks.results.plots.drawing import verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
+
 
 @dataclass(frozen=True)
 class Section:
-    """One chapter of the page: HTML that is safe already."""
+    """One chapter of the page; its body is HTML in which all text is escaped."""
 
     anchor: str
     heading: str
@@ -29,7 +32,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """All that the page tells."""
+    """The content of a page: facts are names with values, warnings are sentences."""
 
     title: str
     facts: Sequence[tuple[str, str]]
@@ -39,9 +42,9 @@ class Page:
 
 
 def document(page: Page) -> str:
-    """The whole page, with `RUN` where what ran is to stand."""
-    ran = '<div id="ran"><p class="soft">Known only to a run that is over.</p></div>'
-    sections = [*page.sections, Section("run", "What ran", ran)]
+    """The whole page, with `RUN` where the record of the run is inserted when the run has ended."""
+    run = '<div id="ran"><p class="soft">Known when the run has ended.</p></div>'
+    sections = [*page.sections, Section("run", "What ran", run)]
     parts = {
         "title": escape(page.title),
         "style": _file("style.css"),
@@ -50,35 +53,36 @@ def document(page: Page) -> str:
         "warnings": warnings(page.warnings),
         "intervals": "".join(
             f'<option value="{i["at"]}">{n}: frames {i["begin"]}–{i["end"]}</option>'
-            for n, i in enumerate(page.scene.told["intervals"])
+            for n, i in enumerate(page.scene.description["intervals"])
         ),
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
         "sections": "".join(f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections),
-        "scene": as_script(page.scene.told),
+        "scene": as_script(page.scene.description),
         "payload": page.scene.block,
         "run": RUN,
         "three": _file("vendor/three.min.js"),
         "viewer": _file("viewer.js"),
+        "legend": "".join(_legend(name, colour) for name, colour in LEGEND.items()),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found.group(1)], _file("page.html"))
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], _file("page.html"))
 
 
-def as_script(told: Any) -> str:
-    """JSON that can lie in a script element: no end of the element, no comment can hide in a string."""
-    text = json.dumps(told, ensure_ascii=True, allow_nan=False)
+def as_script(value: Any) -> str:
+    """JSON for a script element: no string in it can end the element or begin a comment."""
+    text = json.dumps(value, ensure_ascii=True, allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def warnings(told: Sequence[str]) -> str:
-    """The box of warnings; nothing where there are none."""
-    if not told:
+def warnings(sentences: Sequence[str]) -> str:
+    """The box of warnings as HTML; empty where there are none."""
+    if not sentences:
         return ""
-    items = "".join(f"<li>{escape(text)}</li>" for text in told)
-    return f'<aside class="warnings" aria-labelledby="heed"><h2 id="heed">To heed</h2><ul>{items}</ul></aside>'
+    items = "".join(f"<li>{escape(text)}</li>" for text in sentences)
+    return f'<aside class="warnings" aria-labelledby="warnings"><h2 id="warnings">Warnings</h2><ul>{items}</ul></aside>'
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """A table that scrolls by itself on a narrow screen; numbers to the right."""
+    """A table as HTML that scrolls on a narrow screen; columns of numbers are aligned to the right."""
     numeric = [all(isinstance(row[i], int | float) for row in rows) for i in range(len(head))]
     kind = [' class="n"' if n and rows else "" for n in numeric]
     top = "".join(f'<th scope="col"{k}>{escape(h)}</th>' for h, k in zip(head, kind, strict=True))
@@ -88,26 +92,26 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     return f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
-def picture(drawn: "Figure", caption: str, *, vector: bool = True) -> str:
-    """A figure in the page itself: lines as SVG, surfaces as PNG."""
-    return embedded(rendered(drawn, vector=vector), caption, "svg" if vector else "png")
+def picture(figure: "Figure", caption: str, *, vector: bool = True) -> str:
+    """A figure as HTML that contains the file: SVG for lines, PNG for surfaces."""
+    return embedded(rendered(figure, vector=vector), caption, "svg" if vector else "png")
 
 
-def rendered(drawn: "Figure", *, vector: bool) -> bytes:
-    """A figure as the bytes of a file, the same for the same figure."""
+def rendered(figure: "Figure", *, vector: bool) -> bytes:
+    """A figure as the bytes of an SVG or PNG file; equal figures give equal bytes."""
     from matplotlib import rc_context
 
-    out = io.BytesIO()
+    file = io.BytesIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
         if vector:
-            verbatim(drawn).savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+            verbatim(figure).savefig(file, format="svg", metadata={"Date": None, "Creator": None})
         else:
-            verbatim(drawn).savefig(out, format="png", dpi=110, metadata={"Software": None})
-    return out.getvalue()
+            verbatim(figure).savefig(file, format="png", dpi=110, metadata={"Software": None})
+    return file.getvalue()
 
 
 def embedded(content: bytes, caption: str, kind: Literal["png", "svg"]) -> str:
-    """A picture in the page itself; its caption is its text for those who cannot see it."""
+    """A picture as HTML that contains its file; the caption is also its alternative text."""
     data = base64.b64encode(content).decode()
     media = "svg+xml" if kind == "svg" else kind
     return (
@@ -117,8 +121,15 @@ def embedded(content: bytes, caption: str, kind: Literal["png", "svg"]) -> str:
 
 
 def _text(value: object) -> str:
+    """A cell of a table as text."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+def _legend(name: str, colour: str) -> str:
+    """One entry of the legend below the player."""
+    return f'<span><span class="key" style="background:{colour}"></span> {escape(name)}</span>'
+
+
 def _file(name: str) -> str:
+    """The text of a file beside this module."""
     return files("kinetree.tasks.results.page").joinpath(name).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The moving body as the page's player reads it: what is where in one block of bytes, and the block itself."""
+"""The moving body as the page's player reads it: a description in JSON and one block of compressed arrays."""
 
 import base64
 import zlib
@@ -16,42 +16,38 @@ from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.results.scene import Lattice, evenly_spread, part_colouring
+from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF
 from kinetree.tasks.results.plots.drawing import view
-
-PALETTE = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F")
-"""Okabe and Ito's, grey for black; parts that touch have other colours."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How much of a sequence a page can hold and still open at once.
+    """Most of a sequence that a page holds, so that it opens quickly.
 
-    frames   : frames that play
-    vertices : of the aligned mesh
-    sighted  : vertices of an input mesh
+    frames         : frames that play
+    vertices       : vertices of the aligned mesh
+    input_vertices : vertices of an input mesh
     """
 
     frames: int = 90
     vertices: int = 4000
-    sighted: int = 2500
-
-
-Ints = NDArray[np.int64]
+    input_vertices: int = 2500
 
 
 class Scene(NamedTuple):
-    """What the player reads: a description that is JSON, arrays in one compressed block, and what was left out."""
+    """What the player reads: a description for JSON, the arrays in one compressed block, and sentences about omissions."""
 
-    told: dict[str, Any]
+    description: dict[str, Any]
     block: str
     omitted: tuple[str, ...]
 
 
 def scene(
     skeleton: Skeleton,
-    aligned: Mapping[int, Alignment],
+    alignments: Mapping[int, Alignment],
     projections: Mapping[int, Projection],
     meshes: Mapping[int, Mesh],
     leaves: Leaves,
@@ -59,39 +55,41 @@ def scene(
     limits: Limits,
     up: int = 1,
 ) -> Scene:
-    """The body playing, reduced to what a page can hold.
+    """The moving body, reduced to what a page can hold.
 
-    Vertices are turned so that across is x, up is y and towards the eye is z.
+    Coordinates are rotated so that x points to the right, y up and z towards the viewer.
 
-    up : see `view`
+    alignments, projections, meshes : by source frame number
+    up                              : axis that points up, see `view`
     """
     shown = evenly_spread(len(skeleton.frames), limits.frames)
     frames = [skeleton.frames[t] for t in shown]
     axes = view([meshes[frame].vertices for frame in frames], up)
-    kept, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
-    positions = np.stack([aligned[frame].vertices[kept] @ axes for frame in frames])
-    sights = _sights([meshes[f] for f in frames], [projections[f] for f in frames], skeleton, limits.sighted)
-    own = [s.faces for s, t in zip(sights, [None, *sights], strict=False) if t is None or s.faces is not t.faces]
-    corners = [positions.reshape(-1, 3), *(s.vertices @ axes for s in sights)]
-    low, high = np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)
+    selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
+    positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
+    inputs = _coarse_inputs([meshes[f] for f in frames], [projections[f] for f in frames], skeleton, limits.input_vertices)
+    changed = [i == 0 or m.faces is not inputs[i - 1].faces for i, m in enumerate(inputs)]
+    new_faces = [m.faces for m, is_new in zip(inputs, changed, strict=True) if is_new]
+    points = [positions.reshape(-1, 3), *(m.vertices @ axes for m in inputs)]
+    low, high = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
     lattice = Lattice.around(low, high)
     arrays: dict[str, NDArray[Any]] = {
         "positions": lattice.levels(positions),
         "faces": faces.astype(np.uint32),
-        "label": skeleton.label[kept].astype(np.int16),
+        "label": skeleton.label[selected].astype(np.int16),
         "joints": (skeleton.positions[shown] @ axes).astype(np.float32),
-        "input_vertices": lattice.levels(np.concatenate([s.vertices for s in sights]) @ axes),
-        "input_faces": np.concatenate(own).astype(np.uint32),
-        "input_label": np.concatenate([s.label for s in sights]).astype(np.int16),
-        "input_vertex_offsets": _offsets([len(s.vertices) for s in sights]),
-        "input_face_spans": _spans([s.faces for s in sights]),
+        "input_vertices": lattice.levels(np.concatenate([m.vertices for m in inputs]) @ axes),
+        "input_faces": np.concatenate(new_faces).astype(np.uint32),
+        "input_label": np.concatenate([m.label for m in inputs]).astype(np.int16),
+        "input_vertex_offsets": _offsets([len(m.vertices) for m in inputs]),
+        "input_face_spans": _spans([m.faces for m in inputs]),
     }
     if len(leaves.positions):
         at = [leaves.frames.index(frame) for frame in frames]
         arrays["leaves"] = (leaves.positions[:, at].transpose(1, 0, 2) @ axes).astype(np.float32)
-    told, block = packed(arrays)
-    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PALETTE))
-    described = {
+    layout, block = packed(arrays)
+    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PARTS))
+    description = {
         "frames": frames,
         "fps": skeleton.fps,
         "rate": (skeleton.fps or 25.0) * len(frames) / len(skeleton.frames),
@@ -101,62 +99,71 @@ def scene(
         "centre": positions.mean(axis=(0, 1)).tolist(),
         "low": lattice.low.tolist(),
         "scale": lattice.scale,
-        "palette": [PALETTE[c] for c in colours] or [PALETTE[0]],
+        "palette": [PARTS[c] for c in colours] or [PARTS[0]],
+        "kinds": KINDS,
+        "surface_leaf": SURFACE_LEAF,
+        "not_rigid": NOT_RIGID,
         "joints": [
             {"name": name, "parent": parent, "kind": kind}
             for name, parent, kind in zip(skeleton.names, skeleton.parents, skeleton.kinds, strict=True)
         ],
         "intervals": _starts(intervals, skeleton.frames, shown),
-        "arrays": told,
+        "arrays": layout,
     }
-    return Scene(described, block, _omitted(skeleton, meshes, frames, len(kept), limits))
+    return Scene(description, block, _omitted(skeleton, meshes, frames, len(selected), limits))
 
 
-class _Sight(NamedTuple):
+class _CoarseInput(NamedTuple):
+    """An input mesh with few vertices, and the part of each of them."""
+
     vertices: Floats
     faces: Ints
     label: Ints
 
 
-def _sights(meshes: list[Mesh], projections: list[Projection], skeleton: Skeleton, count: int) -> list[_Sight]:
-    """Every frame's own mesh, coarser, with the labels that come back to its vertices.
+def _coarse_inputs(meshes: list[Mesh], projections: list[Projection], skeleton: Skeleton, count: int) -> list[_CoarseInput]:
+    """Every frame's input mesh with about `count` vertices and their part labels.
 
-    Frames of the same faces are made coarser alike and share them, so that a page holds them once.
+    Frames with the same faces are decimated in the same way and share their faces, so that a page holds these once.
     """
-    sights: list[_Sight] = []
-    last, kept, faces = None, np.zeros(0, np.int64), np.zeros((0, 3), np.int64)
+    inputs: list[_CoarseInput] = []
+    last, selected, faces = None, np.zeros(0, np.int64), np.zeros((0, 3), np.int64)
     for mesh, projection in zip(meshes, projections, strict=True):
         if last is None or not np.array_equal(mesh.faces, last):
             last = mesh.faces
-            kept, faces = decimated(np.array(mesh.vertices), mesh.faces, count)
+            selected, faces = decimated(np.array(mesh.vertices), mesh.faces, count)
         label = np.full(len(mesh.vertices), -1, np.int64)
-        seen = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
+        known = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
         corner = np.argmax(projection.share, axis=1)
-        label[mesh.vertex_of_input[seen]] = skeleton.label[skeleton.faces[projection.face[seen], corner[seen]]]
-        sights.append(_Sight(np.asarray(mesh.vertices)[kept], faces, label[kept]))
-    return sights
+        label[mesh.vertex_of_input[known]] = skeleton.label[skeleton.faces[projection.face[known], corner[known]]]
+        inputs.append(_CoarseInput(np.asarray(mesh.vertices)[selected], faces, label[selected]))
+    return inputs
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], str]:
-    """Where each array lies in one block, and the block: deflated, in base64. Each begins at a multiple of 4 bytes."""
-    told: dict[str, dict[str, Any]] = {}
-    pieces: list[bytes] = []
+    """The arrays in one block, which is deflated and in base64.
+
+    returns : dtype, shape and offset of each array by name, offsets being multiples of 4 bytes; and the block
+    """
+    layout: dict[str, dict[str, Any]] = {}
+    chunks: list[bytes] = []
     offset = 0
     for name, array in arrays.items():
         raw = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes()
-        told[name] = {"dtype": str(array.dtype), "shape": list(array.shape), "offset": offset}
+        layout[name] = {"dtype": str(array.dtype), "shape": list(array.shape), "offset": offset}
         raw += bytes(-len(raw) % 4)
-        pieces.append(raw)
+        chunks.append(raw)
         offset += len(raw)
-    return told, base64.b64encode(zlib.compress(b"".join(pieces), 6)).decode()
+    return layout, base64.b64encode(zlib.compress(b"".join(chunks), 6)).decode()
 
 
 def _offsets(counts: list[int]) -> NDArray[np.uint32]:
+    """(frame + 1,) where the elements of each frame begin, and where the last ones end."""
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
 
 
 def _spans(faces: list[Ints]) -> NDArray[np.uint32]:
-    """(frame, 2) where each frame's faces begin and end where those that are the very same as the last are held once."""
+    """(frame, 2) where the faces of each frame begin and end, if faces shared with the frame before are stored once."""
     spans = [(0, 0)]
     for k, F in enumerate(faces):
         spans.append(spans[-1] if k and F is faces[k - 1] else (spans[-1][1], spans[-1][1] + len(F)))
@@ -164,7 +171,7 @@ def _spans(faces: list[Ints]) -> NDArray[np.uint32]:
 
 
 def _starts(intervals: Intervals, frames: tuple[int, ...], shown: Ints) -> list[dict[str, int]]:
-    """Where each interval begins, as a number of the frame and as its place among those shown."""
+    """First and last frame of each interval, and the position of the first among the frames that are shown."""
     starts = []
     for begin, end in zip(intervals.begin, intervals.end, strict=True):
         at = int(np.searchsorted(shown, begin))
@@ -172,13 +179,16 @@ def _starts(intervals: Intervals, frames: tuple[int, ...], shown: Ints) -> list[
     return starts
 
 
-def _omitted(skeleton: Skeleton, meshes: Mapping[int, Mesh], frames: list[int], kept: int, limits: Limits) -> tuple[str, ...]:
-    told = []
+def _omitted(
+    skeleton: Skeleton, meshes: Mapping[int, Mesh], frames: list[int], vertices: int, limits: Limits
+) -> tuple[str, ...]:
+    """What the page does not show, in words."""
+    omitted = []
     if len(frames) < len(skeleton.frames):
-        told.append(f"{len(frames)} of {len(skeleton.frames)} frames play here")
-    if kept < len(skeleton.vertices):
-        told.append(f"the aligned mesh has {kept} of its {len(skeleton.vertices)} vertices")
+        omitted.append(f"the player shows {len(frames)} of {len(skeleton.frames)} frames")
+    if vertices < len(skeleton.vertices):
+        omitted.append(f"the aligned mesh is shown with {vertices} of its {len(skeleton.vertices)} vertices")
     largest = max(len(meshes[frame].vertices) for frame in frames)
-    if largest > limits.sighted:
-        told.append(f"input meshes are reduced to about {limits.sighted} of up to {largest} vertices")
-    return tuple(told)
+    if largest > limits.input_vertices:
+        omitted.append(f"input meshes are shown with about {limits.input_vertices} of up to {largest} vertices")
+    return tuple(omitted)

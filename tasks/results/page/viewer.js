@@ -1,5 +1,5 @@
 "use strict";
-// The player of a report: reads the scene that lies in the page and draws it with three.js. No request leaves the page.
+// The player of a report: reads the scene stored in the page and draws it with three.js. The page makes no request.
 
 const byId = (id) => document.getElementById(id);
 const TYPES = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, uint32: Uint32Array, float32: Float32Array };
@@ -12,11 +12,11 @@ async function payload() {
 }
 
 function arraysOf(scene, bytes) {
-  const found = {};
+  const arrays = {};
   for (const [name, a] of Object.entries(scene.arrays)) {
-    found[name] = new TYPES[a.dtype](bytes, a.offset, a.shape.reduce((x, y) => x * y, 1));
+    arrays[name] = new TYPES[a.dtype](bytes, a.offset, a.shape.reduce((x, y) => x * y, 1));
   }
-  return found;
+  return arrays;
 }
 
 class Surface {
@@ -26,7 +26,7 @@ class Surface {
     this.mesh.frustumCulled = false;
     this.materials = materials;
   }
-  coloured(on) { this.mesh.material = on ? this.materials.parts : this.materials.plain; }
+  showParts(on) { this.mesh.material = on ? this.materials.parts : this.materials.plain; }
 }
 
 function dequantised(source, begin, count, scene, out) {
@@ -37,13 +37,13 @@ function dequantised(source, begin, count, scene, out) {
   return out;
 }
 
-function colours(labels, begin, count, palette) {
+function partColours(labels, begin, count, scene) {
   const out = new Float32Array(3 * count);
-  const rgb = palette.map((c) => new THREE.Color(c));
-  const white = new THREE.Color("#ffffff");
+  const rgb = scene.palette.map((c) => new THREE.Color(c));
+  const notRigid = new THREE.Color(scene.not_rigid);
   for (let i = 0; i < count; i++) {
     const label = labels[begin + i];
-    (label < 0 ? white : rgb[label % rgb.length]).toArray(out, 3 * i);
+    (label < 0 ? notRigid : rgb[label % rgb.length]).toArray(out, 3 * i);
   }
   return out;
 }
@@ -64,15 +64,15 @@ class Player {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
-    this.light();
-    this.body();
-    this.inputs();
-    this.bones();
-    this.tips();
-    this.home();
+    this.addLight();
+    this.addAlignedMesh();
+    this.addInputMesh();
+    this.addSkeleton();
+    this.addLeaves();
+    this.resetView();
   }
 
-  light() {
+  addLight() {
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a93a0, 2.2));
     const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
     lamp.position.set(0.4, 0.8, 1);
@@ -87,7 +87,7 @@ class Player {
     };
   }
 
-  body() {
+  addAlignedMesh() {
     const { arrays, scene } = this;
     this.aligned = new Surface(this.materials(1));
     if (!arrays.positions) return;
@@ -95,30 +95,29 @@ class Player {
     this.aligned.count = count;
     const position = new THREE.BufferAttribute(new Float32Array(3 * count), 3).setUsage(THREE.DynamicDrawUsage);
     this.aligned.geometry.setAttribute("position", position);
-    this.aligned.geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays.label, 0, count, scene.palette), 3));
+    this.aligned.geometry.setAttribute("color", new THREE.BufferAttribute(partColours(arrays.label, 0, count, scene), 3));
     this.aligned.geometry.setIndex(new THREE.BufferAttribute(arrays.faces, 1));
     this.world.add(this.aligned.mesh);
   }
 
-  inputs() {
+  addInputMesh() {
     this.input = new Surface(this.materials(1));
     this.world.add(this.input.mesh);
     this.input.mesh.visible = false;
   }
 
-  bones() {
+  addSkeleton() {
     const { scene } = this;
     this.skeleton = new THREE.Group();
-    const over = { depthTest: false, transparent: true };
+    const onTop = { depthTest: false, transparent: true };
     const count = scene.joints.length;
     const ball = new THREE.SphereGeometry(scene.size * 0.011, 14, 10);
-    this.balls = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0xffffff, ...over }), Math.max(count, 1));
+    this.balls = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0xffffff, ...onTop }), Math.max(count, 1));
     const rod = new THREE.CylinderGeometry(scene.size * 0.0025, scene.size * 0.006, 1, 8).translate(0, 0.5, 0);
-    this.rods = new THREE.InstancedMesh(rod, new THREE.MeshBasicMaterial({ color: 0x222222, ...over }), Math.max(count, 1));
+    this.rods = new THREE.InstancedMesh(rod, new THREE.MeshBasicMaterial({ color: 0x222222, ...onTop }), Math.max(count, 1));
     this.balls.renderOrder = 3;
     this.rods.renderOrder = 2;
-    const kinds = { root: "#000000", joint: "#D55E00", leaf: "#0072B2" };
-    scene.joints.forEach((joint, j) => this.balls.setColorAt(j, new THREE.Color(kinds[joint.kind])));
+    scene.joints.forEach((joint, j) => this.balls.setColorAt(j, new THREE.Color(scene.kinds[joint.kind])));
     for (const part of [this.rods, this.balls]) {
       part.frustumCulled = false;
       part.count = count;
@@ -127,10 +126,10 @@ class Player {
     this.world.add(this.skeleton);
   }
 
-  tips() {
+  addLeaves() {
     const count = this.scene.arrays.leaves ? this.scene.arrays.leaves.shape[1] : 0;
     const ball = new THREE.SphereGeometry(this.scene.size * 0.014, 14, 10);
-    this.leaves = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0x009e73 }), Math.max(count, 1));
+    this.leaves = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: new THREE.Color(this.scene.surface_leaf) }), Math.max(count, 1));
     this.leaves.count = count;
     this.leaves.visible = false;
     this.leaves.frustumCulled = false;
@@ -147,10 +146,10 @@ class Player {
     return this.scene.joints.length ? this.point("joints", this.scene.joints.length, 0) : new THREE.Vector3(...this.scene.centre);
   }
 
-  home() {
+  resetView() {
     this.controls.target.copy(new THREE.Vector3(...this.scene.centre));
     const { size, reach } = this.scene;
-    const away = Math.min(Math.max(1.75 * size, 1.45 * reach), 3.5 * size); // one that walks far is followed on demand
+    const away = Math.min(Math.max(1.75 * size, 1.45 * reach), 3.5 * size); // a body that walks far leaves the view; "Follow the body" keeps it there
     this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(away));
     this.followed = null;
     this.controls.update();
@@ -165,8 +164,8 @@ class Player {
       position.needsUpdate = true;
     }
     this.showInput();
-    this.showBones();
-    this.showTips();
+    this.showSkeleton();
+    this.showLeaves();
     if (byId("follow").checked) this.follow();
     byId("scrub").value = this.at;
     byId("scrub").setAttribute("aria-valuetext", `frame ${scene.frames[this.at]}`);
@@ -181,13 +180,13 @@ class Player {
     const [f, g] = [arrays.input_face_spans[2 * this.at], arrays.input_face_spans[2 * this.at + 1]];
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(dequantised(arrays.input_vertices, v, w - v, scene, new Float32Array(3 * (w - v))), 3));
-    geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays.input_label, v, w - v, scene.palette), 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(partColours(arrays.input_label, v, w - v, scene), 3));
     geometry.setIndex(new THREE.BufferAttribute(arrays.input_faces.slice(3 * f, 3 * g), 1));
     this.input.mesh.geometry.dispose();
     this.input.mesh.geometry = geometry;
   }
 
-  showBones() {
+  showSkeleton() {
     const joints = this.scene.joints;
     const place = new THREE.Matrix4();
     const upwards = new THREE.Vector3(0, 1, 0);
@@ -204,7 +203,7 @@ class Player {
     this.rods.instanceMatrix.needsUpdate = true;
   }
 
-  showTips() {
+  showLeaves() {
     const place = new THREE.Matrix4();
     for (let k = 0; k < this.leaves.count; k++) {
       const here = this.point("leaves", this.scene.arrays.leaves.shape[1], k);
@@ -273,7 +272,7 @@ function wire(player) {
   const toggles = {
     "see-aligned": (on) => { player.aligned.mesh.visible = on; },
     "see-input": (on) => { player.input.mesh.visible = on; },
-    "see-parts": (on) => { player.aligned.coloured(on); player.input.coloured(on); },
+    "see-parts": (on) => { player.aligned.showParts(on); player.input.showParts(on); },
     "see-skeleton": (on) => { player.skeleton.visible = on; },
     "see-leaves": (on) => { player.leaves.visible = on; },
     follow: (on) => { if (on) player.followed = player.centre(); },
@@ -288,7 +287,7 @@ function wire(player) {
   scrub.addEventListener("input", () => { player.play(false); player.show(Number(scrub.value)); });
   byId("play").addEventListener("click", () => player.play(!player.playing));
   byId("speed").addEventListener("change", (e) => { player.speed = Number(e.target.value); });
-  byId("home").addEventListener("click", () => player.home());
+  byId("home").addEventListener("click", () => player.resetView());
   byId("interval").addEventListener("change", (e) => { if (e.target.value !== "") { player.play(false); player.show(Number(e.target.value)); } });
   const turns = { "turn-left": [-0.3, 0], "turn-right": [0.3, 0], "turn-up": [0, -0.25], "turn-down": [0, 0.25] };
   for (const [id, [around, over]] of Object.entries(turns)) byId(id).addEventListener("click", () => player.turn(around, over));
@@ -308,22 +307,22 @@ function wire(player) {
 }
 
 function element(name, text, parent) {
-  const made = document.createElement(name);
-  if (text !== undefined) made.textContent = text;
-  parent.append(made);
-  return made;
+  const child = document.createElement(name);
+  if (text !== undefined) child.textContent = text;
+  parent.append(child);
+  return child;
 }
 
 function row(kind, cells, parent) {
   const line = element("tr", undefined, parent);
   for (const cell of cells) {
-    const made = element(kind, typeof cell === "number" && !Number.isInteger(cell) ? cell.toFixed(2) : String(cell ?? ""), line);
-    if (typeof cell === "number") made.className = "n";
+    const place = element(kind, typeof cell === "number" && !Number.isInteger(cell) ? cell.toFixed(2) : String(cell ?? ""), line);
+    if (typeof cell === "number") place.className = "n";
   }
 }
 
-// What ran is known only when the run is over, and is laid into the page then.
-function whatRan(run) {
+// The record of the run is inserted into the page when the run has ended.
+function showRun(run) {
   const place = byId("ran");
   place.textContent = "";
   const counts = Object.entries(run.nodes || {}).filter(([, n]) => n).map(([name, n]) => `${n} ${name}`).join(", ");
@@ -336,27 +335,27 @@ function whatRan(run) {
   row("th", ["task", "per", "reads", "ran", "reused", "failed", "seconds"], element("thead", undefined, table));
   const body = element("tbody", undefined, table);
   for (const [name, task] of Object.entries(run.graph || {})) {
-    const told = (run.tasks || {})[name] || {};
-    row("td", [name, task.over, task.reads.join(", "), told.ran || 0, told.fresh || 0, told.failed || 0, Number(told.seconds || 0)], body);
+    const counts = (run.tasks || {})[name] || {};
+    row("td", [name, task.over, task.reads.join(", "), counts.ran || 0, counts.fresh || 0, counts.failed || 0, Number(counts.seconds || 0)], body);
   }
-  for (const [heading, told] of [["Configuration, where it differs from the default", run.config], ["Versions", run.versions]]) {
-    if (!told) continue;
+  for (const [heading, content] of [["Configuration, where it differs from the default", run.config], ["Versions", run.versions]]) {
+    if (!content) continue;
     const folded = element("details", undefined, place);
     element("summary", heading, folded);
-    element("pre", typeof told === "string" ? told : JSON.stringify(told, null, 2), folded);
+    element("pre", typeof content === "string" ? content : JSON.stringify(content, null, 2), folded);
   }
 }
 
 async function begin() {
-  const run = JSON.parse(byId("told").textContent.replace("/*what ran*/", ""));
-  if (run) whatRan(run);
+  const run = JSON.parse(byId("run-record").textContent.replace("/*what ran*/", ""));
+  if (run) showRun(run);
   const scene = JSON.parse(byId("scene").textContent);
   if (!scene.frames.length) return;
   let player;
   try {
     player = new Player(scene, arraysOf(scene, await payload()));
   } catch (error) {
-    byId("player-note").textContent = `The player needs a browser with WebGL: ${error.message}. Everything below works without.`;
+    byId("player-note").textContent = `The player needs a browser with WebGL: ${error.message}. The rest of the page works without it.`;
     byId("player-note").hidden = false;
     return;
   }

@@ -1,4 +1,4 @@
-"""Pictures for people, by the word of the command line."""
+"""Pictures of a run's results, by their names on the command line."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinetree.errors import ConfigError
 from kinetree.tasks.results.plots.alignment import alignment
 from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
-from kinetree.tasks.results.plots.drawing import FORMATS, Fetch, written
+from kinetree.tasks.results.plots.drawing import FORMATS, Fetch, write_figure
 from kinetree.tasks.results.plots.evaluation import evaluation
 from kinetree.tasks.results.plots.macroscopic import correlation, mu
 from kinetree.tasks.results.plots.mesoscopic import cones as cones_2014
@@ -20,9 +20,9 @@ from kinetree.tasks.results.plots.structure import confidence, skeleton, tree
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-StructureFigures = Mapping[str, Callable[[Fetch, list[int], int], "Figure"]]
+Plots = Mapping[str, Callable[[Fetch, list[int], int], "Figure"]]
 
-WHAT: StructureFigures = {
+PLOTS: Plots = {
     "correlation": correlation,
     "mu": mu,
     "alignment": alignment,
@@ -37,22 +37,24 @@ WHAT: StructureFigures = {
     "angles": angles,
     "errors": evaluation,
 }
-"""What can be drawn of the default method, by the word of the command line."""
+"""The pictures of the default method by name."""
 
-_LETTER: StructureFigures = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-_SHARED = {name: drawn for name, drawn in WHAT.items() if name != "elimination"}
-OF: Mapping[str, StructureFigures] = {"mesoscopic": WHAT, "mesoscopic-2014": {**_SHARED, **_LETTER}}
-"""What can be drawn of each method."""
+_OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
+_OF_BOTH: Plots = {name: drawn for name, drawn in PLOTS.items() if name != "elimination"}
+PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_OF_BOTH, **_OF_2014}}
+"""The pictures of each method."""
 
 
-def draw(what: str, fetch: Fetch, frames: list[int], path: Path, up: int = 1, figures: StructureFigures = WHAT) -> None:
-    """Draws one of `figures` into a file, complete or not at all.
+def draw(name: str, fetch: Fetch, frames: list[int], path: Path, up: int = 1, plots: Plots = PLOTS) -> None:
+    """Draws one of `plots` into a file, complete or not at all.
 
-    up     : see `view`
-    raises : ConfigError where `what` is not one of them, the file's ending is none of FORMATS or it cannot be written
+    fetch  : gives the artifact of a task
+    frames : source frame numbers to draw, where a picture shows single frames
+    up     : axis that points up, see `view`
+    raises : ConfigError where no plot has that name, the file's ending is none of FORMATS or it cannot be written
     """
-    if what not in figures:
-        raise ConfigError(f"plot {what!r}; there are: {', '.join(sorted(figures))}")
+    if name not in plots:
+        raise ConfigError(f"plot {name!r} is not known; known plots: {', '.join(sorted(plots))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    written(figures[what](fetch, frames, up), path)
+    write_figure(plots[name](fetch, frames, up), path)

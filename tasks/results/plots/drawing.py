@@ -1,4 +1,4 @@
-"""What every picture is made of: figures without a window, views of a body, surfaces as shaded faces."""
+"""The means of all pictures: figures without a window, views of a body, surfaces as shaded faces, colours of values."""
 
 import contextlib
 from collections.abc import Callable
@@ -25,7 +25,11 @@ COLOURS = LINES
 
 
 def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tuple[Figure, Any]":
-    """A figure that belongs to no window, so that no display is needed."""
+    """A figure without a window, which needs no display, and its axes.
+
+    width, height : of the figure, inches
+    columns, rows : of the grid of axes
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
@@ -33,7 +37,7 @@ def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tupl
 
 
 def verbatim(figure: "Figure") -> "Figure":
-    """The figure, no name or unit in it read as a formula."""
+    """The figure with all text printed as it is: a $ in a name does not begin a formula."""
     from matplotlib.text import Text
 
     for text in figure.findobj(Text):
@@ -41,8 +45,8 @@ def verbatim(figure: "Figure") -> "Figure":
     return figure
 
 
-def written(figure: "Figure", path: Path) -> None:
-    """Writes a picture, whole or not at all; raises ConfigError where it cannot be written."""
+def write_figure(figure: "Figure", path: Path) -> None:
+    """Writes a picture, complete or not at all; raises ConfigError where it cannot be written."""
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
         verbatim(figure).savefig(beside, dpi=150, bbox_inches="tight")
@@ -55,11 +59,13 @@ def written(figure: "Figure", path: Path) -> None:
 
 
 def view(bodies: list[Floats], up: int = 1) -> Floats:
-    """(xyz, 3) axes across, up and towards the eye, all axes of the coordinates: files do not say which way is up.
+    """The directions of a view: to the right, up and towards the viewer, each along an axis of the coordinates.
 
-    The eye looks along the shorter of the other two extents.
+    The viewer looks along the shorter of the two extents across the up axis.
 
-    up : 0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions
+    bodies  : (vertex, xyz) of every frame that is shown
+    up      : axis that points up: 0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions
+    returns : (xyz, 3) columns are the directions
     """
     extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
     axis = up if up >= 0 else ~up
@@ -71,9 +77,10 @@ def view(bodies: list[Floats], up: int = 1) -> Floats:
 
 
 def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
-    """Faces from the farthest to the nearest, shaded by how they face the eye.
+    """Draws faces from the farthest to the nearest, brighter the more they face the viewer.
 
-    X      : (vertex, xyz) across, up and towards the eye
+    X      : (vertex, xyz) to the right, up and towards the viewer, as `view` gives them
+    F      : (face, corner)
     colour : (face, 4) red, green, blue and opacity from 0 to 1
     """
     from matplotlib.collections import PolyCollection
@@ -92,7 +99,13 @@ def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
 
 
 def levels(F: Ints, values: Floats, low: float | None = None, high: float | None = None) -> Floats:
-    """(face, 4) colours of a quantity known per vertex, from `low` to `high`; grey where it is not known."""
+    """Colours of a quantity given at vertices; grey where it is not known.
+
+    F         : (face, corner)
+    values    : (vertex,) NaN where not known
+    low, high : ends of the scale; None for the smallest and the largest value
+    returns   : (face, 4) red, green, blue and opacity from 0 to 1
+    """
     from matplotlib import colormaps
 
     level = values[F].mean(axis=1)
@@ -104,7 +117,7 @@ def levels(F: Ints, values: Floats, low: float | None = None, high: float | None
 
 
 def graded(highest: float) -> Any:
-    """Colours from 0 to the highest value, for lines and a bar beside them."""
+    """The scale of colours from 0 to the highest value, for lines and a colour bar."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -112,6 +125,6 @@ def graded(highest: float) -> Any:
 
 
 def limits(x: NDArray[np.float64]) -> tuple[float, float]:
-    """The range of x with a little air."""
+    """The range of x with a margin of 6 % on both sides."""
     margin = 0.06 * float(np.ptp(x))
     return float(x.min()) - margin, float(x.max()) + margin

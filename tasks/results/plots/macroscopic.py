@@ -1,10 +1,10 @@
-"""μ on the body with its leaves, C(t) with the cuts (2014, Sec. 4, Fig. 5)."""
+"""μ on the surface with the leaves, and the correlation C(t) with the cuts (2014, Sec. 4, Fig. 5)."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinetree.schemas.array import Artifact, Floats
+from kinetree.schemas.array import Floats
 from kinetree.tasks.results.formats.colours import BLUE, ORANGE, VERMILION
 from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, levels, surface, view
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
-    """C(t) with the cuts and what made them, intervals shaded in turn (2014, Fig. 5); below, how near each cue came."""
+    """C(t) with cuts and their cues, intervals shaded alternately (2014, Fig. 5); below, each cue relative to its threshold."""
     series, cut = fetch("correlation"), fetch("intervals")
     figure, (axes, below) = blank(9.0, 6.0, rows=2)
     t = np.array(cut.frames)
@@ -37,25 +37,25 @@ def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 
 def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
-    """μ on the surface with the tips of the extremities, one view a frame; a leaf keeps its colour."""
-    followed = fetch("leaves")
+    """μ on the surface with the leaves, one view a frame; a leaf has the same colour in all views."""
+    leaves = fetch("leaves")
     figure, row = blank(3.2 * len(frames), 4.2, len(frames))
     axis = view([fetch("mesh", frame=frame).vertices for frame in frames], up)
     for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
-        mesh, found = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
-        surface(axes, mesh.vertices @ axis, mesh.faces, levels(mesh.faces, found.mu))
-        _leaves(axes, followed, frame, axis)
+        mesh, geodesics = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
+        surface(axes, mesh.vertices @ axis, mesh.faces, levels(mesh.faces, geodesics.mu))
+        _draw_leaves(axes, leaves, frame, axis)
         axes.set_title(f"frame {frame}", fontsize=9)
     return figure
 
 
-def _leaves(axes: "Axes", followed: Artifact, frame: int, axis: Floats) -> None:
-    told: Any = followed
-    at = told.frames.index(frame)
-    for leaf, position in enumerate(told.positions[:, at]):
+def _draw_leaves(axes: "Axes", leaves: Any, frame: int, axis: Floats) -> None:
+    """The leaves of one frame with their numbers; hollow where the position is interpolated."""
+    at = leaves.frames.index(frame)
+    for leaf, position in enumerate(leaves.positions[:, at]):
         if not np.isnan(position).any():
             x, y, _ = position @ axis
-            seen = told.rows[leaf, at] >= 0
+            is_seen = leaves.rows[leaf, at] >= 0
             colour = COLOURS[leaf % len(COLOURS)]
-            axes.plot(x, y, "o", ms=7, color=colour if seen else "none", mec=colour if not seen else "white")
+            axes.plot(x, y, "o", ms=7, color=colour if is_seen else "none", mec="white" if is_seen else colour)
             axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, bbox=BEHIND)

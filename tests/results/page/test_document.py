@@ -1,4 +1,4 @@
-"""The page: one file, words from outside harmless, nothing asked of the network."""
+"""The page: one file, text from outside escaped, no request to the network."""
 
 import json
 import re
@@ -9,6 +9,7 @@ from pages import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
+from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID
 from kinetree.tasks.results.page.document import as_script, table
 
 EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
@@ -45,14 +46,21 @@ def test_what_ran_is_laid_into_the_page_harmlessly():
     report = Report(text=np.frombuffer(text.encode(), np.uint8))
     told = views.page(report, {"run": EVIL}).decode()
     assert RUN not in told
-    found = re.search(r'<script type="application/json" id="told">(.*?)</script>', told)
+    found = re.search(r'<script type="application/json" id="run-record">(.*?)</script>', told)
     assert found is not None
     assert json.loads(found.group(1)) == {"run": EVIL}
 
 
 def test_warnings_have_a_box_only_where_there_are_some():
     assert 'class="warnings" aria' not in page()
-    assert 'class="warnings" aria' in page(warnings=["leaf 2 is lost"])
+    text = page(warnings=["leaf 2 is lost"])
+    assert '<h2 id="warnings">Warnings</h2><ul><li>leaf 2 is lost</li></ul>' in text
+
+
+def test_every_joint_kind_has_its_colour_in_the_legend():
+    text = page()
+    for name, colour in {**KINDS, "surface that is not rigid": NOT_RIGID}.items():
+        assert f'style="background:{colour}"></span> {name}</span>' in text
 
 
 def test_tables_put_numbers_to_the_right_and_escape_cells():

@@ -1,4 +1,4 @@
-"""Laws of what the player is given: nothing moves by more than half a step of its lattice, labels follow vertices."""
+"""The scene of the player: positions are exact to half a step of the lattice, labels follow the vertices."""
 
 import base64
 import zlib
@@ -12,53 +12,53 @@ from kinetree.tasks.results.page.scene import Limits, packed
 from kinetree.tasks.results.plots.drawing import view
 
 
-def unpacked(found):
-    raw = zlib.decompress(base64.b64decode(found.block))
+def unpacked(scene):
+    raw = zlib.decompress(base64.b64decode(scene.block))
     return {
         name: np.frombuffer(raw, a["dtype"], int(np.prod(a["shape"])), a["offset"]).reshape(a["shape"])
-        for name, a in found.told["arrays"].items()
+        for name, a in scene.description["arrays"].items()
     }
 
 
 @pytest.fixture(scope="module")
-def found():
+def scene():
     return playing()
 
 
 def test_arrays_come_back_as_they_were_and_lie_where_a_browser_can_read_them():
     given = {"a": np.arange(5, dtype=np.uint8), "b": np.arange(6, dtype=np.float32).reshape(2, 3), "c": np.zeros(0, np.uint16)}
-    told, block = packed(given)
+    layout, block = packed(given)
     raw = zlib.decompress(base64.b64decode(block))
     for name, array in given.items():
-        assert told[name]["offset"] % 4 == 0
-        back = np.frombuffer(raw, told[name]["dtype"], array.size, told[name]["offset"]).reshape(told[name]["shape"])
+        assert layout[name]["offset"] % 4 == 0
+        back = np.frombuffer(raw, layout[name]["dtype"], array.size, layout[name]["offset"]).reshape(layout[name]["shape"])
         np.testing.assert_array_equal(back, array)
 
 
-def test_aligned_mesh_and_joints_are_where_they_were_seen_along_the_views_axes(found):
-    skeleton, arrays = spider(), unpacked(found)
+def test_aligned_mesh_and_joints_are_where_they_were_seen_along_the_views_axes(scene):
+    skeleton, arrays = spider(), unpacked(scene)
     x = skinned(skeleton)
     axes = view(list(x))
-    shown = np.array(found.told["low"]) + found.told["scale"] * arrays["positions"].astype(np.float64)
-    assert np.abs(shown - x @ axes).max() <= 0.5 * found.told["scale"] * (1 + 1e-9)
+    shown = np.array(scene.description["low"]) + scene.description["scale"] * arrays["positions"].astype(np.float64)
+    assert np.abs(shown - x @ axes).max() <= 0.5 * scene.description["scale"] * (1 + 1e-9)
     np.testing.assert_allclose(arrays["joints"], skeleton.positions @ axes, atol=1e-5)
 
 
-def test_labels_come_back_to_the_users_own_vertices(found):
-    arrays = unpacked(found)
+def test_labels_come_back_to_the_users_own_vertices(scene):
+    arrays = unpacked(scene)
     order = np.random.default_rng(0).permutation(len(spider().vertices))
     first = arrays["input_label"][: arrays["input_vertex_offsets"][1]]
     np.testing.assert_array_equal(first, spider().label[order])
 
 
-def test_faces_of_every_input_mesh_stay_among_its_own_vertices(found):
-    arrays = unpacked(found)
+def test_faces_of_every_input_mesh_stay_among_its_own_vertices(scene):
+    arrays = unpacked(scene)
     v = arrays["input_vertex_offsets"].astype(int)
     for t, (begin, end) in enumerate(arrays["input_face_spans"].astype(int)):
         assert 0 <= arrays["input_faces"][begin:end].min() <= arrays["input_faces"][begin:end].max() < v[t + 1] - v[t]
 
 
-@pytest.mark.parametrize("limits", [None, Limits(frames=5, vertices=100, sighted=100)])
+@pytest.mark.parametrize("limits", [None, Limits(frames=5, vertices=100, input_vertices=100)])
 def test_faces_that_stay_the_same_are_held_once(limits):
     arrays = unpacked(playing(limits=limits))
     assert len(arrays["input_face_spans"]) > 1
@@ -76,19 +76,19 @@ def test_faces_that_change_are_held_for_every_frame():
 
 
 def test_what_is_left_out_is_said():
-    small = playing(limits=Limits(frames=5, vertices=100, sighted=100))
-    assert small.told["frames"] == [0, 3, 6, 8, 11]
-    told = " ".join(small.omitted)
-    assert "5 of 12 frames" in told
-    assert "vertices" in told
+    small = playing(limits=Limits(frames=5, vertices=100, input_vertices=100))
+    assert small.description["frames"] == [0, 3, 6, 8, 11]
+    text = " ".join(small.omitted)
+    assert "the player shows 5 of 12 frames" in text
+    assert "input meshes are shown with about 100 of up to" in text
     assert len(playing().omitted) == 0
 
 
-def test_intervals_begin_at_the_shown_frames_they_name(found):
-    assert found.told["intervals"] == [{"at": 0, "begin": 0, "end": 5}, {"at": 6, "begin": 6, "end": 11}]
+def test_intervals_begin_at_the_shown_frames_they_name(scene):
+    assert scene.description["intervals"] == [{"at": 0, "begin": 0, "end": 5}, {"at": 6, "begin": 6, "end": 11}]
 
 
-def test_leaves_that_are_not_known_stay_unknown(found):
-    leaves = unpacked(found)["leaves"]
+def test_leaves_that_are_not_known_stay_unknown(scene):
+    leaves = unpacked(scene)["leaves"]
     assert np.isnan(leaves[6:, 0]).all()
     assert np.isfinite(leaves[:6]).all()

@@ -45,11 +45,11 @@ def tab(browser: Any, path: Path, request: pytest.FixtureRequest) -> Iterator[An
     width, height = request.param
     context = browser.new_context(viewport={"width": width, "height": height}, reduced_motion="reduce")
     tab = context.new_page()
-    tab.told = []
-    tab.on("console", lambda m: tab.told.append(m.text) if m.type == "error" else None)
-    tab.on("pageerror", lambda e: tab.told.append(str(e)))
-    tab.on("dialog", lambda d: tab.told.append("a dialog opened"))
-    tab.on("request", lambda r: tab.told.append(r.url[:60]) if not r.url.startswith(("file:", "data:")) else None)
+    tab.complaints = []
+    tab.on("console", lambda m: tab.complaints.append(m.text) if m.type == "error" else None)
+    tab.on("pageerror", lambda e: tab.complaints.append(str(e)))
+    tab.on("dialog", lambda d: tab.complaints.append("a dialog opened"))
+    tab.on("request", lambda r: tab.complaints.append(r.url[:60]) if not r.url.startswith(("file:", "data:")) else None)
     tab.goto(path.as_uri())
     tab.wait_for_selector("body[data-ready=yes]")
     yield tab
@@ -59,9 +59,9 @@ def tab(browser: Any, path: Path, request: pytest.FixtureRequest) -> Iterator[An
 @pytest.fixture
 def opened(tab: Any) -> Iterator[Any]:
     """The page as it was opened, at its first frame; no error and no request may come of what a test does."""
-    tab.evaluate("() => { kinetree.play(false); kinetree.home(); kinetree.show(0); }")
+    tab.evaluate("() => { kinetree.play(false); kinetree.resetView(); kinetree.show(0); }")
     yield tab
-    assert tab.told == []
+    assert tab.complaints == []
 
 
 def drawn(tab: Any) -> str:
@@ -119,6 +119,6 @@ def test_nothing_is_wider_than_the_screen(opened: Any) -> None:
 
 
 def test_what_ran_is_told_as_text(opened: Any) -> None:
-    told = opened.inner_text("#run")
-    assert "<b>r</b> done: 3 ran in 1.5 s" in told
-    assert "mesh" in told
+    text = opened.inner_text("#run")
+    assert "<b>r</b> done: 3 ran in 1.5 s" in text
+    assert "mesh" in text

@@ -1,1 +1,1 @@
-"""How good a skeleton and its parts are against the truth: numpy in, numbers out."""
+"""Measures of a skeleton and its parts against the truth: arrays in, numbers out."""
