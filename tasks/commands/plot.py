@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 WHAT = (
-    "alignment", "angles", "cones", "confidence", "correlation", "errors", "lengths", "merging", "mu", "skeleton",
-    "structure", "tree",
+    "alignment", "angles", "cones", "confidence", "correlation", "elimination", "errors", "lengths", "merging", "mu",
+    "skeleton", "structure", "tree",
 )  # fmt: skip
-"""What can be drawn; `kinetree.tasks.results.plots` draws it."""
+"""What can be drawn of some method; `kinetree.tasks.results.plots` draws it, and refuses what a method does not have."""
 
 
 def plot(
