@@ -1,4 +1,4 @@
-"""Contract of the figures: chapters with pictures that are whole files, of what the steps decided."""
+"""Figures of the structure: chapters whose pictures are complete files."""
 
 import numpy as np
 import pytest

@@ -40,8 +40,8 @@ PLOTS: Plots = {
 """The pictures of the default method by name."""
 
 _OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-_OF_BOTH: Plots = {name: drawn for name, drawn in PLOTS.items() if name != "elimination"}
-PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_OF_BOTH, **_OF_2014}}
+_SHARED = {name: plot for name, plot in PLOTS.items() if name != "elimination"}
+PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_SHARED, **_OF_2014}}
 """The pictures of each method."""
 
 
