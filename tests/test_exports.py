@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import trimesh
 import zarr
-from exporting import GRAPH, order, write_frames
-from rigs import spider
+from results.export_graph import GRAPH, order, write_frames
+from results.rigged_bodies import spider
 
 from kinetree.errors import (
     ConfigError,

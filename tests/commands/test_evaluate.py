@@ -5,11 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import known_tasks
 import pytest
 import typer
 from click.testing import Result
-from known import generated, written_truth
+from results import true_skeleton_graph
+from results.true_skeletons import generated, written_truth
 from typer.testing import CliRunner
 
 from kinetree.errors import ConfigError, InputError, UnknownNodeError
@@ -26,7 +26,7 @@ SYNTH = {"figure": "human", "frames": 6, "vertices": 600, "connectivity": "fixed
 
 @pytest.fixture(autouse=True)
 def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = replace(APPLICATION, methods=lambda: {"mesoscopic": known_tasks.GRAPH})
+    known = replace(APPLICATION, methods=lambda: {"mesoscopic": true_skeleton_graph.GRAPH})
     monkeypatch.setattr(application, "_installed", lambda: known)
 
 
@@ -34,7 +34,7 @@ def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
 def run(tmp_path_factory: pytest.TempPathFactory) -> str:
     out = tmp_path_factory.mktemp("run")
     told = {"output": str(out), "source": {"synth": SYNTH}, "compute": {"executor": "sync"}}
-    pipeline = Pipeline.of(told, methods={"mesoscopic": known_tasks.GRAPH})
+    pipeline = Pipeline.of(told, methods={"mesoscopic": true_skeleton_graph.GRAPH})
     assert pipeline.run()["status"] == "done"
     return str(out)
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pages import artifacts, judged, unjudged
-from rigs import spider
+from results.rigged_bodies import spider
+from results.sample_report import artifacts, judged, unjudged
 from traced import traces_of
 
 from kinetree.errors import ConfigError

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from rigs import spider
+from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline import views

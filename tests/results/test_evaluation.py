@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from known import generated, observed, perfect
+from results.true_skeletons import generated, observed, perfect
 
 from kinetree.errors import InputError
 from kinetree.pipeline import views

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gltf_reader import Glb as Read
-from rigs import skinned, spider
+from results.gltf_reader import Glb as Read
+from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.glb import GlbParams

@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 import trimesh
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
 
 from kinetree.errors import MeshError
 from kinetree.pipeline import views

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
-from pages import artifacts, judged
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
+from results.sample_report import artifacts, judged
 
 from kinetree.schemas.input.mesh import Cleaning
 from kinetree.schemas.registration.alignment import Alignment

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from rigs import spider
+from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
 from kinetree.tasks.results.rignet import rignet

@@ -1,7 +1,7 @@
 """Labels on the input's own vertices, gathered."""
 
 import numpy as np
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
 from kinetree.schemas.registration.alignment import Alignment

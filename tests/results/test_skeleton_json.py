@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from rigs import spider
+from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.skeleton_json import Document

@@ -1,8 +1,8 @@
 """Figures of the structure: chapters whose pictures are complete files."""
 
 import numpy as np
-from pages import UP
-from rigs import spider
+from results.rigged_bodies import spider
+from results.sample_report import UP
 from traced import traces_of
 
 from kinetree.tasks.results.structure_figures import structure_figures

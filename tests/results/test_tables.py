@@ -5,7 +5,7 @@ import io
 
 import numpy as np
 import pytest
-from rigs import spider
+from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
 from kinetree.tasks.results.formats.tables import bone_angles

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known import generated, observed, written_truth
+from results.true_skeletons import generated, observed, written_truth
 
 from kinetree.errors import InputError
 from kinetree.schemas.input.source import Source

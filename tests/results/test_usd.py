@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline import views

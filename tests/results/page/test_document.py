@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from pages import page
+from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report

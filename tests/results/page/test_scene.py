@@ -5,8 +5,8 @@ import zlib
 
 import numpy as np
 import pytest
-from pages import playing
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
+from results.sample_report import playing
 
 from kinetree.tasks.results.page.scene import Limits, packed
 from kinetree.tasks.results.plots.drawing import view

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import task

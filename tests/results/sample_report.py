@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
 from traced import traces_of
 
 from kinetree.schemas.input.connectivity import Connectivity
