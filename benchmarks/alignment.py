@@ -39,10 +39,10 @@ from kinetree.tasks.numerics.registration.reference import profile, reference
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
 from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
 from kinetree.tasks.numerics.registration.tracking import Tracked, repaired, tracked
-from kinetree.tasks.numerics.topology.correlation import dimensionless
 from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.leaves import follow
+from kinetree.tasks.numerics.topology.mu_histogram import dimensionless
 
 Floats = npt.NDArray[np.float64]
 

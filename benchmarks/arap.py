@@ -1,15 +1,15 @@
-"""Step II as the 2014 paper has it, against the truth: the mapping alone, ARAP upon it, what one factorisation saves.
+"""Step II of the 2014 paper against the truth: the geodesic mapping alone, ARAP, and the time that one factorisation saves.
 
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     python benchmarks/arap.py --data FOLDER [--only NAME ...] [--every N] [--length L ...] [--order composed direct]
 
 FOLDER holds NAME.npz (vertices, faces, vertex_offsets, face_offsets), NAME-body.npz and NAME.truth.json. Intervals and
-leaves are those of Step I's defaults. Errors in % of the body's height over all vertices of each interval's reference;
-frames in which a leaf is lost count too. Turning is the median over the interval's joints that turn by 15° at least of
-the share of the true turning that is left. Seconds are the processor's, on one core, after a first frame that compiles:
-geodesic coordinates, mapping, ARAP with the interval's one factorisation, and with one more in each frame. At a
-cut, every vertex of a reference is led to the reference of the interval before; its error is how far from there it is,
-with the last of the lengths.
+leaves are those of Step I's defaults. Errors are in % of the body's height over all vertices of each interval's reference;
+frames in which a leaf is lost count too. Turning is the median, over the interval's joints that turn by 15° at least, of
+the share of the true turning that the alignment has. Seconds are of processor time on one core, after a first frame that
+compiles: geodesic coordinates, mapping, ARAP with one factorisation for the interval, and with one in each frame. At a cut,
+every vertex of a reference is mapped to the reference of the previous interval; its error is the distance to its true place
+there, with the last of the lengths.
 """
 
 import argparse
@@ -65,7 +65,7 @@ class Sequence:
 
     mesh: dict[int, Mesh]
     geodesics: dict[int, Geodesics]
-    tips: dict[int, Extrema]
+    extrema: dict[int, Extrema]
     coordinates: dict[int, GeodesicCoordinates]
     intervals: Intervals
     leaves: Leaves
@@ -78,62 +78,64 @@ class Sequence:
         def every(node: str, numbers: Iterable[int]) -> dict[int, Any]:
             return {t: pipeline.artifact(node, frame=t) for t in numbers}
 
-        cuts: Any = pipeline.artifact("intervals")
-        found: Any = pipeline.artifact("leaves")
-        mesh, tip = every("mesh", cuts.frames), every("extrema", cuts.frames)
-        geodesic_coordinates(mesh[cuts.frames[0]], tip[cuts.frames[0]])
+        intervals: Any = pipeline.artifact("intervals")
+        leaves: Any = pipeline.artifact("leaves")
+        frames = intervals.frames
+        mesh, extrema = every("mesh", frames), every("extrema", frames)
+        geodesic_coordinates(mesh[frames[0]], extrema[frames[0]])
         begun = time.process_time()
-        X = {t: geodesic_coordinates(mesh[t], tip[t]) for t in mesh}
+        X = {t: geodesic_coordinates(mesh[t], extrema[t]) for t in mesh}
         spent.coordinates = (time.process_time() - begun) / len(mesh)
-        return cls(mesh, every("geodesics", cuts.frames), tip, X, cuts, found)
+        return cls(mesh, every("geodesics", frames), extrema, X, intervals, leaves)
 
-    def middles(self) -> list[IntervalReference]:
+    def references(self) -> list[IntervalReference]:
         """The reference of every interval."""
         out = []
-        for begin, end in zip(self.intervals.begin, self.intervals.end, strict=True):
-            mine = self.intervals.frames[int(begin) : int(end) + 1]
-            gathered = ({t: values[t] for t in mine} for values in (self.mesh, self.geodesics, self.coordinates))
-            out.append(interval_reference(*gathered, self.intervals, self.leaves))
+        for i, (begin, end) in enumerate(zip(self.intervals.begin, self.intervals.end, strict=True)):
+            frames = self.intervals.frames[int(begin) : int(end) + 1]
+            gathered = ({t: values[t] for t in frames} for values in (self.mesh, self.geodesics, self.coordinates))
+            out.append(interval_reference((i,), *gathered, self.leaves, CHANGING))
         return out
 
 
-def mapped(here: Sequence, start: IntervalReference, order: str, spent: Seconds) -> dict[int, GeodesicMapping]:
-    """The geodesic mapping of an interval, outwards from its middle."""
-    params, found = GeodesicMappingParams.model_validate({"order": order}), dict[int, GeodesicMapping]()
+def mapped(here: Sequence, i: int, reference: IntervalReference, order: str, spent: Seconds) -> dict[int, GeodesicMapping]:
+    """The geodesic mapping of interval i, outwards from its middle."""
+    params, mappings = GeodesicMappingParams.model_validate({"order": order}), dict[int, GeodesicMapping]()
     begun = time.process_time()
-    for t in sorted(start.frames, key=lambda t: abs(start.frames.index(t) - start.frames.index(start.frame))):
-        before = start.previous(t)
-        last = None if before is None else found[before]
-        found[t] = geodesic_mapping(start, here.coordinates[t], here.tips[t], CHANGING, last, params)
+    middle = reference.frames.index(reference.frame)
+    for t in sorted(reference.frames, key=lambda t: abs(reference.frames.index(t) - middle)):
+        neighbour = reference.previous(t)
+        previous = None if neighbour is None else mappings[neighbour]
+        mappings[t] = geodesic_mapping((i, t), reference, here.coordinates[t], previous, params)
     spent.mapping += time.process_time() - begun
-    return dict(sorted(found.items()))
+    return dict(sorted(mappings.items()))
 
 
 def deformed(
-    here: Sequence, start: IntervalReference, images: dict[int, GeodesicMapping], length: float, steps: int, spent: Seconds
+    here: Sequence, reference: IntervalReference, images: dict[int, GeodesicMapping], length: float, steps: int, spent: Seconds
 ) -> Floats:
     """(frame, vertex, xyz) ARAP in the given frames with one factorisation."""
-    V, F = np.array(start.vertices), start.faces.astype(np.int64)
-    soft, out = soft_weights(np.array(start.area), length * start.size), []
+    V, F = np.array(reference.vertices), reference.faces.astype(np.int64)
+    soft, out = soft_weights(np.array(reference.area), length * reference.size), []
     Factorised.of(V, F, soft).solve(V, steps=2)
     begun = time.process_time()
     system = Factorised.of(V, F, soft)
     spent.factor += time.process_time() - begun
     begun = time.process_time()
-    for t, match in images.items():
-        out.append(system.solve(wanted(here, match, t), steps=steps).x)
+    for t, mapping in images.items():
+        out.append(system.solve(targets(here, mapping, t), steps=steps).x)
     spent.arap += time.process_time() - begun
     spent.references += 1
     spent.frames += len(images)
     return np.stack(out)
 
 
-def wanted(here: Sequence, match: GeodesicMapping, t: int) -> Floats:
-    """(vertex, xyz) where the mapping wants every vertex of the reference."""
-    return np.asarray(here.mesh[t].vertices[match.image])
+def targets(here: Sequence, mapping: GeodesicMapping, t: int) -> Floats:
+    """(vertex, xyz) the images of the reference's vertices in a frame."""
+    return np.asarray(here.mesh[t].vertices[mapping.image])
 
 
-def told(label: str, error: Floats, turning: float | None = None) -> None:
+def print_row(label: str, error: Floats, turning: float | None = None) -> None:
     share = "" if turning is None else f" {turning:8.2f}"
     print(f"    {label:34s} {error.mean():6.2f} {np.quantile(error, 0.95):6.2f} {error.max():6.1f}{share}", flush=True)
 
@@ -147,29 +149,29 @@ def scored(folder: Path, name: str, args: argparse.Namespace) -> None:
 
 def compared(folder: Path, name: str, args: argparse.Namespace, here: Sequence, spent: Seconds) -> None:
     """One table for each order of the mapping."""
-    starts = here.middles()
-    truths = [Truth.of(folder, name, np.array(start.vertices), start.frame) for start in starts]
+    references = here.references()
+    truths = [Truth.of(folder, name, np.array(r.vertices), r.frame) for r in references]
     total = 0
     for order in args.order:
         alignments: list[Arap] = []
-        for start, truth in zip(starts, truths, strict=True):
-            images = mapped(here, start, order, spent)
+        for i, (start, truth) in enumerate(zip(references, truths, strict=True)):
+            images = mapped(here, i, start, order, spent)
             total += len(images)
             picked = sorted({start.frame, start.frames[0], start.frames[-1], *start.frames[:: args.every]})
             images = {t: images[t] for t in picked}
             true = Truth(truth.x[picked], truth.part, truth.label, truth.joints, truth.height)
-            raw = np.stack([wanted(here, match, t) for t, match in images.items()])
+            raw = np.stack([targets(here, mapping, t) for t, mapping in images.items()])
             print(f"{name} {start.frames[0]}–{start.frames[-1]}, reference {start.frame}, {len(start.leaf)} leaves, {order}")
-            told("geodesic mapping alone", np.linalg.norm(raw - true.x, axis=2) / truth.height * 100)
+            print_row("geodesic mapping alone", np.linalg.norm(raw - true.x, axis=2) / truth.height * 100)
             for length in args.length:
                 x = deformed(here, start, images, length, args.steps, spent)
                 turns = [turn for turn in true.turns(x, picked.index(start.frame)) if turn.degrees >= TURNS]
                 share = float(np.median([turn.share for turn in turns])) if turns else float("nan")
-                told(f"ARAP, length {length} √A", np.linalg.norm(x - true.x, axis=2) / truth.height * 100, share)
+                print_row(f"ARAP, length {length} √A", np.linalg.norm(x - true.x, axis=2) / truth.height * 100, share)
             at = {t: _alignment(one) for t, one in zip(picked, x, strict=True)}
-            # the crossing looks at first and last frames alone
+            # correspondences are found in the first and last frames only
             alignments += [at.get(t, at[start.frame]) for t in start.frames]
-        _cuts(here, starts, truths, alignments)
+        _cuts(here, references, truths, alignments)
     arap, factor = spent.arap / spent.frames, spent.factor / spent.references
     print(
         f"    seconds a frame: coordinates {spent.coordinates:.2f}, mapping {spent.mapping / total:.3f}, ARAP {arap:.2f};"
@@ -179,17 +181,17 @@ def compared(folder: Path, name: str, args: argparse.Namespace, here: Sequence, 
 
 def _alignment(x: Floats) -> Arap:
     plain = np.ones(len(x))
-    return Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, moved=9.0)
+    return Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, rigid_residual=9.0)
 
 
-def _cuts(here: Sequence, starts: list[IntervalReference], truths: list[Truth], alignments: list[Arap]) -> None:
-    """How far the vertices to which the crossing leads are from where they should be."""
-    across = cut_correspondence(tuple(starts), tuple(alignments), here.tips, here.leaves)
-    for i, (a, b) in enumerate(pairwise(starts)):
-        image = across.backward[across.rows(i + 1)]
-        led = image >= 0
-        error = np.linalg.norm(a.vertices[image[led]] - truths[i + 1].x[a.frame][led], axis=1) / truths[i].height * 100
-        told(f"cut {a.frames[-1]}|{b.frames[0]}, {led.mean():.0%} of the vertices", error)
+def _cuts(here: Sequence, references: list[IntervalReference], truths: list[Truth], alignments: list[Arap]) -> None:
+    """How far the vertices of the previous interval that correspond across a cut are from their true places."""
+    cuts = cut_correspondence(tuple(references), tuple(alignments), here.extrema)
+    for i, (a, b) in enumerate(pairwise(references)):
+        image = cuts.to_previous[cuts.rows(i + 1)]
+        mapped = image >= 0
+        error = np.linalg.norm(a.vertices[image[mapped]] - truths[i + 1].x[a.frame][mapped], axis=1) / truths[i].height * 100
+        print_row(f"cut {a.frames[-1]}|{b.frames[0]}, {mapped.mean():.0%} of the vertices", error)
 
 
 def main() -> None:

@@ -23,18 +23,12 @@ from scipy.optimize import linear_sum_assignment
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.input.mesh import clean
-from kinetree.tasks.numerics.topology.correlation import (
-    Normalisation,
-    Summary,
-    correlations,
-    dimensionless,
-    histograms,
-    summary,
-)
+from kinetree.tasks.numerics.topology.correlation import Normalisation, correlations, histograms
 from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.intervals import Cue, Intervals, fixed_intervals, intervals, stacked
 from kinetree.tasks.numerics.topology.leaves import follow
+from kinetree.tasks.numerics.topology.mu_histogram import Summary, dimensionless, summary
 from kinetree.tasks.numerics.topology.persistence import loop_counts, loop_spans, superlevel_peaks
 
 Floats = npt.NDArray[np.float64]

@@ -3,6 +3,7 @@
 KinetreeError
 ├── InputError                the user's input is wrong; exit code 2, never a traceback
 │   ├── ConfigError           a key, a value or a path in a configuration
+│   ├── FigureError           a figure or a synthetic sequence is described wrongly
 │   ├── SourceError           the sequence cannot be found or listed
 │   ├── MeshError             one mesh cannot be read or used
 │   │   └── DisconnectedMeshError   a distance between two components was asked for
@@ -31,6 +32,10 @@ class InputError(KinetreeError):
 
 class ConfigError(InputError):
     """A key, a value or a path in a configuration."""
+
+
+class FigureError(InputError):
+    """A figure or a synthetic sequence is described wrongly."""
 
 
 class SourceError(InputError):

@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Literal
 
 from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
-from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
+from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.memory import peak_bytes, reset_peak
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
@@ -110,7 +110,7 @@ def execute(store_url: str, steps: tuple[Step, ...]) -> list[Result]:
 
 def _compute(bench: _Bench, number: int, step: Step) -> Result:
     task = load(step.task)
-    here = code_digest(task.module)
+    here = code_digest(task.module, task.name)
     if here != step.code:
         raise StaleWorkerError(
             f"{step.label}: planned with other code of {task.module} than this worker has"
@@ -148,7 +148,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         artifact=digest,
         files=files,
         params=dict(step.params),
-        code=code_closure(task.module),
+        code=dict(code_parts(task.module, task.name)),
         inputs=inputs,
         seconds=seconds,
         peak_bytes=peak_bytes(),

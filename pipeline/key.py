@@ -3,16 +3,16 @@
 Three digests, each of tagged canonical bytes (1 and "1" differ, no two values share an encoding), pinned by golden tests:
 
     artifact_digest   what an artifact holds: schema name and version, field names, dtypes, shapes, bytes
-    code_digest       what a task does: the syntax trees of its module and of every task and schema module it imports
+    code_digest       what a task does: the syntax trees of the definitions that its function reaches by name
     node_key          task name + code digest + params + input digests: what a node will compute, before it is computed
 """
 
-import ast
+import contextlib
+import gc
 import hashlib
 import importlib.util
 import math
 import struct
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -21,13 +21,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinetree.pipeline.definitions import IMPORTS, STATEMENTS, Code, Definition
 from kinetree.schemas.array import Artifact
 
 DIGEST_BYTES = 20
+PART_DIGITS = 6
+"""Of a definition's digest in a record, which only tells people what changed: every node keeps one for each definition."""
 _LENGTH = struct.Struct(">Q").pack
 CODE_ROOTS = ("kinetree.tasks", "kinetree.schemas")
-"""Packages whose modules can change a result; `kinetree.pipeline` is not among them because it may not. For a task that
-somebody else's package defines, that package counts too."""
+"""Packages whose modules can change a result. For a task that somebody else's package defines, that package counts too."""
+HARMLESS = ("kinetree.pipeline", "kinetree.errors")
+"""Packages that may not change a result."""
 
 
 def digest(value: Any) -> str:
@@ -80,37 +84,90 @@ def node_key(
     return digest(["kinetree.node/1", task, code, dict(params), list(inputs), *asked])
 
 
-def code_digest(module: str) -> str:
-    """Digest of the comment-free, docstring-free code of `module` and of all task and schema code it can reach."""
-    return digest(["kinetree.code/1", code_closure(module)])
+def code_digest(module: str, name: str) -> str:
+    """Digest of the definitions that `name` of `module` reaches, without comments and docstrings.
+
+    raises : ModuleNotFoundError where there is no source of `module`
+    """
+    return _identified(module, name)[0]
+
+
+def code_parts(module: str, name: str) -> Mapping[str, str]:
+    """What a code digest is made of, for people: by module, the names of its definitions, each with a short digest.
+
+    returns : for example {"kinetree.tasks.numerics.mu": "(imports):9f03a1 bases:5512c0 mu:0b7e44"}
+    """
+    return _identified(module, name)[1]
 
 
 @cache
-def code_closure(module: str) -> dict[str, str]:
-    """Digest of the code of `module` and of every module of `CODE_ROOTS` it imports, transitively, by module name."""
+def _identified(module: str, name: str) -> tuple[str, dict[str, str]]:
     package = module.partition(".")[0]
-    roots = CODE_ROOTS if package == "kinetree" else (*CODE_ROOTS, package)
-    found: dict[str, str] = {}
-    waiting = [module]
-    while waiting:
-        name = waiting.pop()
-        if name not in found:
-            found[name], imports = _module(name, roots)
-            waiting.extend(imports)
-    return dict(sorted(found.items()))
+    code = _code(CODE_ROOTS if package == "kinetree" else (*CODE_ROOTS, package))
+    with _collection_paused():
+        reached = code.reached(module, name)
+    found: dict[Definition, str] = {}
+    for one, syntax in reached.items():
+        known = None if one[1] in (STATEMENTS, IMPORTS) else code.digests.get(one)
+        found[one] = code.digests[one] = known or digest(["kinetree.definition/1", syntax])
+    parts: dict[str, str] = {}
+    for (home, definition), told in found.items():
+        parts[home] = f"{parts.get(home, '')} {definition}:{told[:PART_DIGITS]}".lstrip()
+    return digest(["kinetree.code/2", name, [[*one, told] for one, told in found.items()]]), parts
+
+
+@contextlib.contextmanager
+def _collection_paused() -> Iterator[None]:
+    """Syntax trees are many objects and no garbage: looking through them again and again takes as long as all the rest."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def forget_code() -> None:
     """Makes the code be read again, for a process that reloads its modules after an edit."""
-    code_closure.cache_clear()
-    _module.cache_clear()
+    _identified.cache_clear()
+    _code.cache_clear()
 
 
 @cache
-def _module(name: str, roots: Sequence[str]) -> tuple[str, tuple[str, ...]]:
-    """Digest of one module's code, and the modules below `roots` that it imports."""
-    tree = ast.parse(_source(name))
-    return digest(["kinetree.module/1", *_syntax(tree)]), tuple(dict.fromkeys(_imports(tree, name, roots)))
+def _code(roots: tuple[str, ...]) -> Code:
+    return Code(_Texts({name: path for root in roots for name, path in _files(root)}), HARMLESS)
+
+
+def _files(root: str) -> Iterator[tuple[str, Path]]:
+    """The modules of an installed package by name, none of which is imported; a package's own is `package.__init__`."""
+    spec = importlib.util.find_spec(root)
+    if spec is None:
+        return
+    if spec.submodule_search_locations is None and spec.origin is not None:
+        yield root, Path(spec.origin)
+    for folder in spec.submodule_search_locations or ():
+        for path in Path(folder).rglob("*.py"):
+            yield ".".join((root, *path.relative_to(folder).with_suffix("").parts)), path
+
+
+class _Texts(Mapping[str, str]):
+    """The texts of modules, read when they are asked for."""
+
+    def __init__(self, paths: dict[str, Path]) -> None:
+        self._paths = paths
+
+    def __getitem__(self, name: str) -> str:
+        return self._paths[name].read_text(encoding="utf-8")
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._paths
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._paths)
+
+    def __len__(self) -> int:
+        return len(self._paths)
 
 
 def _hasher() -> "hashlib.blake2b":
@@ -161,67 +218,3 @@ def _text(name: Any) -> str:
     return name
 
 
-def _syntax(node: ast.AST) -> list[Any]:
-    """The tree as plain values: no positions, no bare strings (docstrings), no field that is empty.
-
-    Fields that are empty are left out because Python versions differ in which empty fields a node has.
-    """
-    told: list[Any] = [type(node).__name__]
-    for field in node._fields:
-        value = getattr(node, field, None)
-        if isinstance(value, list):
-            items = [i for i in value if not _is_docstring(i)]
-            if items:
-                told.append([field, [_syntax(i) if isinstance(i, ast.AST) else i for i in items]])
-        elif isinstance(value, ast.AST):
-            told.append([field, _syntax(value)])
-        elif value is not None:
-            told.append([field, type(value).__name__, repr(value)])
-    return told
-
-
-def _is_docstring(node: Any) -> bool:
-    """A string that stands alone as a statement: it documents and cannot change a result."""
-    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-
-
-def _imports(tree: ast.AST, module: str, roots: Sequence[str]) -> Iterator[str]:
-    """The modules below `roots` that a module's import statements name, wherever in it they stand."""
-    for node in ast.walk(tree):
-        names: list[str] = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            package = module if _is_package(module) else module.rpartition(".")[0]
-            origin = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
-            inner = [f"{origin}.{alias.name}" for alias in node.names]
-            names = [name if _counts(name, roots) and _exists(name) else origin for name in inner]
-        yield from (name for name in names if _counts(name, roots))
-
-
-def _counts(name: str, roots: Sequence[str]) -> bool:
-    return any(name == root or name.startswith(root + ".") for root in roots)
-
-
-def _exists(name: str) -> bool:
-    """Whether `name` is a module (and not something a module defines)."""
-    if name in sys.modules:
-        return True
-    try:
-        return importlib.util.find_spec(name) is not None
-    except ModuleNotFoundError:
-        return False
-
-
-def _is_package(module: str) -> bool:
-    if module in sys.modules:
-        return hasattr(sys.modules[module], "__path__")
-    spec = importlib.util.find_spec(module)
-    return spec is not None and spec.submodule_search_locations is not None
-
-
-def _source(module: str) -> str:
-    spec = importlib.util.find_spec(module)
-    if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"no source for module {module!r}; its code cannot be identified", name=module)
-    return Path(spec.origin).read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ Kind = Literal["never ran", "params", "code", "index", "input", "artifact", "for
 
 @dataclass(frozen=True)
 class Reason:
-    """One cause, and what exactly: the parameter old → new, the module, the input."""
+    """One cause, and what exactly: the parameter old → new, the definition, the input."""
 
     kind: Kind
     what: str = ""
@@ -53,7 +53,21 @@ def _params(now: Mapping[str, Any], then: Mapping[str, Any]) -> tuple[Reason, ..
 
 
 def _code(now: Mapping[str, str], then: Mapping[str, str]) -> tuple[Reason, ...]:
-    return tuple(Reason("code", name) for name in sorted({*now, *then}) if now.get(name) != then.get(name))
+    if any(":" not in parts for parts in then.values()):
+        return (Reason("code", "the earlier run told it by whole modules"),)
+    told: list[Reason] = []
+    for module in sorted({*now, *then}):
+        a, b = _definitions(then.get(module, "")), _definitions(now.get(module, ""))
+        names = sorted(name for name in {*a, *b} if a.get(name) != b.get(name))
+        if names:
+            more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+            told.append(Reason("code", f"{module}:{', '.join(names[:3])}{more}"))
+    return tuple(told)
+
+
+def _definitions(parts: str) -> dict[str, str]:
+    """The short digest of every definition, from the words of a record."""
+    return dict(part.rsplit(":", 1) for part in parts.split())
 
 
 def _index(now: Mapping[str, int] | None, then: Mapping[str, int] | None) -> tuple[Reason, ...]:

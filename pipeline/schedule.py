@@ -13,7 +13,7 @@ from typing import Literal
 
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.key import artifact_digest, code_closure, code_digest, node_key
+from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.layout import Given, Layout, T
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Reason, Recall, Work, differences, never_ran
@@ -75,15 +75,13 @@ class Schedule:
         self.recall = recall
         self.entries: dict[Node, Entry] = {}
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
-        self.code = {task.name: code_digest(task.module) for task in graph.tasks}
+        self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
         self._unlisted: dict[Node, None] = {}
         self._ready: list[tuple[int, Index, Node]] = []
         self._values: dict[Node, Artifact] = {}
-        self._shaping = {t.name for t in graph.openers.values()} | {
-            graph.writers[t.along].name for t in graph.tasks if t.along
-        }
+        self._shaping = {t.name for t in graph.openers.values()} | {graph.writers[t.along].name for t in graph.tasks if t.along}
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self.lay_out()
 
@@ -234,7 +232,12 @@ class Schedule:
             }
             for argument, nodes in entry.inputs or ()
         ]
-        return Work(self.params.get(entry.node.task, {}), code_closure(entry.task.module), inputs, self.asked_index(entry))
+        return Work(
+            self.params.get(entry.node.task, {}),
+            code_parts(entry.task.module, entry.task.name),
+            inputs,
+            self.asked_index(entry),
+        )
 
     @staticmethod
     def asked_index(entry: Entry) -> dict[str, int] | None:

@@ -42,6 +42,7 @@ class Record:
     files: dict[str, int]
     params: dict[str, Any]
     code: dict[str, str]
+    """By module, the definitions of which its code digest was made, each with a short digest."""
     inputs: list[Any]
     seconds: float
     peak_bytes: int

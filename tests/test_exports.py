@@ -319,10 +319,10 @@ def test_shown_skeleton_is_a_tree_with_lengths_turns_and_support(out, capsys):
     at = next(n for n, line in enumerate(lines) if line.startswith("trunk"))
     assert lines[at : at + 7] == [
         "trunk       root, 12 frames",
-        "├─ arm      bone 4 mm, turns 172°, ±0.01 mm, seen in 12 of 12 frames",
+        "├─ arm      bone 4 mm, turns 172°, ±0.01 mm, supported by 12 of 12 frames",
         "│  └─ hand  bone 4.123 mm",
         "├─ tail     bone 6.782 mm",
-        "└─ knee     bone 5.831 mm, turns 133°, ±0.01 mm, seen in 12 of 12 frames",
+        "└─ knee     bone 5.831 mm, turns 133°, ±0.01 mm, supported by 12 of 12 frames",
         "   ├─ foot  bone 4.123 mm",
         "   └─ spur  bone 3.742 mm",
     ]

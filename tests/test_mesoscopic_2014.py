@@ -30,15 +30,15 @@ def human(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
 
 
 def test_human_whose_hand_touches_the_hip_becomes_one_tree_with_a_pose_in_every_frame(human: Pipeline) -> None:
-    found: Any = human.artifact("kinematic_structure")
-    assert found.frames == tuple(range(13))
-    assert found.kinds.count("leaf") == 5
-    assert found.kinds.count("joint") >= 8
-    assert np.isfinite(found.positions).all()
-    whole: Any = human.artifact("cone_consistency")
-    assert (whole.leaf < 0).any(), "the hand on the hip has no leaf"
-    told: Any = human.artifact("evaluation")
-    assert sum(joint.found is not None for joint in told.joints) >= 3
+    skeleton: Any = human.artifact("kinematic_structure")
+    assert skeleton.frames == tuple(range(13))
+    assert skeleton.kinds.count("leaf") == 5
+    assert skeleton.kinds.count("joint") >= 8
+    assert np.isfinite(skeleton.positions).all()
+    consistent: Any = human.artifact("cone_consistency")
+    assert (consistent.leaf < 0).any(), "the hand on the hip has no leaf"
+    evaluation: Any = human.artifact("evaluation")
+    assert sum(joint.found is not None for joint in evaluation.joints) >= 3
 
 
 def test_second_run_runs_nothing(human: Pipeline) -> None:
@@ -66,9 +66,9 @@ def test_pictures_of_cones_merge_errors_and_bones_are_drawn(human: Pipeline, tmp
 
 def test_preset_of_the_paper_reaches_the_end_and_the_same_whoever_computes_it(tmp_path: Path) -> None:
     one, other = (ran(tmp_path / who, who, extends="paper-2014", source={"synth": DOG}) for who in ("sync", "threads"))
-    found: Any = one.artifact("kinematic_structure")
-    assert found.frames == (0, 1, 2, 3)
-    assert found == other.artifact("kinematic_structure")
+    skeleton: Any = one.artifact("kinematic_structure")
+    assert skeleton.frames == (0, 1, 2, 3)
+    assert skeleton == other.artifact("kinematic_structure")
 
 
 def test_ball_becomes_one_rigid_part_and_the_run_says_so(tmp_path: Path) -> None:
@@ -79,5 +79,5 @@ def test_ball_becomes_one_rigid_part_and_the_run_says_so(tmp_path: Path) -> None
         ball.export(tmp_path / "scans" / f"frame_{t}.ply")
     pipeline = ran(tmp_path / "out", source={"input": str(tmp_path / "scans")}, geodesics={"bases": 20})
     assert any("one rigid part" in text for _, text in pipeline.remarks())
-    found: Any = pipeline.artifact("kinematic_structure")
-    assert found.kinds == ("root",)
+    skeleton: Any = pipeline.artifact("kinematic_structure")
+    assert skeleton.kinds == ("root",)

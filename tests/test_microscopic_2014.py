@@ -65,7 +65,7 @@ def test_each_interval_has_one_mesh_that_follows_the_body_whoever_computes_it(tm
             assert here.residual.mean() < 0.03 * reference.size
             assert here == artifact(other, "arap", interval=i, frame=t)
     across = artifact(pipeline, "cut_correspondence")
-    assert across.surplus(0, ahead=True), "the hand on the hip has no leaf behind the cut"
+    assert across.surplus(0, at_end=True), "the hand on the hip has no leaf behind the cut"
     assert across == artifact(other, "cut_correspondence")
     assert pipeline.run()["tasks"]["arap"]["ran"] == 0
 

@@ -7,28 +7,33 @@ from pydantic import Field
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints, Params
 from kinetree.schemas.dims import ANNULUS, RUNG
 
-LADDER = tuple(round(1.1 + 0.1 * step, 1) for step in range(20))
+THRESHOLDS = tuple(round(1.1 + 0.1 * step, 1) for step in range(20))
+"""The values of θ_r that are tried unless others are set: the paper's 1.2 and its surroundings up to 3."""
 
 
 class AnnuliParams(Params):
-    """When an annulus moves like those before it."""
+    """When an annulus joins the cluster before it."""
 
-    thresholds: tuple[float, ...] = Field(default=LADDER, min_length=1)
-    """θ_r: one, or several of which that with the most clusters is taken, as the paper does for Fig. 11, where it is 1.2."""
+    thresholds: tuple[float, ...] = Field(default=THRESHOLDS, min_length=1)
+    """θ_r of Eq. 12. Of several, the one that gives the most rigid areas is taken, as for Fig. 11, where it is 1.2."""
     floor: float = Field(default=0.002, ge=0)
-    """Errors below this are noise, share of the root of the area; where nothing errs Eq. 11 is 0 / 0 and the paper silent."""
+    """Errors per vertex below this count as this much, share of the root of the area; without errors Eq. 11 would be 0 / 0."""
 
 
 class Annuli(Artifact):
-    """Which annuli are rigid, at every threshold."""
+    """Which annuli of one cone are rigid in one interval, at every threshold."""
 
+    interval: int
+    """Number of the interval."""
+    cone: int
+    """Number of the cone, the same in all intervals."""
     floor: float
-    """Below which errors are noise, share of the root of the area."""
+    """Errors per vertex below this counted as this much, share of the root of the area."""
     theta: Annotated[Floats, Array("float64", RUNG)]
-    """The thresholds."""
+    """The thresholds θ_r."""
     annulus: Annotated[Ints, Array("int32", ANNULUS)]
     """The annuli of the cone that have vertices, ascending from the leaf."""
     rigid: Annotated[Bools, Array("bool", RUNG, ANNULUS)]
     """Whether an annulus is clustered with another; a single one is a joint or part of one."""
-    merge: Annotated[Floats, Array("float64", RUNG, ANNULUS)]
+    merge_error: Annotated[Floats, Array("float64", RUNG, ANNULUS)]
     """Mean merge-error of each annulus against the cluster before it (Eq. 12); 1 for the first of a cluster."""

@@ -11,17 +11,17 @@ class Bones(Artifact):
 
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
-    body: Annotated[Ints, Array("int32", AREA)]
-    """The rigid body of each area, which may have several where no joint lies between; −1 for joints."""
+    part: Annotated[Ints, Array("int32", AREA)]
+    """The rigid part of each area; adjacent rigid areas without a joint between them are one part. −1 for joints."""
     centroid: Annotated[Floats, Array("float64", FRAME, AREA, XYZ, unit="length", finite=False)]
-    """Middle of each area in every frame; NaN in intervals in which nothing of it is seen."""
+    """Centroid of each area in every frame; NaN in intervals in which nothing of it is seen."""
     bone: Annotated[Ints, Array("int32", BONE, END)]
-    """Bones between joints whose areas are adjacent to each other or to the same rigid body."""
-    carrier: Annotated[Ints, Array("int32", BONE)]
-    """The body between, −1 where the areas are adjacent to each other only."""
+    """Bones between joints whose areas are adjacent to each other or to the same rigid part."""
+    bone_part: Annotated[Ints, Array("int32", BONE)]
+    """The part between, −1 where the areas are adjacent to each other only."""
     variation: Annotated[Floats, Array("float64", BONE, unit="length", finite=False)]
     """Standard deviation of each bone's length over the frames."""
-    kept: Annotated[Bools, Array("bool", BONE)]
+    in_tree: Annotated[Bools, Array("bool", BONE)]
     """Whether it is in the minimum spanning tree on the variation of lengths; the others are redundant."""
-    way: Annotated[Ints, Array("int32", VERTEX)]
-    """For every vertex of all references, one after another, the vertex of the one that has the areas; −1 for none."""
+    model_vertex: Annotated[Ints, Array("int32", VERTEX)]
+    """For every vertex of all references, one after another, the corresponding vertex of the model mesh; −1 for none."""

@@ -10,36 +10,30 @@ from kinetree.schemas.dims import CONE, INTERVAL, VERTEX
 
 
 class ConeConsistencyParams(Params):
-    """How far leaves move."""
+    """How far leaves may move."""
 
     leap: float = Field(default=0.3, gt=0)
     """θ of Eq. 7: how far a leaf may move between two frames, share of the root of the area; the paper gives no number."""
 
 
 class ConeConsistency(Artifact):
-    """The cones of every interval under numbers that mean the same limb in all; each interval has all of them."""
+    """The cones of every interval, numbered alike in all intervals; each interval has all of them."""
 
     opens: ClassVar[tuple[str, ...]] = ("interval/cone",)
     annuli: int
-    """As `Cones` have it."""
-    reference: tuple[int, ...]
-    """Source frame number of each interval's reference, by which an interval knows itself."""
+    """Annuli in the longest distance from each leaf."""
     first: Annotated[Ints, Array("int32", INTERVAL)]
-    """Where each interval's vertices begin; the vertices of all references stand one after another."""
-    ring: Annotated[Ints, Array("int32", CONE, VERTEX)]
+    """First vertex of each interval; the vertices of all references stand one after another."""
+    annulus: Annotated[Ints, Array("int32", CONE, VERTEX)]
     """Annulus of every vertex of every reference in each cone, −1 beyond it."""
     leaf: Annotated[Ints, Array("int32", INTERVAL, CONE)]
-    """The leaf whose cone it is, a row of that interval's `Middle.leaf`; −1 where the cone was recovered from another."""
+    """The leaf of each cone, a row of that interval's `IntervalReference.leaf`; −1 where the cone was recovered."""
 
     def rows(self, interval: int) -> slice:
         """The vertices of an interval's reference."""
-        end = int(self.first[interval + 1]) if interval + 1 < len(self.first) else self.ring.shape[1]
+        end = int(self.first[interval + 1]) if interval + 1 < len(self.first) else self.annulus.shape[1]
         return slice(int(self.first[interval]), end)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The cones, numbered from 0, the same in all intervals."""
-        return range(len(self.ring))
-
-    def previous(self, member: int) -> int | None:
-        """The cone before this one, so that each is told its number."""
-        return member - 1 if member else None
+        return range(len(self.annulus))

@@ -16,11 +16,11 @@ class ConesParams(Params):
 
 
 class Cones(Artifact):
-    """Which annulus of which leaf's cone each vertex is in; cones of a tree-shaped body overlap (Fig. 7)."""
+    """The annulus of every vertex in the cone of each leaf; cones of a tree-shaped body overlap (Fig. 7)."""
 
     annuli: int
     """Annuli in the longest distance from each leaf."""
-    ring: Annotated[Ints, Array("int32", LEAF, VERTEX)]
+    annulus: Annotated[Ints, Array("int32", LEAF, VERTEX)]
     """Annulus k of the vertex in each leaf's cone, 0 around the leaf; −1 beyond the cone, and for a leaf not seen."""
-    span: Annotated[Floats, Array("float64", LEAF, unit="length³")]
-    """Range of μ in each cone, by which equally long ones are told apart (Sec. 6.1.1.3)."""
+    mu_range: Annotated[Floats, Array("float64", LEAF, unit="length³")]
+    """Range of μ in each cone; of two equally long cones the one with the wider range is reliable (Sec. 6.1.1.3)."""

@@ -7,9 +7,9 @@ from kinetree.schemas.dims import LEAF, VERTEX
 
 
 class GeodesicCoordinates(Artifact):
-    """The distance of every vertex to each of the frame's tips; which tip is which leaf is the intervals' to say."""
+    """The distance of every vertex to each of the frame's extrema; `IntervalReference` says which extremum is which leaf."""
 
-    tips: Annotated[Ints, Array("int32", LEAF)]
-    """The vertex of each of the frame's tips, in the order of `Tips`."""
+    extrema: Annotated[Ints, Array("int32", LEAF)]
+    """The vertex of each of the frame's extrema, in the order of `Extrema`."""
     distance: Annotated[Floats, Array("float64", LEAF, VERTEX, unit="length", finite=False)]
-    """Over the surface; NaN outside the largest component."""
+    """Geodesic distance; NaN outside the largest component."""

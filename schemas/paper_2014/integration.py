@@ -10,10 +10,10 @@ class Integration(Artifact):
     """The rigid annuli of every cone: those that are rigid in all intervals."""
 
     floor: float
-    """Below which errors are noise, share of the root of the area."""
+    """Errors per vertex below this counted as this much, share of the root of the area."""
     theta: float
     """θ_r, the threshold of Eq. 12."""
     rigid: Annotated[Bools, Array("bool", CONE, ANNULUS)]
-    """Whether annulus k of each cone is rigid; true beyond a cone's last."""
+    """Whether annulus k of each cone is rigid; true beyond a cone's last annulus."""
     clusters: Annotated[Ints, Array("int32", RUNG)]
-    """Rigid areas that each threshold gives, in all cones together (Fig. 11)."""
+    """Number of rigid areas in all cones together at each threshold (Fig. 11)."""

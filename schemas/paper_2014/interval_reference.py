@@ -9,7 +9,7 @@ from kinetree.schemas.dims import CORNER, FACE, FRAME, LEAF, VERTEX, XYZ
 
 
 class IntervalReference(Artifact):
-    """The mesh at the middle of an interval: what the interval's frames are aligned to and its cones are defined on."""
+    """The mesh at the middle of an interval: it is aligned to the interval's frames, and cones are defined on it."""
 
     frames: tuple[int, ...]
     """Source frame numbers of the interval, ascending."""
@@ -20,20 +20,22 @@ class IntervalReference(Artifact):
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
     """Its faces."""
     area: Annotated[Floats, Array("float64", VERTEX, unit="length²")]
-    """What each vertex stands for; 0 outside the largest component, which is not aligned."""
+    """Area around each vertex; 0 outside the largest component, which does not count."""
     size: float
     """Root of the area, length."""
     leaf: Annotated[Ints, Array("int32", LEAF)]
     """The interval's fixed set of leaves: rows of `Leaves`, ascending."""
-    tip: Annotated[Ints, Array("int32", LEAF)]
+    leaf_vertex: Annotated[Ints, Array("int32", LEAF)]
     """The reference's vertex at each leaf; −1 for a leaf that is not seen in the reference's frame."""
-    distance: Annotated[Floats, Array("float64", LEAF, VERTEX, unit="length", finite=False)]
+    coordinates: Annotated[Floats, Array("float64", LEAF, VERTEX, unit="length", finite=False)]
     """Geodesic coordinates of the reference: g(v, leaf); NaN outside the largest component and for a leaf not seen."""
-    trail: Annotated[Floats, Array("float64", LEAF, FRAME, XYZ, unit="length", finite=False)]
-    """Where each leaf is in every frame of the interval; NaN where it is not seen."""
+    extremum: Annotated[Ints, Array("int32", LEAF, FRAME)]
+    """Which of the frame's extrema each leaf is, in every frame of the interval; −1 where it is not seen."""
+    tracked: bool
+    """Whether the sequence has fixed connectivity (Sec. 7): every vertex is its own image in all frames."""
 
     @property
-    def handles(self) -> int:
+    def genus(self) -> int:
         """Genus of the mesh where it is one closed surface, V − E + F = 2 − 2g; 0 where it is not."""
         F = np.asarray(self.faces)
         sides = np.sort(np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
@@ -41,6 +43,6 @@ class IntervalReference(Artifact):
         return 0 if (uses != 2).any() else (2 - len(np.unique(F)) + len(edges) - len(F)) // 2
 
     def previous(self, member: int) -> int | None:
-        """The frame from which this one is reached, its neighbour towards the middle; None for the reference."""
+        """The neighbour of a frame towards the reference; None for the reference."""
         at, start = self.frames.index(member), self.frames.index(self.frame)
         return None if at == start else self.frames[at - 1 if at > start else at + 1]

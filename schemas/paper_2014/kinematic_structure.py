@@ -1,4 +1,4 @@
-"""How the tree of joints is given fixed lengths (2014, Sec. 6.3.2; Aguiar 2006); the result is a `Skeleton`."""
+"""How bones are given fixed lengths (2014, Sec. 6.3.2; Aguiar 2006); the result is a `Skeleton`."""
 
 from pydantic import Field
 
@@ -6,7 +6,7 @@ from kinetree.schemas.array import Params
 
 
 class KinematicStructureParams(Params):
-    """What is fitted."""
+    """What the poses are fitted to."""
 
     surface: float = Field(default=1.0, gt=0, le=100)
-    """Weight of a rigid body's surface against one joint: it says how bones turn about themselves, which joints cannot."""
+    """Weight of a rigid part's surface against one joint; the surface shows the roll of a bone, which joints do not."""

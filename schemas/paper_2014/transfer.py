@@ -1,4 +1,4 @@
-"""The way between a frame and the mesh of the finished skeleton, there and back, interval by interval."""
+"""The correspondence between a frame and the model mesh, over the interval's alignment and the cuts (ours)."""
 
 from typing import Annotated
 
@@ -7,11 +7,13 @@ from kinetree.schemas.dims import INPUT_VERTEX, VERTEX, XYZ
 
 
 class Transfer(Artifact):
-    """The way over an interval's aligned mesh and the cuts."""
+    """The vertices of the frame on the model mesh, and the vertices of the model mesh in the frame."""
 
-    corner: Annotated[Ints, Array("int32", INPUT_VERTEX)]
-    """Vertex of the skeleton's mesh, −1 for a vertex that cleaning dropped, or where the way is broken."""
+    model_vertex: Annotated[Ints, Array("int32", INPUT_VERTEX)]
+    """Vertex of the model mesh; −1 for a vertex that cleaning dropped, and where no map over the cuts leads there."""
     distance: Annotated[Floats, Array("float64", INPUT_VERTEX, unit="length", finite=False)]
-    """From the vertex to the aligned mesh's nearest; NaN where there is none."""
-    place: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length", finite=False)]
-    """Where every vertex of the skeleton's mesh is in the frame; NaN where the way is broken."""
+    """From the vertex to the nearest vertex of the aligned mesh that has one; NaN where there is none."""
+    model_position: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length", finite=False)]
+    """Where every vertex of the model mesh is in the frame; NaN where no map over the cuts reaches the frame's interval."""
+    tracked: bool
+    """Whether the sequence has fixed connectivity, so that known positions are exact."""

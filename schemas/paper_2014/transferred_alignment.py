@@ -1,1 +1,1 @@
-"""What the task gives is an `Alignment`, as the default's is: the mesh of the finished skeleton in one frame."""
+"""The result is an `Alignment`, as in the default method: the mesh of the skeleton in one frame."""

@@ -1,1 +1,1 @@
-"""What every frame's input vertices are on the mesh of the finished skeleton; the results are `Projection`s."""
+"""The result is a `Projection`, as in the default method: each frame's input vertices on the mesh of the skeleton."""

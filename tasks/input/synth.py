@@ -13,7 +13,7 @@ import numpy as np
 import trimesh
 import yaml
 
-from kinetree.errors import ConfigError
+from kinetree.errors import ConfigError, FigureError
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure, named
@@ -25,7 +25,7 @@ FIGURES = importlib.resources.files("kinetree.configs") / "figures"
 def recipe(params: SynthParams) -> str:
     """All that decides the sequence, as JSON with the figure written out: equal recipes, equal bytes, on any machine.
 
-    raises : ConfigError where the figure, the motion or a limb is not known
+    raises : FigureError where the figure, the motion or a limb is not known
     """
     told = params.model_dump(mode="json", exclude={"figure", "file"})
     written = json.dumps({"figure": _description(params), **told}, sort_keys=True)
@@ -47,7 +47,7 @@ def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, 
 
     volumes : also volume_0000.npz …: signed distance on a grid, negative inside, with origin and voxel
     cameras : also silhouettes_0000.npz …, from a ring of so many cameras, and cameras.npz with their 3×4 matrices
-    raises  : ConfigError where the figure is not known or the folder holds something already
+    raises  : FigureError where the figure is not known; ConfigError where the folder holds something already
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"{folder}: not an empty folder; name a new one, so that no frame of another sequence stays in it")
@@ -92,7 +92,7 @@ def _description(params: SynthParams) -> dict[str, Any]:
     kind, colon, seed = params.figure.partition(":")
     if kind == "random" and colon:
         if not (seed.isascii() and seed.isdigit()):
-            raise ConfigError(f"figure {params.figure!r}: write random:SEED with a whole number, e.g. random:7")
+            raise FigureError(f"figure {params.figure!r}: write random:SEED with a whole number, e.g. random:7")
         return {"random": int(seed)}
     known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}
     named(params.figure, known)
@@ -103,9 +103,9 @@ def _read(path: Any) -> dict[str, Any]:
     try:
         told = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise FigureError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except yaml.YAMLError as error:
-        raise ConfigError(f"{path}: not valid YAML: {error}") from None
+        raise FigureError(f"{path}: not valid YAML: {error}") from None
     if not isinstance(told, dict):
-        raise ConfigError(f"{path}: expected a figure with its joints, got {type(told).__name__}")
+        raise FigureError(f"{path}: expected a figure with its joints, got {type(told).__name__}")
     return told

@@ -12,7 +12,6 @@ from kinetree.tasks.paper_2014.geodesic_mapping import geodesic_mapping
 from kinetree.tasks.paper_2014.integration import integration
 from kinetree.tasks.paper_2014.interval_reference import interval_reference
 from kinetree.tasks.paper_2014.kinematic_structure import kinematic_structure
-from kinetree.tasks.paper_2014.limb import limb
 from kinetree.tasks.paper_2014.transfer import transfer
 from kinetree.tasks.paper_2014.transferred_alignment import transferred_alignment
 from kinetree.tasks.paper_2014.transferred_projection import transferred_projection
@@ -25,7 +24,6 @@ PAPER_2014 = (
     cut_correspondence,
     cones,
     cone_consistency,
-    limb,
     annuli,
     integration,
     cylinders,

@@ -5,31 +5,46 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Index
 from kinetree.schemas.paper_2014.annuli import Annuli, AnnuliParams
 from kinetree.schemas.paper_2014.arap import Arap
+from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
-from kinetree.schemas.paper_2014.limb import Limb
-from kinetree.tasks.numerics.paper_2014.annuli import Clustered, clustered
+from kinetree.tasks.numerics.paper_2014.annuli import AnnulusClusters, annulus_clusters
 
 
 @task(over="interval/cone")
-def annuli(limb: Limb, middle: IntervalReference, alignment: Mapping[int, Arap], params: AnnuliParams) -> Annuli:
+def annuli(
+    index: Index,
+    cone_consistency: ConeConsistency,
+    interval_reference: IntervalReference,
+    alignments: Mapping[int, Arap],
+    params: AnnuliParams,
+) -> Annuli:
     """Clusters annuli that move as one, from the leaf on, by the ratio of cast- to self-error (2014, Eqs. 9 to 12).
 
-    Where the whole body lies on every frame of the interval as one rigid thing, all annuli are rigid: the ratio would tell of
-    what the alignment errs by.
+    If the reference lies on every frame of the interval as one rigid body, all annuli are rigid (ours): the ratio would only
+    show the errors of the alignment.
     """
-    used = np.unique(limb.ring[limb.ring >= 0])
-    inside = np.flatnonzero(limb.ring >= 0)
-    x = np.stack([a.vertices[inside] for a in alignment.values()])
-    parts = [np.ascontiguousarray(x[:, limb.ring[inside] == k]) for k in used]
-    still = all(a.still for a in alignment.values())
-    at_rest = Clustered(np.zeros(len(used), np.int64), np.ones(len(used)))
-    found = [at_rest if still else clustered(parts, theta, params.floor * middle.size) for theta in params.thresholds]
+    interval, cone = index
+    of_vertex = cone_consistency.annulus[cone, cone_consistency.rows(interval)]
+    inside = np.flatnonzero(of_vertex >= 0)
+    annulus = np.unique(of_vertex[inside])
+    if all(a.is_rigid for a in alignments.values()):
+        rungs = [AnnulusClusters(np.zeros(len(annulus), np.int64), np.ones(len(annulus)))] * len(params.thresholds)
+        rigid = np.ones((len(rungs), len(annulus)), dtype=bool)
+    else:
+        x = np.stack([a.vertices[inside] for a in alignments.values()])
+        moving = [np.ascontiguousarray(x[:, of_vertex[inside] == k]) for k in annulus]
+        floor = params.floor * interval_reference.size
+        rungs = [annulus_clusters(moving, theta, floor) for theta in params.thresholds]
+        rigid = np.array([r.rigid for r in rungs]).reshape(len(rungs), len(annulus))
     return Annuli(
+        interval=interval,
+        cone=cone,
         floor=params.floor,
         theta=np.array(params.thresholds),
-        annulus=used,
-        rigid=np.array([f.rigid | still for f in found]).reshape(len(found), len(used)),
-        merge=np.array([f.merge for f in found]).reshape(len(found), len(used)),
+        annulus=annulus,
+        rigid=rigid,
+        merge_error=np.array([r.merge_error for r in rungs]).reshape(len(rungs), len(annulus)),
     )

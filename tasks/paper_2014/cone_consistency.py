@@ -7,32 +7,35 @@ from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency, ConeCo
 from kinetree.schemas.paper_2014.cones import Cones
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
-from kinetree.tasks.numerics.paper_2014.cone_consistency import Cut, Seen, limbs
+from kinetree.tasks.numerics.paper_2014.cone_consistency import Cut, IntervalCones, consistent_cones
 
 
 @task()
 def cone_consistency(
-    middle: tuple[IntervalReference, ...], cones: tuple[Cones, ...], crossing: CutCorrespondence, params: ConeConsistencyParams
+    interval_references: tuple[IntervalReference, ...],
+    cones: tuple[Cones, ...],
+    cut_correspondence: CutCorrespondence,
+    params: ConeConsistencyParams,
 ) -> ConeConsistency:
     """Matches cones across intervals, rejects erroneous ones, recovers lost ones (2014, Sec. 6.1.1.2 to 6.1.1.4)."""
-    seen = [Seen(c.ring.astype(np.int64), m.area, c.span) for m, c in zip(middle, cones, strict=True)]
-    size = float(np.median([m.size for m in middle]))
-    found = limbs(seen, cuts_of(crossing), params.leap * size)
+    intervals = [
+        IntervalCones(c.annulus.astype(np.int64), r.area, c.mu_range) for r, c in zip(interval_references, cones, strict=True)
+    ]
+    size = float(np.median([r.size for r in interval_references]))
+    consistent = consistent_cones(intervals, _cuts(cut_correspondence), params.leap * size)
     return ConeConsistency(
         annuli=cones[0].annuli,
-        reference=tuple(m.frame for m in middle),
-        first=crossing.first,
-        ring=np.concatenate(found.ring, axis=1),
-        leaf=found.leaf,
+        first=cut_correspondence.first,
+        annulus=np.concatenate(consistent.annulus, axis=1),
+        leaf=consistent.leaf,
     )
 
 
-def cuts_of(crossing: CutCorrespondence) -> list[Cut]:
-    """What is known of each cut."""
+def _cuts(cut_correspondence: CutCorrespondence) -> list[Cut]:
+    """The cuts as numerics have them."""
     out = []
-    for i in range(len(crossing.first) - 1):
-        at = crossing.cut == i
-        onward, backward = crossing.onward[crossing.rows(i)], crossing.backward[crossing.rows(i + 1)]
-        whole = [a.astype(np.int64) for a in (onward, backward, crossing.before[at], crossing.behind[at])]
-        out.append(Cut(whole[0], whole[1], whole[2], whole[3], crossing.moved[at]))
+    for i, (to_next, to_previous) in enumerate(zip(*cut_correspondence.maps(), strict=True)):
+        here = cut_correspondence.cut == i
+        before, after = (a[here].astype(np.int64) for a in (cut_correspondence.leaf_before, cut_correspondence.leaf_after))
+        out.append(Cut(to_next, to_previous, before, after, cut_correspondence.leaf_distance[here]))
     return out

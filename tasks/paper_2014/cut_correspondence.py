@@ -1,4 +1,4 @@
-"""How the meshes of successive intervals lie on each other at the cuts."""
+"""Correspondences between the meshes of successive intervals at the cuts between them."""
 
 from collections.abc import Mapping
 from itertools import pairwise
@@ -8,50 +8,50 @@ from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
-from kinetree.schemas.paper_2014.arap import Arap
+from kinetree.schemas.paper_2014.arap import Arap, by_interval
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.topology.extrema import Extrema
-from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.paper_2014.cut_correspondence import mutual_pairs, nearest_agreeing
-
-Ints = NDArray[np.int64]
 
 
 @task()
 def cut_correspondence(
-    middle: tuple[IntervalReference, ...], alignment: tuple[Arap, ...], tips: Mapping[int, Extrema], leaves: Leaves
+    interval_references: tuple[IntervalReference, ...], alignments: tuple[Arap, ...], extrema: Mapping[int, Extrema]
 ) -> CutCorrespondence:
     """Relates vertices and leaves of each interval to those of the next by nearness at the cut (2014, Eqs. 3, 7 and 8)."""
-    end = np.cumsum([len(m.frames) for m in middle])
-    first = np.cumsum([0, *(len(m.vertices) for m in middle)])
-    onto = {name: np.full(first[-1], -1) for name in ("onward", "backward")}
-    away = {name: np.full(first[-1], np.nan) for name in ("onward", "backward")}
+    groups = by_interval(alignments, interval_references)
+    first = np.cumsum([0, *(len(r.vertices) for r in interval_references)])
+    to_next, to_previous = np.full(first[-1], -1), np.full(first[-1], -1)
+    next_distance, previous_distance = np.full(first[-1], np.nan), np.full(first[-1], np.nan)
     pairs = []
-    for i, (a, b) in enumerate(pairwise(middle)):
-        last, begin = _sides(a, alignment[end[i] - 1]), _sides(b, alignment[end[i]])
-        for name, at, ask, answer in (("onward", i, last, begin), ("backward", i + 1, begin, last)):
-            rows = slice(first[at], first[at + 1])
-            onto[name][rows], away[name][rows] = nearest_agreeing(*ask, *answer)
-        (m, P, M), (n, Q, N) = _ends(a, a.frames[-1], tips, leaves), _ends(b, b.frames[0], tips, leaves)
+    for i, (before, after) in enumerate(pairwise(interval_references)):
+        own, other = slice(first[i], first[i + 1]), slice(first[i + 1], first[i + 2])
+        end, begin = _surface(before, groups[i][-1]), _surface(after, groups[i + 1][0])
+        to_next[own], next_distance[own] = nearest_agreeing(*end, *begin)
+        to_previous[other], previous_distance[other] = nearest_agreeing(*begin, *end)
+        (m, P, M), (n, Q, N) = _leaves(before, -1, extrema), _leaves(after, 0, extrema)
         pairs += [(i, m[k], n[h], np.linalg.norm(P[k] - Q[h])) for k, h in mutual_pairs(P, M, Q, N)]
-    found = np.array(pairs).reshape(-1, 4)
-    cut, before, behind = found[:, :3].astype(np.int64).T
+    table = np.array(pairs).reshape(-1, 4)
+    cut, leaf_before, leaf_after = table[:, :3].astype(np.int64).T
     return CutCorrespondence(
-        first=first[:-1], leaves=np.array([len(m.leaf) for m in middle]), onward=onto["onward"], onward_distance=away["onward"],
-        backward=onto["backward"], backward_distance=away["backward"], cut=cut, before=before, behind=behind, moved=found[:, 3],
-        handles=tuple(m.handles for m in middle),
+        first=first[:-1], leaf_count=np.array([len(r.leaf) for r in interval_references]),
+        to_next=to_next, to_next_distance=next_distance, to_previous=to_previous, to_previous_distance=previous_distance,
+        cut=cut, leaf_before=leaf_before, leaf_after=leaf_after, leaf_distance=table[:, 3],
+        genus=tuple(r.genus for r in interval_references),
     )  # fmt: skip
 
 
-def _sides(middle: IntervalReference, alignment: Arap) -> tuple[Floats, Floats]:
+def _surface(reference: IntervalReference, alignment: Arap) -> tuple[Floats, Floats]:
     """An interval's reference in one of its frames, and its normals there."""
-    return alignment.vertices, smoothed_normals(np.array(alignment.vertices), middle.faces, rounds=0)
+    return alignment.vertices, smoothed_normals(np.array(alignment.vertices), reference.faces, rounds=0)
 
 
-def _ends(middle: IntervalReference, frame: int, tips: Mapping[int, Extrema], leaves: Leaves) -> tuple[Ints, Floats, Floats]:
-    """Which of an interval's leaves a frame sees, where they are there, and their normals."""
-    row = leaves.rows[middle.leaf, leaves.frames.index(frame)]
+def _leaves(
+    reference: IntervalReference, position: int, extrema: Mapping[int, Extrema]
+) -> tuple[NDArray[np.integer], Floats, Floats]:
+    """The leaves that are seen in the frame at a position of an interval, where they are there, and their normals."""
+    row, here = reference.extremum[:, position], extrema[reference.frames[position]]
     seen = np.flatnonzero(row >= 0)
-    return seen, tips[frame].stems[row[seen], -1], tips[frame].normals[row[seen]]
+    return seen, here.stems[row[seen], -1], here.normals[row[seen]]

@@ -1,85 +1,71 @@
 """The whole surface as areas of kinematic cones and cylinders."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Bools, Floats
-from kinetree.schemas.paper_2014.arap import Arap
+from kinetree.schemas.paper_2014.arap import Arap, by_interval
 from kinetree.schemas.paper_2014.cone_consistency import ConeConsistency
 from kinetree.schemas.paper_2014.cut_correspondence import CutCorrespondence
 from kinetree.schemas.paper_2014.cylinders import Cylinders
 from kinetree.schemas.paper_2014.integration import Integration
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2014 import cylinders as numerics
-from kinetree.tasks.numerics.paper_2014.across_cuts import way
-from kinetree.tasks.numerics.paper_2014.annuli import clustered
-from kinetree.tasks.numerics.paper_2014.bones import areas
-from kinetree.tasks.numerics.paper_2014.integration import integrated
-from kinetree.tasks.paper_2014.cone_consistency import cuts_of
-
-Ints = NDArray[np.int64]
+from kinetree.tasks.numerics.paper_2014.transfer import composed_map
 
 
 @task()
 def cylinders(
-    middle: tuple[IntervalReference, ...],
-    alignment: tuple[Arap, ...],
-    consistency: ConeConsistency,
-    crossing: CutCorrespondence,
+    interval_references: tuple[IntervalReference, ...],
+    alignments: tuple[Arap, ...],
+    cone_consistency: ConeConsistency,
+    cut_correspondence: CutCorrespondence,
     integration: Integration,
 ) -> Cylinders:
-    """Extends cones into what they leave undefined, again and again, until all of the surface is defined (2014, Sec. 6.2)."""
-    home = _fullest(middle, consistency)
-    here = middle[home]
-    count, F = len(here.vertices), here.faces.astype(np.int64)
-    cones = numerics.trimmed(consistency.ring[:, consistency.rows(home)].astype(np.int64), integration.rigid)
-    ways = ways_to(home, middle, crossing)
-    moving = motions(middle, alignment)
-    floors = [integration.floor * m.size for m in middle]
-    still = stillness(middle, alignment)
+    """Extends cones into the undefined area, recursively, until all of the surface is defined (2014, Sec. 6.2)."""
+    model = _model_interval(interval_references, cone_consistency)
+    reference = interval_references[model]
+    count, F = len(reference.vertices), reference.faces.astype(np.int64)
+    of_cones = cone_consistency.annulus[:, cone_consistency.rows(model)].astype(np.int64)
+    cones = numerics.kinematic_cones(of_cones, integration.rigid)
+    intervals = _motions(model, interval_references, alignments, cut_correspondence, integration.floor)
 
-    def cluster(annuli: list[Ints]) -> Bools:
-        label = np.full(count, -1)
-        for k, mine in enumerate(annuli):
-            label[mine] = k
-        seen, rigid = [], []
-        for x, back, floor, rests in zip(moving, ways, floors, still, strict=True):
-            at = np.where(back >= 0, label[back], -1)
-            seen.append(np.unique(at[at >= 0]))
-            rigid.append(clustered([x[:, at == k] for k in seen[-1]], integration.theta, floor).rigid | rests)
-        return integrated(seen, rigid, len(annuli))
+    def clustering(annuli: list[Ints]) -> Flags:
+        return numerics.rigid_annuli(annuli, intervals, integration.theta, count)
 
-    leaf = consistency.leaf[home]
-    distance = np.where((leaf >= 0)[:, None], here.distance[leaf], np.nan) if len(leaf) else np.zeros((0, count))
-    found = numerics.cylinders(cones, distance, here.area, F, cluster, consistency.annuli)
+    distance = _leaf_distance(reference, cone_consistency.leaf[model].astype(np.int64))
+    extensions = numerics.cylinders(cones, distance, reference.area, F, clustering, cone_consistency.annuli)
     annulus = np.full(count, -1)
-    for piece in (*cones, *found):
-        annulus = np.where(piece.ring >= 0, piece.ring, annulus)
-    whole = areas([*cones, *found], count, F)
-    return Cylinders(interval=home, cones=len(cones), annulus=annulus, **whole._asdict())
+    for cylinder in (*cones, *extensions):
+        annulus = np.where(cylinder.annulus >= 0, cylinder.annulus, annulus)
+    areas = numerics.areas([*cones, *extensions], count, F)
+    return Cylinders(interval=model, cones=len(cones), annulus=annulus, **areas._asdict())
 
 
-def ways_to(home: int, middle: tuple[IntervalReference, ...], crossing: CutCorrespondence) -> list[Ints]:
-    """Of every interval, the vertex of the home interval's reference at each of its own."""
-    cuts = cuts_of(crossing)
-    onward, backward = [c.onward for c in cuts], [c.backward for c in cuts]
-    return [way(onward, backward, i, home, len(m.vertices)) for i, m in enumerate(middle)]
+def _model_interval(references: tuple[IntervalReference, ...], cone_consistency: ConeConsistency) -> int:
+    """The interval that sees the most cones; of these the one with the most frames, of these the first (ours)."""
+    seen = (cone_consistency.leaf >= 0).sum(axis=1)
+    return max(range(len(references)), key=lambda i: (seen[i], len(references[i].frames), -i))
 
 
-def motions(middle: tuple[IntervalReference, ...], alignment: tuple[Arap, ...]) -> list[Floats]:
-    """Of every interval, (frame, vertex, xyz) its reference in all of its frames."""
-    end = np.cumsum([len(m.frames) for m in middle])
-    return [np.stack([a.vertices for a in alignment[e - len(m.frames) : e]]) for m, e in zip(middle, end, strict=True)]
+def _motions(
+    model: int,
+    references: tuple[IntervalReference, ...],
+    alignments: tuple[Arap, ...],
+    cut_correspondence: CutCorrespondence,
+    floor: float,
+) -> list[numerics.IntervalMotion]:
+    """Every interval's reference in its frames, and the vertices of the model mesh that correspond to its own."""
+    maps, out = cut_correspondence.maps(), []
+    for i, (reference, group) in enumerate(zip(references, by_interval(alignments, references), strict=True)):
+        x = np.stack([a.vertices for a in group])
+        model_vertex = composed_map(*maps, i, model, len(reference.vertices))
+        out.append(numerics.IntervalMotion(x, model_vertex, floor * reference.size, all(a.is_rigid for a in group)))
+    return out
 
 
-def stillness(middle: tuple[IntervalReference, ...], alignment: tuple[Arap, ...]) -> list[bool]:
-    """Of every interval, whether nothing on the body moves against anything else in it."""
-    end = np.cumsum([len(m.frames) for m in middle])
-    return [all(a.still for a in alignment[e - len(m.frames) : e]) for m, e in zip(middle, end, strict=True)]
-
-
-def _fullest(middle: tuple[IntervalReference, ...], consistency: ConeConsistency) -> int:
-    """The interval in which most cones are seen, of these the longest, of these the first."""
-    seen = (consistency.leaf >= 0).sum(axis=1)
-    return max(range(len(middle)), key=lambda i: (seen[i], len(middle[i].frames), -i))
+def _leaf_distance(reference: IntervalReference, leaf: Ints) -> Floats:
+    """(cone, vertex) distance from each cone's leaf; NaN for a cone that was recovered."""
+    if not len(leaf):
+        return np.zeros((0, len(reference.vertices)))
+    return np.where((leaf >= 0)[:, None], reference.coordinates[leaf], np.nan)

@@ -10,7 +10,7 @@ from kinetree.tasks.numerics.paper_2014 import geodesic_coordinates as numerics
 
 
 @task(over="frame")
-def geodesic_coordinates(mesh: Mesh, tips: Extrema) -> GeodesicCoordinates:
-    """Measures the distance of every vertex to each tip over the surface (2014, Sec. 5.2, Eq. 4)."""
-    distance = numerics.geodesic_coordinates(np.array(mesh.vertices), mesh.faces, tips.vertices)
-    return GeodesicCoordinates(tips=tips.vertices, distance=distance)
+def geodesic_coordinates(mesh: Mesh, extrema: Extrema) -> GeodesicCoordinates:
+    """Measures the geodesic distance of every vertex to each extremum (2014, Sec. 5.2, Eq. 4)."""
+    distance = numerics.geodesic_coordinates(np.array(mesh.vertices), mesh.faces, extrema.vertices)
+    return GeodesicCoordinates(extrema=extrema.vertices, distance=distance)

@@ -6,47 +6,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Index
+from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.topology.geodesics import Geodesics
-from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.paper_2014.geodesic_coordinates import middle_frame
+from kinetree.tasks.numerics.paper_2014.interval_reference import middle_frame
 
 
 @task(over="interval")
 def interval_reference(
+    index: Index,
     mesh: Mapping[int, Mesh],
     geodesics: Mapping[int, Geodesics],
-    coordinates: Mapping[int, GeodesicCoordinates],
-    intervals: Intervals,
+    geodesic_coordinates: Mapping[int, GeodesicCoordinates],
     leaves: Leaves,
+    connectivity: Connectivity,
 ) -> IntervalReference:
-    """Takes the frame at the middle of the interval as the reference all others are aligned to (2014, Sec. 5.3)."""
-    frames = tuple(mesh)
-    at = np.array([leaves.frames.index(t) for t in frames])
-    leaf = np.flatnonzero(leaves.kept[intervals.begin.tolist().index(at[0])])
-    rows = leaves.rows[np.ix_(leaf, at)]
-    frame = frames[middle_frame(rows >= 0)]
-    row = rows[:, frames.index(frame)]
-    mine = coordinates[frame]
+    """Takes the frame at the middle of the interval as the reference that is aligned to the others (2014, Sec. 5.3)."""
+    frames, (interval,) = tuple(mesh), index
+    leaf = np.flatnonzero(leaves.kept[interval])
+    extremum = leaves.rows[np.ix_(leaf, np.searchsorted(leaves.frames, frames))]
+    position = middle_frame(extremum >= 0)
+    frame, row = frames[position], extremum[:, position]
+    area, coordinates = geodesics[frame].area, geodesic_coordinates[frame]
     return IntervalReference(
         frames=frames,
         frame=frame,
         vertices=mesh[frame].vertices,
         faces=mesh[frame].faces,
-        area=geodesics[frame].area,
-        size=float(np.sqrt(geodesics[frame].area.sum())),
+        area=area,
+        size=float(np.sqrt(area.sum())),
         leaf=leaf,
-        tip=_of(mine.tips, row, -1),
-        distance=_of(mine.distance, row, np.nan),
-        trail=np.where((rows >= 0)[:, :, None], leaves.positions[np.ix_(leaf, at)], np.nan),
+        leaf_vertex=_of_leaves(coordinates.extrema, row, -1),
+        coordinates=_of_leaves(coordinates.distance, row, np.nan),
+        extremum=extremum,
+        tracked=connectivity.fixed,
     )
 
 
-def _of(values: NDArray[np.generic], row: NDArray[np.integer], rest: float) -> NDArray[np.generic]:
-    """Rows of an array, `rest` where there is none."""
-    out = np.full((len(row), *values.shape[1:]), rest, values.dtype)
+def _of_leaves(values: NDArray[np.generic], row: NDArray[np.integer], missing: float) -> NDArray[np.generic]:
+    """The values of each leaf's extremum; `missing` for a leaf that is not seen."""
+    out = np.full((len(row), *values.shape[1:]), missing, values.dtype)
     out[row >= 0] = values[row[row >= 0]]
     return out

@@ -1,4 +1,4 @@
-"""What the joints of the 2014 paper were found by, drawn for the report."""
+"""The evidence for the joints of the 2014 paper, drawn for the report."""
 
 from typing import Any
 
@@ -22,8 +22,8 @@ from kinetree.tasks.views.paper_2014 import cone_consistency_remarks, integratio
 
 @task()
 def paper_figures(
-    middle: tuple[IntervalReference, ...],
-    consistency: ConeConsistency,
+    interval_references: tuple[IntervalReference, ...],
+    cone_consistency: ConeConsistency,
     annuli: tuple[Annuli, ...],
     integration: Integration,
     cylinders: Cylinders,
@@ -33,36 +33,39 @@ def paper_figures(
     up_direction: UpDirection,
 ) -> StructureFigures:
     """Draws cones and annuli, merge errors, areas and bones with the redundant ones (2014, Figs. 7, 11, 13 and 15)."""
-    told: dict[str, Any] = {"cone_consistency": consistency, "integration": integration, "cylinders": cylinders, "bones": bones}
-    told |= {"skeleton": skeleton, "intervals": intervals}
-    count = len(consistency.ring)
+    artifacts: dict[str, Any] = {"cone_consistency": cone_consistency, "integration": integration, "cylinders": cylinders}
+    artifacts |= {"bones": bones, "skeleton": skeleton, "intervals": intervals}
+    of_cone = {(a.interval, a.cone): a for a in annuli}
 
     def fetch(name: str, interval: int = 0, cone: int = 0) -> Any:
-        by_interval: dict[str, Any] = {"interval_reference": middle[interval]}
         if name == "annuli":
-            return annuli[interval * count + cone]
-        return by_interval[name] if name in by_interval else told[name]
+            return of_cone[interval, cone]
+        return interval_references[interval] if name == "interval_reference" else artifacts[name]
 
-    home, up = [middle[cylinders.interval].frame], up_direction.axis
-    rings = [
+    frames, up = [interval_references[cylinders.interval].frame], up_direction.axis
+    annulus_figures = [
         Drawn(
-            cones(fetch, home, up),
+            cones(fetch, frames, up),
             "The annuli of every cone, black beyond it; last, the areas they become: white is not rigid.",
             vector=False,
         )
     ]
-    if count:
-        caption = "What merging each annulus with the cluster before it costs (Eq. 12), and the choice of the threshold."
-        rings.append(Drawn(merging(fetch, home, up), caption))
-    links = [
-        Drawn(structure(fetch, home, up), "Bones between areas that are not rigid, and the tree that is left.", vector=False),
-        Drawn(lengths(fetch, home, up), "By what the lengths of bones vary before they are fixed; afterwards by nothing."),
+    if len(cone_consistency.annulus):
+        caption = "Merge-error of each annulus with the cluster before it (Eq. 12), and the choice of the threshold."
+        annulus_figures.append(Drawn(merging(fetch, frames, up), caption))
+    bone_figures = [
+        Drawn(
+            structure(fetch, frames, up),
+            "Bones between non-rigid areas, and the tree without redundant bones.",
+            vector=False,
+        ),
+        Drawn(lengths(fetch, frames, up), "Variation of the lengths of bones before they are fixed; afterwards there is none."),
     ]
-    words = (*cone_consistency_remarks(consistency), *integration_remarks(integration))
+    words = (*cone_consistency_remarks(cone_consistency), *integration_remarks(integration))
     return evidence_of(
         [
-            Written("cones", "Cones and annuli", rings, words),
-            Written("bones", "Bones and redundant ones", links),
+            Written("cones", "Cones and annuli", annulus_figures, words),
+            Written("bones", "Bones and redundant ones", bone_figures),
         ],
         np.full(len(skeleton.names), np.nan),
     )

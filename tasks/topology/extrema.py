@@ -7,9 +7,9 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.topology.extrema import Extrema, ExtremaParams
 from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.topology.correlation import dimensionless
 from kinetree.tasks.numerics.topology.extrema import extrema as maxima_of_mu
 from kinetree.tasks.numerics.topology.extrema import stems
+from kinetree.tasks.numerics.topology.mu_histogram import dimensionless
 from kinetree.tasks.numerics.topology.persistence import loop_counts, loop_spans, superlevel_peaks
 
 LEAST_PEAK = 0.02

@@ -3,7 +3,7 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.mu_histogram import MuHistogram, MuHistogramParams
-from kinetree.tasks.numerics.topology.correlation import dimensionless, summary
+from kinetree.tasks.numerics.topology.mu_histogram import dimensionless, summary
 
 
 @task(over="frame")

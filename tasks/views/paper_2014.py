@@ -11,11 +11,11 @@ def cut_correspondence_remarks(correspondence: CutCorrespondence) -> tuple[str, 
     """Says where the surface has handles, and where there are too few leaves for geodesic coordinates."""
     counts = ("no leaf", "one leaf", "two leaves")
     reason = "where limbs touch or the body forms a ring; a tree of joints cannot represent a closed loop"
-    handles = enumerate(correspondence.handles)
+    handles = enumerate(correspondence.genus)
     closed = tuple(f"the surface of interval {i} has {n} handle{'s' * (n > 1)}, {reason}" for i, n in handles if n > 0)
     return closed + tuple(
         f"interval {i} has {counts[n]}; geodesic coordinates need three to distinguish points, so its mapping is unreliable"
-        for i, n in enumerate(correspondence.leaves.tolist())
+        for i, n in enumerate(correspondence.leaf_count.tolist())
         if n < len(counts)
     )
 
@@ -23,7 +23,7 @@ def cut_correspondence_remarks(correspondence: CutCorrespondence) -> tuple[str, 
 @remarks_of(ConeConsistency)
 def cone_consistency_remarks(consistency: ConeConsistency) -> tuple[str, ...]:
     """Says which cones were recovered, or that there are none."""
-    if not len(consistency.ring):
+    if not len(consistency.annulus):
         return ("no cones, because no interval has a leaf; the body is treated as one rigid part",)
     return tuple(
         f"cone {cone} is missing in interval {i}; it was recovered from the neighbouring intervals"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinetree.errors import ConfigError, SourceError
+from kinetree.errors import ConfigError, FigureError, SourceError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.store import Store
 from kinetree.schemas.input.source import SourceParams
@@ -30,15 +30,15 @@ def test_same_words_are_the_same_recipe_and_other_words_another() -> None:
 
 
 def test_figure_that_does_not_exist_is_refused_with_the_nearest() -> None:
-    with pytest.raises(ConfigError, match="human"):
+    with pytest.raises(FigureError, match="human"):
         recipe(SynthParams(figure="humn"))
     for seed in ("x", "²", "-1"):
-        with pytest.raises(ConfigError, match="random:SEED"):
+        with pytest.raises(FigureError, match="random:SEED"):
             recipe(SynthParams(figure=f"random:{seed}"))
 
 
 def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:
-    with pytest.raises(ConfigError, match="hand_r"):
+    with pytest.raises(FigureError, match="hand_r"):
         recipe(SynthParams(contacts=(ContactParams(limb="hnd_r", target="hip_r", begin=1, end=2),)))
 
 
@@ -84,7 +84,7 @@ def test_folder_that_holds_something_is_left_alone(tmp_path: Path) -> None:
 def test_options_that_cannot_be_are_refused_in_one_line_each(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"^synth\.noise: input should be greater than or equal to 0, got -1\.0$"):
         synth(noise=-1.0, output=tmp_path / "new")
-    with pytest.raises(ConfigError, match=r"nowhere\.yaml: cannot be read: No such file or directory$"):
+    with pytest.raises(FigureError, match=r"nowhere\.yaml: cannot be read: No such file or directory$"):
         synth(figure="nowhere.yaml", output=tmp_path / "new")
     assert not (tmp_path / "new").exists()
 
@@ -109,7 +109,7 @@ def test_figure_of_ones_own_is_read_from_yaml(tmp_path: Path) -> None:
     made = body(recipe(SynthParams(figure="", file=str(own), frames=2, vertices=300)))
     assert made.figure.names == ["palm", "knuckle", "tip"]
     own.write_text("a: [")
-    with pytest.raises(ConfigError, match="not valid YAML"):
+    with pytest.raises(FigureError, match="not valid YAML"):
         recipe(SynthParams(file=str(own)))
 
 

@@ -2,58 +2,62 @@
 
 import numpy as np
 import pytest
-from sheets import CHANGING, TRACKED, followed, frame
+from sheets import TRACKED, frame, reference_of
 
-from kinetree.schemas.paper_2014.arap import ArapParams
+from kinetree.schemas.paper_2014.arap import Arap, ArapParams, by_interval
 from kinetree.schemas.paper_2014.geodesic_mapping import GeodesicMapping, GeodesicMappingParams
 from kinetree.tasks.paper_2014.arap import arap
 from kinetree.tasks.paper_2014.geodesic_mapping import geodesic_mapping
-from kinetree.tasks.paper_2014.interval_reference import interval_reference
 
 FRAMES = {t: frame(t) for t in range(5)}
-REFERENCE = interval_reference(
-    {t: f.mesh for t, f in FRAMES.items()},
-    {t: f.geodesics for t, f in FRAMES.items()},
-    {t: f.coordinates for t, f in FRAMES.items()},
-    *followed(FRAMES, 4),
-)
-ITSELF = geodesic_mapping(REFERENCE, FRAMES[2].coordinates, FRAMES[2].tips, CHANGING, None, GeodesicMappingParams())
+REFERENCE = reference_of(FRAMES, 0, 4)
+IDENTITY = geodesic_mapping((0, 2), REFERENCE, FRAMES[2].coordinates, None, GeodesicMappingParams())
 
 
-def mapped(number: int) -> GeodesicMapping:
-    here = FRAMES[number]
-    return geodesic_mapping(REFERENCE, here.coordinates, here.tips, CHANGING, ITSELF, GeodesicMappingParams())
+def test_reference_in_its_own_frame_is_itself_with_full_confidence() -> None:
+    artifact = arap(REFERENCE, IDENTITY, FRAMES[2].mesh, ArapParams())
+    np.testing.assert_allclose(artifact.vertices, REFERENCE.vertices, atol=1e-9)
+    assert artifact.residual.max() < 1e-9
+    assert artifact.uncovered == 0.0
+    assert artifact.trust.min() > 0.99
 
 
-def test_reference_in_its_own_frame_is_itself_and_believed() -> None:
-    told = arap(REFERENCE, ITSELF, FRAMES[2].mesh, CHANGING, ArapParams())
-    np.testing.assert_allclose(told.vertices, REFERENCE.vertices, atol=1e-9)
-    assert told.residual.max() < 1e-9
-    assert told.uncovered == 0.0
-    assert told.trust.min() > 0.99
+@pytest.mark.parametrize("t", [1, 3])
+def test_folding_sheet_is_followed_and_hardly_stretched(t: int) -> None:
+    mapping = geodesic_mapping((0, t), REFERENCE, FRAMES[t].coordinates, IDENTITY, GeodesicMappingParams())
+    artifact = arap(REFERENCE, mapping, FRAMES[t].mesh, ArapParams(length=0.05))
+    true = FRAMES[t].mesh.vertices[FRAMES[t].number]
+    np.testing.assert_allclose(artifact.vertices[FRAMES[2].number], true, atol=0.1)
+    assert artifact.stretch == pytest.approx(1.0, abs=0.05)
 
 
-@pytest.mark.parametrize("number", [1, 3])
-def test_folding_sheet_is_followed_and_hardly_stretched(number: int) -> None:
-    told = arap(REFERENCE, mapped(number), FRAMES[number].mesh, CHANGING, ArapParams(length=0.05))
-    true = FRAMES[number].mesh.vertices[FRAMES[number].place]
-    np.testing.assert_allclose(told.vertices[FRAMES[2].place], true, atol=0.1)
-    assert told.stretch == pytest.approx(1.0, abs=0.05)
-
-
-def test_frame_in_which_nothing_is_matched_shows_the_reference_and_says_so() -> None:
+def test_frame_in_which_no_vertex_has_an_image_has_the_reference_and_its_residual() -> None:
+    count = len(REFERENCE.vertices)
     nothing = GeodesicMapping(
-        image=np.full(len(REFERENCE.vertices), -1), place=REFERENCE.distance, away=np.full(len(REFERENCE.vertices), np.nan)
+        image=np.full(count, -1), coordinates=REFERENCE.coordinates, coordinate_distance=np.full(count, np.nan)
     )
     far = frame(4, bend=0.6)
-    told = arap(REFERENCE, nothing, far.mesh, CHANGING, ArapParams())
-    np.testing.assert_array_equal(told.vertices, REFERENCE.vertices)
-    assert told.uncovered > 0.3
-    assert told.residual.max() > 1.0
+    artifact = arap(REFERENCE, nothing, far.mesh, ArapParams())
+    np.testing.assert_array_equal(artifact.vertices, REFERENCE.vertices)
+    assert artifact.uncovered > 0.3
+    assert artifact.residual.max() > 1.0
 
 
 def test_tracked_vertices_are_where_the_frame_has_them() -> None:
-    told = arap(REFERENCE, ITSELF, FRAMES[4].mesh, TRACKED, ArapParams())
-    np.testing.assert_array_equal(told.vertices, FRAMES[4].mesh.vertices)
-    assert (told.residual == 0.0).all()
-    assert (told.trust == 1.0).all()
+    frames = {t: frame(t, anew=False) for t in range(5)}
+    artifact = arap(reference_of(frames, 0, 4, connectivity=TRACKED), IDENTITY, frames[4].mesh, ArapParams())
+    np.testing.assert_array_equal(artifact.vertices, frames[4].mesh.vertices)
+    assert (artifact.residual == 0.0).all()
+    assert (artifact.trust == 1.0).all()
+    assert not artifact.is_rigid
+
+
+def test_alignments_are_those_of_the_frames_of_each_interval() -> None:
+    references = [reference_of(FRAMES, i, 1, 4) for i in (0, 1)]
+    one = np.ones(1)
+    alignments = [
+        Arap(vertices=np.zeros((1, 3)), residual=one, stretch=one, trust=one, uncovered=0.0, rigid_residual=float(t))
+        for t in FRAMES
+    ]
+    groups = by_interval(alignments, references)
+    assert [[int(a.rigid_residual) for a in group] for group in groups] == [[0, 1], [2, 3, 4]]

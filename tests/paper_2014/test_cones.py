@@ -1,7 +1,7 @@
 """Contract of cones: annuli around every leaf of an interval."""
 
 import numpy as np
-from mesoscopic import made, tips
+from mesoscopic import leaf_vertices, mesoscopic
 
 from kinetree.schemas.paper_2014.cones import ConesParams
 from kinetree.schemas.topology.geodesics import Geodesics
@@ -9,19 +9,20 @@ from kinetree.tasks.paper_2014.cones import cones
 
 
 def test_every_cone_begins_at_its_leaf_and_ends_where_the_body_branches() -> None:
-    here = made()
-    for leaf, ring in enumerate(here.cones[0].ring):
-        assert ring[tips(here.body)[leaf]] == 0
-        reach = here.middle[0].distance[leaf][ring >= 0].max()
+    here = mesoscopic()
+    for leaf, annulus in enumerate(here.cones[0].annulus):
+        assert annulus[leaf_vertices(here.body)[leaf]] == 0
+        reach = here.interval_references[0].coordinates[leaf][annulus >= 0].max()
         assert 20.0 < reach < 34.0, "an arm is 28 long"
 
 
 def test_cone_has_the_range_of_mu_and_a_leaf_that_is_not_seen_has_none() -> None:
-    here = made()
-    blind = here.middle[0].model_copy(update={"tip": np.array([-1, *here.middle[0].tip[1:]])})
-    mu = here.middle[0].distance.sum(axis=0)
+    here = mesoscopic()
+    reference = here.interval_references[0]
+    blind = reference.model_copy(update={"leaf_vertex": np.array([-1, *reference.leaf_vertex[1:]])})
+    mu = reference.coordinates.sum(axis=0)
     given = Geodesics(mu=mu, area=here.body.area, bases=np.zeros(0, int), share=1.0)
-    told = cones(blind, {blind.frame: given}, ConesParams())
-    assert (told.ring[0] == -1).all()
-    assert told.span[0] == 0.0
-    assert told.span[1] == np.ptp(mu[told.ring[1] >= 0])
+    artifact = cones(blind, {blind.frame: given}, ConesParams())
+    assert (artifact.annulus[0] == -1).all()
+    assert artifact.mu_range[0] == 0.0
+    assert artifact.mu_range[1] == np.ptp(mu[artifact.annulus[1] >= 0])

@@ -1,32 +1,34 @@
 """Contract of cylinders: all of the surface is defined."""
 
 import numpy as np
-from mesoscopic import made
+from mesoscopic import mesoscopic
 
 from kinetree.tasks.paper_2014.cylinders import cylinders
 
 
 def test_areas_are_on_the_interval_that_shows_most_and_cover_it() -> None:
-    told = made().cylinders
-    assert told.interval == 0
-    assert told.cones == 3
-    assert (told.label >= 0).all()
-    assert (np.bincount(told.label, minlength=len(told.rigid)) > 0).all()
+    areas = mesoscopic().cylinders
+    assert areas.interval == 0
+    assert areas.cones == 3
+    assert (areas.label >= 0).all()
+    assert (np.bincount(areas.label, minlength=len(areas.rigid)) > 0).all()
 
 
 def test_every_arm_ends_in_a_joint_and_the_middle_is_rigid() -> None:
-    here = made()
-    told = here.cylinders
-    assert (~told.rigid).sum() == 3
+    here = mesoscopic()
+    areas = here.cylinders
+    assert (~areas.rigid).sum() == 3
     middle = np.linalg.norm(here.body.V, axis=1) < 8.0
-    assert told.rigid[told.label[middle]].all()
-    assert (told.piece[told.label[middle]] >= told.cones).all()
+    assert areas.rigid[areas.label[middle]].all()
+    assert (areas.cylinder[areas.label[middle]] >= areas.cones).all()
 
 
 def test_body_without_cones_is_one_rigid_area() -> None:
-    here = made()
-    bare = here.consistency.model_copy(update={"ring": here.consistency.ring[:0], "leaf": here.consistency.leaf[:, :0]})
+    here = mesoscopic()
+    bare = here.cone_consistency.model_copy(
+        update={"annulus": here.cone_consistency.annulus[:0], "leaf": here.cone_consistency.leaf[:, :0]}
+    )
     none = here.integration.model_copy(update={"rigid": here.integration.rigid[:0]})
-    told = cylinders(here.middle, here.alignment, bare, here.crossing, none)
-    assert told.rigid.tolist() == [True]
-    assert (told.annulus == -1).all()
+    areas = cylinders(here.interval_references, here.alignments, bare, here.cut_correspondence, none)
+    assert areas.rigid.tolist() == [True]
+    assert (areas.annulus == -1).all()

@@ -5,12 +5,12 @@ import pytest
 from sheets import CORNERS, SHEET, frame
 
 
-def test_distance_of_every_vertex_to_every_tip_in_the_order_of_the_tips() -> None:
+def test_distance_of_every_vertex_to_every_extremum_in_the_order_of_the_extrema() -> None:
     here = frame(0)
-    assert here.coordinates.tips.tolist() == here.tips.vertices.tolist()
+    assert here.coordinates.extrema.tolist() == here.extrema.vertices.tolist()
     straight = np.linalg.norm(SHEET[CORNERS][:, None] - SHEET[None], axis=2)
-    assert here.coordinates.distance[:, here.place] == pytest.approx(straight, rel=0.01)
+    assert here.coordinates.distance[:, here.number] == pytest.approx(straight, rel=0.01)
 
 
-def test_frame_without_tips_has_no_coordinates() -> None:
+def test_frame_without_extrema_has_no_coordinates() -> None:
     assert frame(0, hidden=(0, 1, 2)).coordinates.distance.shape == (0, len(SHEET))

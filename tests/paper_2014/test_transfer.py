@@ -1,21 +1,22 @@
-"""Contract of landing: which vertex of the skeleton's mesh a frame's input vertices are."""
+"""Contract of transfer: which vertex of the model mesh a frame's input vertices are, and the reverse."""
 
 import numpy as np
-from mesoscopic import made
+from mesoscopic import mesoscopic
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.tasks.paper_2014.transfer import transfer
 
 
-def test_tracked_vertices_land_on_themselves_and_dropped_ones_nowhere() -> None:
-    here = made()
+def test_vertices_correspond_to_themselves_and_dropped_ones_to_none() -> None:
+    here = mesoscopic()
     count = len(here.body.V)
-    became = np.append(np.arange(count)[::-1], -1)
+    cleaned = np.append(np.arange(count)[::-1], -1)
     for interval, t in ((0, 3), (1, 14)):
-        mesh = Mesh(vertices=here.body.x[t], faces=here.body.F, vertex_of_input=became, cleaning=Cleaning())
-        given = (here.middle[interval], here.alignment[t], here.consistency, here.crossing, here.cylinders, here.bones)
-        told = transfer(mesh, *given)
-        assert (told.corner == became).all()
-        assert (told.distance[:-1] == 0.0).all()
-        assert np.isnan(told.distance[-1])
-        np.testing.assert_array_equal(told.place, here.body.x[t])
+        mesh = Mesh(vertices=here.body.x[t], faces=here.body.F, vertex_of_input=cleaned, cleaning=Cleaning())
+        given = (here.interval_references[interval], here.alignments[t], here.cut_correspondence, here.cylinders, here.bones)
+        artifact = transfer((interval, t), mesh, *given)
+        assert (artifact.model_vertex == cleaned).all()
+        assert (artifact.distance[:-1] == 0.0).all()
+        assert np.isnan(artifact.distance[-1])
+        np.testing.assert_array_equal(artifact.model_position, here.body.x[t])
+        assert artifact.tracked

@@ -81,7 +81,7 @@ def parcel(toys, **blocks):
 def test_a_worker_with_other_code_refuses(toys):
     schedule, steps = parcel(toys)
     schedule.store.create()
-    toys.edit("return Smooth(value=rough(", "return Smooth(value=1.0 + rough(")
+    toys.edit("return Points(x=params.scale", "return Points(x=2.0 * params.scale")
     toys.module  # noqa: B018 - a worker that has loaded the new code
     first, second = execute(schedule.store.url, steps)
     assert (first.status, first.error) == ("refused", StaleWorkerError.__name__)
@@ -103,7 +103,7 @@ def test_a_worker_that_loaded_old_code_does_not_pass_it_off_as_the_new(toys):
     assert toys.module is module
     toys.forget()
     plan = toys.pipeline().plan()
-    assert [str(r) for r in plan["points[frame=0]"].reasons] == [f"code: {toys.name}.toys"]
+    assert [str(r) for r in plan["smooth[frame=0]"].reasons] == [f"code: {toys.name}.toys:smooth"]
     toys.run(until=("smooth",))
     assert toys.artifacts()["smooth[frame=0]"] != old
 

@@ -6,6 +6,8 @@ import pytest
 
 from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.look import RunList
+from kinetree.pipeline.reason import Work, differences
+from kinetree.pipeline.store import Record
 
 
 def why(toys, node, **blocks):
@@ -43,18 +45,34 @@ def test_a_changed_input_is_named(toys):
     )
 
 
-def test_changed_code_is_named_by_module(toys):
+def test_changed_code_is_named_by_definition(toys):
     toys.run()
     toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
-    assert why(toys, "points[0]") == f"points[frame=0]: stale (code: {toys.name}.toy_sums)"
+    assert why(toys, "cones[0]") == f"cones[interval=0]: stale (code: {toys.name}.toy_sums:parity)"
+    assert why(toys, "points[0]") == "points[frame=0]: fresh"
+
+
+def test_much_changed_code_of_one_module_is_told_in_short():
+    before = {"a.b": "f:000001 g:000001 h:000001 k:000001", "a.c": "f:000001"}
+    now = {"a.b": "f:000002 g:000002 h:000002 m:000001", "a.c": "f:000001"}
+    assert [str(r) for r in differences(Work({}, now, []), recorded(before))] == ["code: a.b:f, g, h and 2 more"]
+
+
+def test_code_that_a_record_tells_by_whole_modules_is_told_in_one_reason():
+    found = differences(Work({}, {"a.b": "f:000001"}, []), recorded({"a.b": "0" * 40, "a.c": "1" * 40}))
+    assert [str(r) for r in found] == ["code: the earlier run told it by whole modules"]
+
+
+def recorded(code):
+    return Record("key", "task", {}, "artifact", {}, {}, code, [], 0.0, 0, "host", "now")
 
 
 def test_all_that_changed_is_told(toys):
     toys.run()
-    toys.edit("return int(value) % 2", "return int(value) & 1", "toy_sums.py")
+    toys.edit("return Points(x=params.scale", "return Points(x=1.0 * params.scale")
     toys.write(11)
     assert why(toys, "points[0]", points={"scale": 2.0}) == (
-        f"points[frame=0]: stale (params: scale 1.0 → 2.0; code: {toys.name}.toy_sums; input: source[frame=0] changed)"
+        f"points[frame=0]: stale (params: scale 1.0 → 2.0; code: {toys.name}.toys:points; input: source[frame=0] changed)"
     )
 
 
@@ -133,7 +151,7 @@ def test_a_difference_begins_at_the_code_that_was_edited(toys):
     toys.edit("return Centred(value=smooth.value -", "return Centred(value=2.0 * smooth.value -")
     toys.run()
     told = difference(toys)
-    assert told["begins"]["centred[frame=0]"] == [f"code: {toys.name}.toys"]
+    assert told["begins"]["centred[frame=0]"] == [f"code: {toys.name}.toys:centred"]
     assert {"centred[frame=0]", "track[frame=0]", "report"} <= set(told["changed"])
     assert "total" not in told["changed"]
 

@@ -119,13 +119,20 @@ def test_editing_comments_and_docstrings_reruns_nothing(toys):
     assert toys.run().ran == set()
 
 
-def test_editing_a_formula_reruns_its_task_and_names_the_module(toys):
+def test_editing_a_formula_reruns_its_task_and_names_the_definition(toys):
     toys.run()
     toys.edit("return value // grain * grain", "return grain * (value // grain)", "toy_sums.py")
     plan = toys.pipeline().plan()
-    assert str(plan["smooth[frame=3]"]) == "smooth[frame=3]: waits (for points[frame=3])"
-    assert [str(r) for r in plan["points[frame=3]"].reasons] == [f"code: {toys.name}.toy_sums"]
-    assert set(toys.run().counts) == TASKS
+    assert str(plan["smooth[frame=3]"]) == f"smooth[frame=3]: stale (code: {toys.name}.toy_sums:rough)"
+    assert str(plan["points[frame=3]"]) == "points[frame=3]: fresh"
+    assert toys.run().ran == frames("smooth", *range(6))
+    assert toys.run().ran == set()
+
+
+def test_editing_what_no_task_can_reach_reruns_nothing(toys):
+    toys.run()
+    toys.edit("def parity", "def spare(value: float) -> float:\n    return value\n\n\ndef parity", "toy_sums.py")
+    toys.edit("return value\n", "return 2 * value\n", "toy_sums.py")
     assert toys.run().ran == set()
 
 
@@ -137,7 +144,7 @@ def test_editing_a_formula_leaves_tasks_of_other_modules_alone(toys):
     toys.edit("# by how much", "# not too much", "loud.py")
     assert toys.run().ran == set()
     toys.edit("2.0 * value", "3.0 * value", "loud.py")
-    assert [str(r) for r in toys.pipeline().plan()["echo[frame=0]"].reasons] == [f"code: {toys.name}.loud"]
+    assert [str(r) for r in toys.pipeline().plan()["echo[frame=0]"].reasons] == [f"code: {toys.name}.loud:loud"]
     assert toys.run().ran == frames("echo", *range(6))
 
 

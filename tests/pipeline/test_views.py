@@ -6,7 +6,7 @@ import pytest
 
 from kinetree.errors import GraphError
 from kinetree.pipeline import output, views
-from kinetree.pipeline.key import code_closure
+from kinetree.pipeline.key import code_parts
 from kinetree.schemas.array import Artifact
 from kinetree.tasks import VIEWS
 from kinetree.tasks.methods import METHODS
@@ -117,6 +117,6 @@ def test_modules_of_views_are_imported_when_somebody_looks(tmp_path, monkeypatch
 
 @pytest.mark.parametrize("method", METHODS)
 def test_no_task_reaches_a_sentence_but_those_that_put_sentences_into_artifacts(method) -> None:
-    reaching = {t.name for t in METHODS[method].tasks if set(code_closure(t.module)) & {*VIEWS, "kinetree.tasks.views"}}
+    reaching = {t.name for t in METHODS[method].tasks if set(code_parts(t.module, t.name)) & {*VIEWS, "kinetree.tasks.views"}}
     assert reaching <= WORDED
     assert "report" in reaching

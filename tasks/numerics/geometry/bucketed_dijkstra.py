@@ -1,4 +1,7 @@
-"""A front that runs over the links of a surface in bands: Dijkstra's order without a heap (2014, Eq. 1: g)."""
+"""Shortest paths over the links of a surface in bands of distance: Dijkstra's order without a heap (2014, Eq. 1: g).
+
+After Dial 1969; a vertex may be worked off a second time where a band is wider than a link.
+"""
 
 import numpy as np
 
@@ -6,19 +9,23 @@ from kinetree.tasks.numerics.arrays import Floats, Indices
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.geodesic_graph import ANYWHERE, BITS, Links
 
-Room = tuple[Floats, Indices, Indices, Indices]
+Workspace = tuple[Floats, Indices, Indices, Indices]
 
-BAND = 0.8  # mean edges: few links are shorter, so that hardly a vertex goes on before its distance is known
-BANDS = 64  # a power of two; vertices further ahead wait in the last one
-MENDED = 0.99  # a path along an edge counts if it makes this much of a distance of it or less
+BAND_WIDTH = 0.8
+"""Mean edges; few links are shorter, so that few vertices are worked off before their distance is final."""
+BANDS = 64
+"""Bands in the queue, a power of two; vertices further ahead wait in the last one."""
+SHORTER = 0.99
+"""A path along an edge is taken up if it makes a distance this share of what it was, or less."""
 _0, _1, _8, _LOW = np.uint64(0), np.uint64(1), np.uint64(8), np.uint64(0xFF)
 _BITS, _SECTOR, _ANYWHERE = np.uint64(BITS), np.uint64((1 << BITS) - 1), np.uint64(ANYWHERE)
 _LAST, _LINE = np.uint64(BANDS - 1), np.uint64(7)
-IDLE, LATE = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFE)
+IDLE, REQUEUED = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFE)
+"""In place of a band: a vertex that is not in the queue · one that is to be queued again."""
 
 
 @compiled
-def workspace(vertices: int, links: int) -> Room:
+def workspace(vertices: int, links: int) -> Workspace:
     """Memory for one propagation at a time over so many vertices and links.
 
     distance : (vertex,) in the surface's own numbering
@@ -36,27 +43,28 @@ def workspace(vertices: int, links: int) -> Room:
 
 
 @compiled
-def propagate(mesh: Links, source: np.uint64, edge: float, radius: float, room: Room) -> None:
-    """Distances from one source into room[0]; the only state is `room`.
+def propagate(mesh: Links, source: np.uint64, edge: float, radius: float, work: Workspace) -> None:
+    """Writes the distances from one source into work[0]; nothing of what `work` held before is used.
 
+    mesh   : links of the surface
     source : vertex in the surface's own numbering
     edge   : the surface's mean edge, mesh unit
     radius : mesh unit; what is farther becomes infinite
     """
-    distance, due, _, filled = room
+    distance, due, _, filled = work
     distance[:] = np.inf
     due[:] = IDLE
     filled[:] = 0
     distance[source] = 0.0
-    per_band = 1.0 / (BAND * edge)
-    enter(source, _0, per_band, room)
-    advance(_0, mesh, per_band, radius, room)
+    per_band = 1.0 / (BAND_WIDTH * edge)
+    _enqueue(source, _0, per_band, work)
+    _run(_0, mesh, per_band, radius, work)
 
 
 @compiled
-def enter(v: np.uint64, now: np.uint64, per_band: float, room: Room) -> None:
-    """Queue a vertex whose path comes from anywhere; no band before `now` is left to be worked off."""
-    distance, due, waiting, filled = room
+def _enqueue(v: np.uint64, now: np.uint64, per_band: float, work: Workspace) -> None:
+    """Queues a vertex whose path comes from anywhere; all bands before `now` are empty."""
+    distance, due, waiting, filled = work
     band = min(np.uint64(distance[v] * per_band), now + _LAST)
     due[v] = (band << _BITS) | _ANYWHERE
     row = band & _LAST
@@ -66,33 +74,33 @@ def enter(v: np.uint64, now: np.uint64, per_band: float, room: Room) -> None:
 
 
 @compiled
-def advance(now: np.uint64, mesh: Links, per_band: float, radius: float, room: Room) -> None:
-    """Run the queue dry from band `now` on, and again wherever an edge is found to be a shorter path."""
-    distance, _, _, filled = room
+def _run(now: np.uint64, mesh: Links, per_band: float, radius: float, work: Workspace) -> None:
+    """Empties the queue from band `now` on, and again where an edge turns out to be a shorter path."""
+    distance, _, _, filled = work
     last = min(radius * per_band, 2.0**26)
     while now <= last:
         empty = _0
         while now <= last and empty <= _LAST:
             empty = empty + _1 if filled[now & _LAST] == 0 else _0
-            _work_off(now, mesh, per_band, room)
+            _relax_band(now, mesh, per_band, work)
             now += _1
-        now = _mend(mesh, per_band, radius, room)
+        now = _requeue_along_edges(mesh, per_band, radius, work)
     for v in range(len(distance)):
         if distance[v] > radius:
             distance[v] = np.inf
 
 
 @compiled
-def _work_off(now: np.uint64, mesh: Links, per_band: float, room: Room) -> None:
-    """Follow the links straight on from every vertex due in one band, those included that it makes due in it."""
+def _relax_band(now: np.uint64, mesh: Links, per_band: float, work: Workspace) -> None:
+    """Follows the links straight on from every vertex due in one band, including those that become due in it meanwhile."""
     first, link, onward, _, _ = mesh
-    distance, due, waiting, filled = room
+    distance, due, waiting, filled = work
     row, i, ready = now & _LAST, _0, _0
     most = np.uint64(waiting.shape[1] - 1)
     while i < np.uint64(filled[row]):
         if i == ready:
             ready = np.uint64(filled[row])
-            waiting[row, most] = _fetch(i, ready, waiting[row], mesh, due)
+            waiting[row, most] = _prefetch(i, ready, waiting[row], mesh, due)
         v = np.uint64(waiting[row, i])
         i += _1
         mark, own = np.uint64(due[v]), distance[v]
@@ -132,10 +140,10 @@ def _work_off(now: np.uint64, mesh: Links, per_band: float, room: Room) -> None:
 
 
 @compiled
-def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Links, due: Indices) -> np.uint32:
-    """Read what these vertices will need: all at once, memory serves several of them in the time that it takes for one.
+def _prefetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Links, due: Indices) -> np.uint32:
+    """Reads what these vertices will need, so that it is in the cache: memory serves several reads in the time of one.
 
-    Returns a number of no meaning, which must be kept lest the compiler leave out what nobody asks for.
+    The returned number has no meaning; it must be stored, or the compiler would leave the reads out.
     """
     first, link, onward, _, _ = mesh
     total, last = _0, np.uint64(len(link) - 1)
@@ -147,22 +155,22 @@ def _fetch(begin: np.uint64, end: np.uint64, waiting: Indices, mesh: Links, due:
 
 
 @compiled
-def _mend(mesh: Links, per_band: float, radius: float, room: Room) -> np.uint64:
-    """Queue every vertex that an edge brings nearer by much, to look around from there; the first band with one."""
+def _requeue_along_edges(mesh: Links, per_band: float, radius: float, work: Workspace) -> np.uint64:
+    """Queues every vertex that an edge makes clearly nearer; returns the first band with one."""
     edge, along = mesh[3], mesh[4]
-    distance, due, _, _ = room
+    distance, due, _, _ = work
     least = np.inf
     for e in range(len(along)):
         a, b = distance[edge[e, 0]], distance[edge[e, 1]]
         nearer = min(a, b) + along[e]
-        if nearer < MENDED * max(a, b) and nearer <= radius:
+        if nearer < SHORTER * max(a, b) and nearer <= radius:
             w = edge[e, 0] if a > b else edge[e, 1]
-            distance[w], due[w] = nearer, LATE
+            distance[w], due[w] = nearer, REQUEUED
             least = min(least, nearer)
     if least == np.inf:
-        return LATE >> _BITS
+        return REQUEUED >> _BITS
     now = np.uint64(least * per_band)
     for v in range(len(distance)):
-        if np.uint64(due[v]) == LATE:
-            enter(np.uint64(v), now, per_band, room)
+        if np.uint64(due[v]) == REQUEUED:
+            _enqueue(np.uint64(v), now, per_band, work)
     return now

@@ -1,8 +1,8 @@
-"""Geodesic distance over a triangle mesh from many sources (2014, Eq. 1: g), over straight links in Dijkstra's order.
+"""Geodesic distance over a triangle mesh from many sources (2014, Eq. 1: g), along straight links in Dijkstra's order.
 
-A path may bend at every vertex, so that no distance is too short, and hardly has to, since vertices are linked to what
-they see (`links`, `sight`). Over bodies of 5,000 to 42,000 vertices distances are 0.2 % too long in the mean and 0.9 to
-1.8 % at the worst vertex; a finer mesh does not change that. They do not depend on any number of threads.
+A path may bend at every vertex, so that no distance is too short; it rarely has to, since vertices are linked to what they
+see (`geodesic_graph`, `visibility`). Over bodies of 5,000 to 42,000 vertices distances are 0.2 % too long in the mean and 0.9
+to 1.8 % at the worst vertex; a finer mesh does not change that. They do not depend on the number of threads.
 """
 
 import numpy as np
@@ -57,9 +57,9 @@ def _fields(mesh: Links, source: Ints, order: Ints, edge: float, radius: float) 
     """Distances (source, vertex) in the input's numbering from sources in the surface's own, in one compiled call."""
     vertices = len(order)
     out = np.empty((len(source), vertices))
-    room = workspace(vertices, len(mesh[1]))
+    work = workspace(vertices, len(mesh[1]))
     for s in range(len(source)):
-        propagate(mesh, np.uint64(source[s]), edge, radius, room)
+        propagate(mesh, np.uint64(source[s]), edge, radius, work)
         for i in range(vertices):
-            out[s, order[i]] = room[0][i]
+            out[s, order[i]] = work[0][i]
     return out

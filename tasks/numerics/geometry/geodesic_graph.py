@@ -13,18 +13,34 @@ import numpy.typing as npt
 
 from kinetree.tasks.numerics.arrays import Floats, Indices, Lengths
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.visibility import DEPTH, MOST, Corners, Found, Rings, corners, edges_of, shine
+from kinetree.tasks.numerics.geometry.visibility import (
+    MAX_LINES,
+    MAX_WINDOWS,
+    FaceShapes,
+    Lines,
+    Rings,
+    append_edges,
+    append_visible,
+    face_shapes,
+)
 
 Codes = npt.NDArray[np.uint16]
 Records = npt.NDArray[np.void]
 
-NARROW = np.deg2rad(16.0)  # light is split down to this angle: 20° costs a third less and errs twice as much
-STRAIGHT = np.deg2rad(30.0)  # a path may turn by this much and half a sector; by 20°, and it misses vertices on rough bodies
-DETOUR = 0.004  # a link is left out if two others are longer by no more than this share
-NEIGHBOURS = 5  # in direction, on either side, that may serve a link
-FAR = 8.0  # mean edges around a vertex in which it looks
-SECTORS = 31  # directions of arrival that are told apart; one more stands for "from anywhere"
+NARROWEST_WINDOW = np.deg2rad(16.0)
+"""Angle below which a window of directions is dropped; 20° costs a third less and errs twice as much."""
+LARGEST_TURN = np.deg2rad(30.0)
+"""Angle, beside half a sector, by which a path may turn at a vertex; with 20° paths miss vertices on rough bodies."""
+DETOUR = 0.004
+"""A link is left out if two others are longer by no more than this share."""
+COMPARED_LINKS = 5
+"""Links on either side, by direction, that are tried in place of one."""
+LOOK_RADIUS = 8.0
+"""Mean edges around a vertex up to which it looks; not recorded how far less would do."""
+SECTORS = 31
+"""Directions of arrival that are distinguished; one more stands for "from anywhere"."""
 BITS = 5
+"""Bits that a sector takes beside a vertex number."""
 LINK = np.dtype([("target", np.uint32), ("length", np.float32)])
 ANYWHERE = SECTORS
 _0, _1, _32, _LOW = np.uint64(0), np.uint64(1), np.uint64(32), np.uint64(0xFFFFFFFF)
@@ -49,112 +65,122 @@ class Links(NamedTuple):
     along: Lengths
 
 
-def linked(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> tuple[Indices, Records, Codes]:
-    """First three of `Links`, of a surface whose start, ring, ring_edge, apex, twin, length and ring_length are `rings`.
+def visibility_links(rings: Rings, angle: Floats, free: npt.NDArray[np.uint8]) -> tuple[Indices, Records, Codes]:
+    """First three fields of `Links`.
 
+    rings : start, ring, ring_edge, apex, twin, length and ring_length of the surface
     angle : (half-edge,) at its tail
     free  : (vertex,) 1 where faces are not one closed ring, so that "straight on" has no meaning
     """
-    # step by step: called from one compiled function, all of this would be compiled once more into that
-    shape, total = corners(rings[0], rings[1], rings[2], angle, rings[5])
-    first, found = _seen_from_all(rings, shape)
-    first, found = _both_ways(first, found, total, free)
+    # called step by step: inside one compiled function all of this would be compiled a second time
+    shape, total = face_shapes(rings[0], rings[1], rings[2], angle, rings[5])
+    first, lines = _visible_from_each(rings, shape)
+    first, lines = _both_ways(first, lines, total, free)
     most = np.uint64(np.diff(first).max(initial=0))
-    first, (target, length, out, back) = _ordered(first, found, total, free, most)
+    first, (target, length, out, back) = _ordered(first, lines, total, free, most)
     link = np.empty(len(target), LINK)
     link["target"], link["length"] = _with_sectors(target, back, total), length
     return first, link, _onward(first, out, total, free)
 
 
 @compiled
-def _seen_from_all(rings: Rings, shape: Corners) -> tuple[Indices, Found]:
+def _visible_from_each(rings: Rings, shape: FaceShapes) -> tuple[Indices, Lines]:
     """What each vertex sees, by vertex: target, distance, direction here and direction there."""
     start, ring_length, n = rings[0], rings[6], np.uint64(len(rings[0]) - 1)
-    first, seen = np.zeros(n + _1, np.uint32), np.zeros(n, np.uint32)
-    windows, crossing = np.empty((DEPTH, 8)), np.empty(DEPTH, np.uint32)
-    k, found = _0, _room(np.uint64(40) * n)
+    first, place = np.zeros(n + _1, np.uint32), np.zeros(n, np.uint32)
+    windows, crossing = np.empty((MAX_WINDOWS, 8)), np.empty(MAX_WINDOWS, np.uint32)
+    k, lines = _0, _empty_lines(np.uint64(40) * n)
     for v in range(n):
         entries = np.uint64(start[v + _1]) - np.uint64(start[v])
-        if k + entries + entries + np.uint64(MOST) > np.uint64(len(found[0])):
-            found = _enlarged(found, k, k + k // np.uint64(2) + entries + entries + np.uint64(MOST))
+        if k + entries + entries + np.uint64(MAX_LINES) > np.uint64(len(lines[0])):
+            lines = _enlarged(lines, k, k + k // np.uint64(2) + entries + entries + np.uint64(MAX_LINES))
         far = 0.0
         for j in range(np.uint64(start[v]), np.uint64(start[v + _1])):
-            far += FAR * ring_length[j] / entries
-        beyond = edges_of(np.uint64(v), rings, shape, seen, k, found)
-        k = shine(np.uint64(v), far * far, np.sin(NARROW), rings, shape, seen, k, beyond, found, windows, crossing)
+            far += LOOK_RADIUS * ring_length[j] / entries
+        beyond = append_edges(np.uint64(v), rings, shape, place, k, lines)
+        k = append_visible(
+            np.uint64(v), far * far, np.sin(NARROWEST_WINDOW), rings, shape, place, k, beyond, lines, windows, crossing
+        )
         first[v + _1] = k
-    return first, found
+    return first, lines
 
 
 @compiled
-def _room(links: np.uint64) -> Found:
+def _empty_lines(links: np.uint64) -> Lines:
+    """Memory for so many lines."""
     return np.empty(links, np.uint32), np.empty(links, np.float32), np.empty(links, np.float32), np.empty(links, np.float32)
 
 
 @compiled
-def _enlarged(found: Found, kept: np.uint64, links: np.uint64) -> Found:
-    larger = _room(links)
+def _enlarged(lines: Lines, kept: np.uint64, links: np.uint64) -> Lines:
+    """Memory for more lines that holds the first ones."""
+    larger = _empty_lines(links)
     for k in range(kept):
-        larger[0][k], larger[1][k], larger[2][k], larger[3][k] = found[0][k], found[1][k], found[2][k], found[3][k]
+        larger[0][k], larger[1][k], larger[2][k], larger[3][k] = lines[0][k], lines[1][k], lines[2][k], lines[3][k]
     return larger
 
 
 @compiled
-def _both_ways(first: Indices, found: Found, total: Floats, free: npt.NDArray[np.uint8]) -> tuple[Indices, Found]:
+def _both_ways(first: Indices, lines: Lines, total: Floats, free: npt.NDArray[np.uint8]) -> tuple[Indices, Lines]:
     """Every link from both its ends, by vertex; some are there twice."""
     n = np.uint64(len(total))
     begin = np.zeros(n + _1, np.uint32)
     for v in range(n):
         begin[v + _1] += first[v + _1] - first[v]
         for k in range(np.uint64(first[v]), np.uint64(first[v + _1])):
-            begin[np.uint64(found[0][k]) + _1] += np.uint32(1)
+            begin[np.uint64(lines[0][k]) + _1] += np.uint32(1)
     for v in range(n):
         begin[v + _1] += begin[v]
-    both, end = _room(np.uint64(begin[n])), begin[:-1].copy()
+    both, end = _empty_lines(np.uint64(begin[n])), begin[:-1].copy()
     target, length, out, back = both
     for v in range(n):
         for k in range(np.uint64(first[v]), np.uint64(first[v + _1])):
-            w, leaving, arriving = np.uint64(found[0][k]), found[2][k], found[3][k]
+            w, leaving, arriving = np.uint64(lines[0][k]), lines[2][k], lines[3][k]
             if arriving >= total[w] and not free[w]:
                 arriving -= np.float32(total[w])
             i, j = np.uint64(end[v]), np.uint64(end[w])
-            target[i], length[i], out[i], back[i] = w, found[1][k], leaving, arriving
-            target[j], length[j], out[j], back[j] = v, found[1][k], arriving, leaving
+            target[i], length[i], out[i], back[i] = w, lines[1][k], leaving, arriving
+            target[j], length[j], out[j], back[j] = v, lines[1][k], arriving, leaving
             end[v] += np.uint32(1)
             end[w] += np.uint32(1)
     return begin, both
 
 
 @compiled
-def _ordered(begin: Indices, both: Found, total: Floats, free: npt.NDArray[np.uint8], most: np.uint64) -> tuple[Indices, Found]:
+def _ordered(begin: Indices, both: Lines, total: Floats, free: npt.NDArray[np.uint8], most: np.uint64) -> tuple[Indices, Lines]:
     """Each link once, sorted by direction, without those that two others serve as well; a vertex has at most `most`."""
     target, length, out, back = both
-    first, seen, key, one = np.zeros_like(begin), np.zeros(len(total), np.uint32), np.empty(most, np.uint64), _room(most)
+    first, place, key, own_lines = (
+        np.zeros_like(begin),
+        np.zeros(len(total), np.uint32),
+        np.empty(most, np.uint64),
+        _empty_lines(most),
+    )
     k = _0
     for v in range(len(total)):
-        size = _sorted(np.uint64(begin[v]), np.uint64(begin[v + 1]), both, seen, key)
+        size = _sorted(np.uint64(begin[v]), np.uint64(begin[v + 1]), both, place, key)
         for i in range(size):
             j = key[i] & _LOW
-            one[0][i], one[1][i], one[2][i], one[3][i] = target[j], length[j], out[j], back[j]
-        # what is kept of one vertex never reaches into what is left of the next
+            own_lines[0][i], own_lines[1][i], own_lines[2][i], own_lines[3][i] = target[j], length[j], out[j], back[j]
+        # links kept of one vertex never overwrite those of the next, which are not read yet
         for i in range(size):
-            if not _served(np.uint64(i), size, total[v], not free[v], one[1], one[2]):
-                target[k], length[k], out[k], back[k] = one[0][i], one[1][i], one[2][i], one[3][i]
+            if not _is_redundant(np.uint64(i), size, total[v], not free[v], own_lines[1], own_lines[2]):
+                target[k], length[k], out[k], back[k] = own_lines[0][i], own_lines[1][i], own_lines[2][i], own_lines[3][i]
                 k = k + _1
         first[v + 1] = k
     return first, (target[:k].copy(), length[:k].copy(), out[:k].copy(), back[:k].copy())
 
 
 @compiled
-def _sorted(begin: np.uint64, end: np.uint64, both: Found, seen: Indices, key: npt.NDArray[np.uint64]) -> np.uint64:
+def _sorted(begin: np.uint64, end: np.uint64, both: Lines, place: Indices, key: npt.NDArray[np.uint64]) -> np.uint64:
     """Places of one vertex's links in the low half of `key`, by direction; how many. Of two to the same target the shorter."""
     target, length, out, back = both
     size = _0
     for i in range(begin, end):
         w = np.uint64(target[i])
-        j = np.uint64(seen[w])
+        j = np.uint64(place[w])
         if j <= begin:
-            seen[w], key[size] = np.uint64(i) + _1, i
+            place[w], key[size] = np.uint64(i) + _1, i
             size = size + _1
         elif length[i] < length[j - _1]:
             length[j - _1], out[j - _1], back[j - _1] = length[i], out[i], back[i]
@@ -169,10 +195,10 @@ def _sorted(begin: np.uint64, end: np.uint64, both: Found, seen: Indices, key: n
 
 
 @compiled
-def _served(i: np.uint64, size: np.uint64, total: float, closed: bool, length: Lengths, out: Lengths) -> bool:
+def _is_redundant(i: np.uint64, size: np.uint64, total: float, closed: bool, length: Lengths, out: Lengths) -> bool:
     """Whether link i may as well bend at the end of a shorter one in nearly the same direction."""
     far, forth, back = np.float64(length[i]), i, i
-    for _ in range(min(np.uint64(NEIGHBOURS), size - _1)):
+    for _ in range(min(np.uint64(COMPARED_LINKS), size - _1)):
         forth = forth + _1 if forth + _1 < size else _0
         back = back - _1 if back > _0 else size - _1
         for j in (forth, back):
@@ -197,17 +223,18 @@ def _with_sectors(target: Indices, back: Lengths, total: Floats) -> Indices:
 
 @compiled
 def _onward(first: Indices, out: Lengths, total: Floats, free: npt.NDArray[np.uint8]) -> Codes:
+    """The `onward` of `Links`."""
     onward = np.zeros((len(total), SECTORS + 1), np.uint16)
     for v in range(len(total)):
         if not free[v]:
-            _look_onward(out[first[v] : first[v + 1]], total[v], onward[v])
+            _straight_on(out[first[v] : first[v + 1]], total[v], onward[v])
     return onward
 
 
 @compiled
-def _look_onward(out: Lengths, total: float, onward: Codes) -> None:
+def _straight_on(out: Lengths, total: float, onward: Codes) -> None:
     """For each sector of arrival, the links that go straight on: past the vertex on either side half a turn away."""
-    size, half = len(out), abs(0.5 * total - np.pi) + STRAIGHT
+    size, half = len(out), abs(0.5 * total - np.pi) + LARGEST_TURN
     if 2.0 * half >= total:
         return
     low = (0.5 / SECTORS + 0.5) * total - half

@@ -29,11 +29,11 @@ def nearest_nodes(surface: Surface, node: Ints, count: int) -> tuple[Ints, Float
 def _largest_gap(mesh: Links, rank: Ints, order: Ints, edge: float, node: Ints) -> float:
     """Largest distance of a vertex to its nearest node; components without a node do not count."""
     nearest = np.full(len(order), np.inf)
-    room = workspace(len(order), len(mesh[1]))
+    work = workspace(len(order), len(mesh[1]))
     for b in range(len(node)):
-        propagate(mesh, np.uint64(rank[node[b]]), edge, nearest.max(), room)
+        propagate(mesh, np.uint64(rank[node[b]]), edge, nearest.max(), work)
         for i in range(len(order)):
-            nearest[i] = min(nearest[i], room[0][i])
+            nearest[i] = min(nearest[i], work[0][i])
     gap = 0.0
     for i in range(len(order)):
         if nearest[i] < np.inf:
@@ -45,11 +45,11 @@ def _largest_gap(mesh: Links, rank: Ints, order: Ints, edge: float, node: Ints) 
 def _nearest(mesh: Links, rank: Ints, order: Ints, edge: float, node: Ints, reach: float, count: int) -> tuple[Ints, Floats]:
     nearest = np.full((len(order), count), -1, np.int64)
     distance = np.full((len(order), count), np.inf)
-    room = workspace(len(order), len(mesh[1]))
+    work = workspace(len(order), len(mesh[1]))
     for b in range(len(node)):
-        propagate(mesh, np.uint64(rank[node[b]]), edge, reach, room)
+        propagate(mesh, np.uint64(rank[node[b]]), edge, reach, work)
         for i in range(len(order)):
-            d, v = room[0][i], order[i]
+            d, v = work[0][i], order[i]
             k = count
             while k > 0 and distance[v, k - 1] > d:
                 k -= 1

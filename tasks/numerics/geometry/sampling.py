@@ -50,13 +50,13 @@ def _farthest(
     vertices = len(order)
     chosen, cell = np.empty(count, np.int64), np.zeros(vertices, np.int64)
     nearest = np.full(vertices, np.inf)
-    room = workspace(vertices, len(mesh[1]))
+    work = workspace(vertices, len(mesh[1]))
     base, gap = first, np.inf
     for b in range(count):
         chosen[b] = base
-        propagate(mesh, np.uint64(rank[base]), edge, np.inf if len(distance) else gap, room)
+        propagate(mesh, np.uint64(rank[base]), edge, np.inf if len(distance) else gap, work)
         for i in range(vertices):
-            v, d = order[i], room[0][i]
+            v, d = order[i], work[0][i]
             if len(distance):
                 distance[b, v] = d
             if d < nearest[v]:

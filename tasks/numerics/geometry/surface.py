@@ -8,10 +8,10 @@ import numpy.typing as npt
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Indices, Ints, Lengths
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.geodesic_graph import Links, linked
+from kinetree.tasks.numerics.geometry.geodesic_graph import Links, visibility_links
 from kinetree.tasks.numerics.geometry.morton_curve import morton_order
 from kinetree.tasks.numerics.geometry.normals import vertex_areas
-from kinetree.tasks.numerics.geometry.visibility import BLIND, NONE
+from kinetree.tasks.numerics.geometry.visibility import BORDER, NON_MANIFOLD
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Surface:
     ring_length : (entry,) distance to that neighbour, mesh unit
     ring_edge   : (entry,) that face's half-edge that leaves the ring's vertex
     apex        : (half-edge,) vertex opposite
-    twin        : (half-edge,) the other face's half-edge; NONE at a border, BLIND at an edge of three or more faces and
-                  where a one-sided surface closes: faces are turned to agree wherever they can
+    twin        : (half-edge,) the other face's half-edge; BORDER where there is none, NON_MANIFOLD at an edge of three or more
+                  faces and where a one-sided surface closes: faces are turned to agree wherever they can
     length      : (half-edge,) mesh unit
     links       : the straight lines from vertex to vertex along which distance spreads
     area        : (vertex,) a third of the faces around, mesh unit², in the input's numbering
@@ -75,7 +75,7 @@ class Surface:
         area = np.zeros(len(P))
         area[order] = vertex_areas(P, corners)
         free = np.zeros(len(P), np.uint8)
-        free[tail[twin >= BLIND]] = free[head[twin >= BLIND]] = 1
+        free[tail[twin >= NON_MANIFOLD]] = free[head[twin >= NON_MANIFOLD]] = 1
         free[np.bincount(np.repeat(np.arange(len(P)), np.diff(ring_start)), ~inside, len(P)) > 1] = 1
         rings = (
             ring_start.astype(np.uint32),
@@ -86,7 +86,7 @@ class Surface:
             length.astype(np.float32),
             np.where(inside, length[_before(edge)], length[edge]).astype(np.float32),
         )
-        along = length[edges].astype(np.float32)
+        ends, along = np.stack([tail[edges], head[edges]], axis=1).astype(np.uint32), length[edges].astype(np.float32)
         return cls(
             order=order,
             ring_start=rings[0],
@@ -96,7 +96,7 @@ class Surface:
             apex=rings[3],
             twin=rings[4],
             length=rings[5],
-            links=Links(*linked(rings, angle, free), np.stack([tail[edges], head[edges]], axis=1).astype(np.uint32), along),
+            links=Links(*visibility_links(rings, angle, free), ends, along),
             area=area,
             centre=(area[:, None] * V).sum(axis=0) / max(area.sum(), np.finfo(float).tiny),
             position=np.ascontiguousarray(V, dtype=np.float64),
@@ -105,11 +105,12 @@ class Surface:
 
 
 def _before(edge: Ints) -> Ints:
+    """The half-edge before each in the same face."""
     return np.where(edge % 3 == 0, edge + 2, edge - 1)
 
 
 def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
-    """Faces turned until neighbours agree, (half-edge,) its partner or NONE or BLIND, and (edge,) a half-edge of each."""
+    """Faces turned until neighbours agree, (half-edge,) its twin as in `Surface`, and (edge,) a half-edge of each."""
     tail, head = corners.ravel(), corners[:, [1, 2, 0]].ravel()
     key = np.minimum(tail, head) * vertices + np.maximum(tail, head)
     by_edge = np.argsort(key, kind="stable")
@@ -119,13 +120,13 @@ def _agreeing(corners: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
     a, b = by_edge[pair], by_edge[pair + 1]
     opposed = tail[a] == head[b]
     if not opposed.all():
-        partner = np.full(len(tail), NONE)
+        partner = np.full(len(tail), BORDER)
         partner[a], partner[b] = b, a
         turned = _turned(partner, tail)
         if turned.any():
             return _agreeing(np.where(turned[:, None], corners[:, [0, 2, 1]], corners), vertices)
-    twin = np.full(len(tail), BLIND)
-    twin[by_edge[first[faces == 1]]] = NONE
+    twin = np.full(len(tail), NON_MANIFOLD)
+    twin[by_edge[first[faces == 1]]] = BORDER
     twin[a[opposed]], twin[b[opposed]] = b[opposed], a[opposed]
     return corners, twin, by_edge[first]
 
@@ -144,7 +145,7 @@ def _turned(partner: Ints, tail: Ints) -> Flags:
             f = waiting[count]
             for h in range(3 * f, 3 * f + 3):
                 t = partner[h]
-                if t < BLIND and not known[t // 3]:
+                if t < NON_MANIFOLD and not known[t // 3]:
                     g = t // 3
                     known[g], turned[g], waiting[count] = True, turned[f] != (tail[h] == tail[t]), g
                     count += 1
@@ -173,11 +174,11 @@ def _rings(start: Ints, corner: Ints, twin: Ints) -> tuple[Ints, npt.NDArray[np.
         for closed in range(2):
             for q in range(start[v], start[v + 1]):
                 h = corner[q]
-                if seen[h] or (closed == 0 and twin[h] < BLIND):
+                if seen[h] or (closed == 0 and twin[h] < NON_MANIFOLD):
                     continue
                 edge[k] = h
                 k += 1
-                while h < BLIND and not seen[h]:
+                while h < NON_MANIFOLD and not seen[h]:
                     seen[h] = 1
                     kind[k] = 1
                     edge[k] = h

@@ -1,8 +1,9 @@
-"""What a vertex sees over a surface: the straight lines that leave it, unfolded into the plane (2014, Sec. 4).
+"""What a vertex sees over a surface: straight lines that leave it, unfolded from triangle to triangle (2014, Sec. 4).
 
-Light leaves a vertex through every face around it and goes straight from triangle to triangle. A vertex that it meets
-splits it in two, and what has become narrow is not followed further: the vertices on both sides of it serve its direction.
-So the lines lie about equally dense in all directions, whatever the sizes of the triangles.
+A window is a range of directions. One leaves the vertex through every face around it and crosses triangle after triangle,
+unfolded into the plane of the first. The third vertex of a triangle splits it in two; a window that has become narrow is
+dropped, since the vertices on both sides of it serve its directions. So the lines are about equally dense in all directions,
+whatever the sizes of the triangles.
 """
 
 import numpy as np
@@ -11,15 +12,19 @@ from kinetree.tasks.numerics.arrays import Floats, Indices, Lengths
 from kinetree.tasks.numerics.compiled import compiled
 
 Rings = tuple[Indices, Indices, Indices, Indices, Indices, Lengths, Lengths]
-Corners = tuple[Floats, Floats, Lengths, Lengths]
-Found = tuple[Indices, Lengths, Lengths, Lengths]
+FaceShapes = tuple[Floats, Floats, Lengths, Lengths]
+Lines = tuple[Indices, Lengths, Lengths, Lengths]
 
-NONE = 0xFFFFFFFF  # no half-edge: a border
-BLIND = 0xFFFFFFFE  # no half-edge either, though the surface goes on
-MOST = 192  # lines of one vertex beyond its edges
-DEPTH = 128  # windows that wait while one is followed: half of them at each split, so 1 in 2^128 is lost
+BORDER = 0xFFFFFFFF
+"""In place of a half-edge where the surface ends."""
+NON_MANIFOLD = 0xFFFFFFFE
+"""In place of a half-edge where the surface goes on, but not with one face."""
+MAX_LINES = 192
+"""Safety bound: lines of one vertex beyond its edges; 40 are usual."""
+MAX_WINDOWS = 128
+"""Safety bound: windows that wait while one is followed; each split adds one."""
 _0, _1, _2, _3 = np.uint64(0), np.uint64(1), np.uint64(2), np.uint64(3)
-_BLIND, _MOST, _DEPTH = np.uint64(BLIND), np.uint64(MOST), np.uint64(DEPTH)
+_NON_MANIFOLD, _MAX_LINES, _MAX_WINDOWS = np.uint64(NON_MANIFOLD), np.uint64(MAX_LINES), np.uint64(MAX_WINDOWS)
 
 
 @compiled
@@ -35,8 +40,8 @@ def before(h: np.uint64) -> np.uint64:
 
 
 @compiled
-def corners(start: Indices, ring: Indices, ring_edge: Indices, angle: Floats, length: Lengths) -> tuple[Corners, Floats]:
-    """Directions around every vertex and the shape of every triangle; the total angle of each vertex.
+def face_shapes(start: Indices, ring: Indices, ring_edge: Indices, angle: Floats, length: Lengths) -> tuple[FaceShapes, Floats]:
+    """Directions around every vertex and the shape of every triangle, and the total angle of each vertex.
 
     turn  : (half-edge,) its direction at its tail, counted from the first of the ring
     along : (half-edge,) foot of the face's third vertex on it, and `above`, its height, as shares of its length
@@ -58,8 +63,14 @@ def corners(start: Indices, ring: Indices, ring_edge: Indices, angle: Floats, le
 
 
 @compiled
-def edges_of(v: np.uint64, rings: Rings, shape: Corners, seen: Indices, first: np.uint64, found: Found) -> np.uint64:
-    """Append the edges of vertex v to what is found; how much there is then."""
+def append_edges(v: np.uint64, rings: Rings, shape: FaceShapes, place: Indices, first: np.uint64, lines: Lines) -> np.uint64:
+    """Appends the edges of vertex v to the lines.
+
+    v, rings, shape : as in `append_visible`
+    place   : (vertex,) place + 1 of the last line to each vertex
+    first   : where the lines of vertex v begin
+    returns : how many lines there are then
+    """
     start, ring, ring_edge, apex, twin, length, _ = rings
     turn, angle, _, _ = shape
     k = first
@@ -68,22 +79,22 @@ def edges_of(v: np.uint64, rings: Rings, shape: Corners, seen: Indices, first: n
             continue
         h = np.uint64(ring_edge[j])
         a, b = after(h), before(h)
-        k = _keep(np.uint64(apex[b]), length[h], turn[h], turn[a] + angle[a], seen, first, k, found)
-        if twin[b] >= _BLIND:
-            k = _keep(np.uint64(apex[h]), length[b], turn[h] + angle[h], turn[b], seen, first, k, found)
+        k = _append_line(np.uint64(apex[b]), length[h], turn[h], turn[a] + angle[a], place, first, k, lines)
+        if twin[b] >= _NON_MANIFOLD:
+            k = _append_line(np.uint64(apex[h]), length[b], turn[h] + angle[h], turn[b], place, first, k, lines)
     return k
 
 
 @compiled
-def _keep(
-    c: np.uint64, far: float, leaving: float, arriving: float, seen: Indices, first: np.uint64, k: np.uint64, found: Found
+def _append_line(
+    c: np.uint64, far: float, leaving: float, arriving: float, place: Indices, first: np.uint64, k: np.uint64, lines: Lines
 ) -> np.uint64:
-    """One line per vertex, the shortest: `seen` holds its place + 1, if it is one of this vertex's."""
-    target, reach, out, back = found
-    i = np.uint64(seen[c])
+    """Keeps one line to each vertex, the shortest; returns how many lines there are then. `place` as in `append_edges`."""
+    target, reach, out, back = lines
+    i = np.uint64(place[c])
     if i <= first:
         i = k + _1
-        seen[c], target[k], reach[k] = i, c, np.inf
+        place[c], target[k], reach[k] = i, c, np.inf
         k = i
     i -= _1
     if far < reach[i]:
@@ -92,18 +103,26 @@ def _keep(
 
 
 @compiled
-def shine(
-    v: np.uint64, limit: float, narrow: float, rings: Rings, shape: Corners, seen: Indices, first: np.uint64, k: np.uint64,
-    found: Found, windows: Floats, crossing: Indices,
+def append_visible(
+    v: np.uint64, limit: float, narrow: float, rings: Rings, shape: FaceShapes, place: Indices, first: np.uint64, k: np.uint64,
+    lines: Lines, windows: Floats, crossing: Indices,
 ) -> np.uint64:  # fmt: skip
-    """Append what vertex v sees beyond its edges; how much there is then.
+    """Appends the lines to what vertex v sees beyond its edges.
 
-    limit  : squared distance at which light ends
-    narrow : sine of the angle below which light is not followed
+    v        : vertex in the surface's own numbering
+    limit    : squared distance beyond which nothing is seen, mesh unit²
+    narrow   : sine of the angle below which a window is dropped
+    rings    : start, ring, ring_edge, apex, twin, length and ring_length of the surface
+    shape    : see `face_shapes`
+    place    : (vertex,) place + 1 of the last line to each vertex
+    first, k : where the lines of vertex v begin · how many lines there are
+    lines    : target, length, direction at v and direction at the target; written
+    windows, crossing : memory for the windows that wait
+    returns  : how many lines there are then
     """
     start, ring, ring_edge, apex, twin, length, _ = rings
     turn, angle, along, above = shape
-    full = k + _MOST
+    full = k + _MAX_LINES
     for j in range(np.uint64(start[v]), np.uint64(start[v + _1])):
         if np.uint64(ring[j]) & _1 == _0:
             continue
@@ -111,35 +130,35 @@ def shine(
         origin = turn[h]
         lx, ly, rx, ry, bx, by = np.cos(angle[h]), np.sin(angle[h]), 1.0, 0.0, np.float64(length[h]), 0.0
         ax, ay = lx * length[before(h)], ly * length[before(h)]
-        h, top, lit = np.uint64(twin[after(h)]), _0, ly > narrow or lx < 0.0
-        while lit:
+        h, top, followed = np.uint64(twin[after(h)]), _0, ly > narrow or lx < 0.0
+        while followed:
             ex, ey = bx - ax, by - ay
-            lit = False
-            if h < _BLIND and (ax * ey - ay * ex) ** 2 <= limit * (ex * ex + ey * ey):
+            followed = False
+            if h < _NON_MANIFOLD and (ax * ey - ay * ex) ** 2 <= limit * (ex * ex + ey * ey):
                 b = before(h)
                 cx, cy = ax + ex * along[h] - ey * above[h], ay + ey * along[h] + ex * above[h]
                 if cx * ly < cy * lx:
-                    h, ax, ay, lit = np.uint64(twin[after(h)]), cx, cy, True
+                    h, ax, ay, followed = np.uint64(twin[after(h)]), cx, cy, True
                 elif rx * cy < ry * cx:
-                    h, bx, by, lit = np.uint64(twin[b]), cx, cy, True
+                    h, bx, by, followed = np.uint64(twin[b]), cx, cy, True
                 elif cx * cx + cy * cy <= limit and k < full:
                     c, far = np.uint64(apex[h]), np.sqrt(cx * cx + cy * cy)
                     if c != v:
                         leaving, x, y = origin + direction(cx, cy), ax - cx, ay - cy
-                        k = _keep(
-                            c, far, leaving, turn[b] + direction(-x * cx - y * cy, y * cx - x * cy), seen, first, k, found
+                        k = _append_line(
+                            c, far, leaving, turn[b] + direction(-x * cx - y * cy, y * cx - x * cy), place, first, k, lines
                         )
                     mx, my = cx / far, cy / far
                     if mx * ly - my * lx > narrow or mx * lx + my * ly < 0.0:
                         w = windows[top]
                         w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7] = ax, ay, cx, cy, lx, ly, mx, my
                         crossing[top] = twin[b]
-                        top += np.uint64(top < _DEPTH - _1)
+                        top += np.uint64(top < _MAX_WINDOWS - _1)
                     if rx * my - ry * mx > narrow or mx * rx + my * ry < 0.0:
-                        h, ax, ay, lx, ly, lit = np.uint64(twin[after(h)]), cx, cy, mx, my, True
-            if not lit and top > _0:
+                        h, ax, ay, lx, ly, followed = np.uint64(twin[after(h)]), cx, cy, mx, my, True
+            if not followed and top > _0:
                 top -= _1
-                w, h, lit = windows[top], np.uint64(crossing[top]), True
+                w, h, followed = windows[top], np.uint64(crossing[top]), True
                 ax, ay, bx, by, lx, ly, rx, ry = w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]
     return k
 

@@ -3,92 +3,91 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Bools = npt.NDArray[np.bool_]
 
+class FrameMotion(NamedTuple):
+    """Rigid motion of a sub-surface from each frame to the next, D_{t→t+1}: x(t + 1) ≈ R x(t) + T.
 
-class Step(NamedTuple):
-    """Rigid motion from each frame to the next: x(t + 1) ≈ R x(t) + T.
-
-    R : (step, 3, 3), T : (step, xyz) mesh unit
+    R : (transition, 3, 3)
+    T : (transition, xyz) mesh unit
     """
 
     R: Floats
     T: Floats
 
 
-class Clustered(NamedTuple):
+class AnnulusClusters(NamedTuple):
     """The annuli of one cone or cylinder, from the leaf on.
 
-    cluster : (annulus,) clusters are numbered along the cone
-    merge   : (annulus,) mean merge-error of each annulus against the cluster before it; 1 for the first
+    cluster     : (annulus,) number of its cluster; clusters are numbered along the cone
+    merge_error : (annulus,) mean merge-error of each annulus against the cluster before it; 1 for the first of a cluster
     """
 
     cluster: Ints
-    merge: Floats
+    merge_error: Floats
 
     @property
-    def rigid(self) -> Bools:
-        """(annulus,) whether its cluster has other annuli; a single one is a joint, or part of one."""
+    def rigid(self) -> Flags:
+        """(annulus,) whether its cluster has other annuli; a single one is a joint, or part of one (Sec. 6.1.2.3)."""
         return np.asarray(np.bincount(self.cluster)[self.cluster] > 1)
 
 
-def steps(x: Floats) -> Step:
-    """The rigid motion of a sub-surface from frame to frame, D_{t→t+1}, by least squares (Eq. 9; Kabsch 1976).
+def annulus_clusters(annuli: list[Floats], threshold: float, floor: float) -> AnnulusClusters:
+    """Joins annuli, from the leaf on, to the cluster before them where their merge-error is below the threshold (Eq. 12).
 
-    x : (frame, vertex, xyz) mesh unit
-    """
-    return Step(*rigid_motion(x[:-1], x[1:]))
-
-
-def left(x: Floats, step: Step) -> Floats:
-    """(step,) Σ_v |R v(t) + T − v(t + 1)|: the self-error if the motion is the sub-surface's own, else the cast-error (Eq. 10).
-
-    x : (frame, vertex, xyz) mesh unit
-    """
-    moved = x[:-1] @ step.R.transpose(0, 2, 1) + step.T[:, None]
-    return np.asarray(np.linalg.norm(moved - x[1:], axis=2).sum(axis=1), dtype=np.float64)
-
-
-def merge_error(x: Floats, step: Step, floor: float) -> float:
-    """Mean over steps of cast-error / self-error (Eqs. 11 and 12), at least 1 but for the norm; 1 where nothing moves.
-
-    Eq. 11 is 0 / 0 for an annulus that keeps its shape exactly: what is left is taken as `floor` a vertex at least.
-
-    x     : (frame, vertex, xyz) of an annulus, mesh unit
-    step  : of the cluster it would join
-    floor : mesh unit
-    """
-    if len(x) < 2:
-        return 1.0
-    least = max(floor * x.shape[1], 1e-300)
-    return float((np.maximum(left(x, step), least) / np.maximum(left(x, steps(x)), least)).mean())
-
-
-def clustered(annuli: list[Floats], threshold: float, floor: float) -> Clustered:
-    """Walks from the leaf: an annulus joins the cluster before it if its merge-error is below the threshold.
-
-    One that does not join stays by itself, and a new cluster begins with the annulus behind it (Sec. 6.1.2.3).
+    An annulus that does not join stays single, and a new cluster begins with the annulus after it (Sec. 6.1.2.3).
 
     annuli    : of each, (frame, vertex, xyz) mesh unit
     threshold : θ_r
     floor     : see `merge_error`
     """
-    cluster, merge = np.zeros(len(annuli), np.int64), np.ones(len(annuli))
+    cluster, error = np.zeros(len(annuli), np.int64), np.ones(len(annuli))
     first, number = 0, 0
     for k in range(1, len(annuli)):
         if first == k:
             cluster[k] = number
             continue
-        merge[k] = merge_error(annuli[k], steps(np.concatenate(annuli[first:k], axis=1)), floor)
-        if merge[k] < threshold:
+        error[k] = merge_error(annuli[k], frame_motion(np.concatenate(annuli[first:k], axis=1)), floor)
+        if error[k] < threshold:
             cluster[k] = number
         else:
             cluster[k] = number + 1
             first, number = k + 1, number + 2
-    return Clustered(np.unique(cluster, return_inverse=True)[1].astype(np.int64), merge)
+    return AnnulusClusters(np.unique(cluster, return_inverse=True)[1].astype(np.int64), error)
+
+
+def merge_error(x: Floats, motion: FrameMotion, floor: float) -> float:
+    """Mean over the transitions of cast-error / self-error (Eqs. 11 and 12); 1 for a single frame.
+
+    Eq. 11 is 0 / 0 for an annulus that keeps its shape exactly: both errors are taken as `floor` a vertex at least (ours).
+
+    x      : (frame, vertex, xyz) of an annulus, mesh unit
+    motion : of the cluster that it would join
+    floor  : mesh unit
+    """
+    if len(x) < 2:
+        return 1.0
+    least = max(floor * x.shape[1], 1e-300)
+    cast, own = residual_sums(x, motion), residual_sums(x, frame_motion(x))
+    return float((np.maximum(cast, least) / np.maximum(own, least)).mean())
+
+
+def frame_motion(x: Floats) -> FrameMotion:
+    """The rigid motion of a sub-surface from frame to frame, D_{t→t+1}, by least squares (Eq. 9; Kabsch 1976).
+
+    x : (frame, vertex, xyz) mesh unit
+    """
+    return FrameMotion(*rigid_motion(x[:-1], x[1:]))
+
+
+def residual_sums(x: Floats, motion: FrameMotion) -> Floats:
+    """(transition,) Σ_v |R v(t) + T − v(t + 1)|, mesh unit: self-error for its own motion (Eq. 9), else cast-error (Eq. 10).
+
+    x      : (frame, vertex, xyz) mesh unit
+    motion : of this or of another sub-surface
+    """
+    moved = x[:-1] @ motion.R.transpose(0, 2, 1) + motion.T[:, None]
+    return np.asarray(np.linalg.norm(moved - x[1:], axis=2).sum(axis=1), dtype=np.float64)

@@ -3,131 +3,160 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-SAME = 0.5
-"""Share of the smaller of two cones that must lie in the other, carried over a cut, for both to be of one limb."""
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
-class Seen(NamedTuple):
+class ConeConsistencySettings(NamedTuple):
+    """When two cones are one (ours)."""
+
+    least_overlap: float = 0.5
+    """Share of the smaller of two cones that must lie in the other, transferred over a cut, for both to be the same cone.
+    Chosen as more than half; sensitivity not recorded. At 1 a cone that grew differently becomes a second cone, at 0 cones
+    that touch become one."""
+
+
+class IntervalCones(NamedTuple):
     """The cones of one interval.
 
-    ring : (leaf, vertex) annulus, −1 beyond the cone; area : (vertex,) mesh unit²
-    span : (leaf,) range of μ in the cone
+    annulus  : (leaf, vertex) annulus of every vertex, −1 beyond the cone
+    area     : (vertex,) mesh unit²
+    mu_range : (leaf,) range of μ in the cone
     """
 
-    ring: Ints
+    annulus: Ints
     area: Floats
-    span: Floats
+    mu_range: Floats
 
     def rank(self, leaf: int) -> tuple[int, float]:
         """How long a bone the cone can hold: its number of annuli, then the range of μ (Sec. 6.1.1.3)."""
-        return int(self.ring[leaf].max(initial=-1)), float(self.span[leaf])
+        return int(self.annulus[leaf].max(initial=-1)), float(self.mu_range[leaf])
 
 
 class Cut(NamedTuple):
-    """What is known of two successive intervals where they meet.
+    """Correspondences between two successive intervals at the cut between them.
 
-    onward, backward    : (vertex,) of the first, in the second; of the second, in the first; −1 for none
-    before, behind      : (pair,) leaves that are mutually nearest
-    moved               : (pair,) how far they are apart, mesh unit
+    to_next, to_previous   : (vertex,) vertex of the next interval's reference at each of the previous one's · the reverse;
+                             −1 for none
+    leaf_before, leaf_after : (pair,) leaves of the previous and of the next interval that are mutually nearest
+    leaf_distance          : (pair,) how far apart they are, mesh unit
     """
 
-    onward: Ints
-    backward: Ints
-    before: Ints
-    behind: Ints
-    moved: Floats
+    to_next: Ints
+    to_previous: Ints
+    leaf_before: Ints
+    leaf_after: Ints
+    leaf_distance: Floats
 
 
-class Limbs(NamedTuple):
+class ConsistentCones(NamedTuple):
     """One set of cones for the whole sequence.
 
-    ring : of each interval, (limb, vertex) annulus, −1 beyond the cone
-    leaf : (interval, limb) the leaf that was seen, −1 where the cone was recovered
+    annulus : of each interval, (cone, vertex) annulus of every vertex, −1 beyond the cone
+    leaf    : (interval, cone) the cone's leaf in the interval, −1 where the cone was recovered
     """
 
-    ring: tuple[Ints, ...]
+    annulus: tuple[Ints, ...]
     leaf: Ints
 
 
-def limbs(seen: list[Seen], cuts: list[Cut], threshold: float) -> Limbs:
-    """Walks along the intervals and back.
+def consistent_cones(
+    intervals: list[IntervalCones], cuts: list[Cut], threshold: float, settings: ConeConsistencySettings | None = None
+) -> ConsistentCones:
+    """Matches the cones of successive intervals, and transfers those without a match over the cuts, forwards and backwards.
 
-    threshold : θ of Eq. 7, how far a leaf may move between two frames, mesh unit
+    intervals, cuts : in order; one cut fewer than intervals
+    threshold       : θ of Eq. 7, how far a leaf may move between two frames, mesh unit
     """
-    linked, erroneous = _linked(seen, cuts, threshold)
-    alive = [[n for n in range(len(s.ring)) if (i, n) not in erroneous and s.ring[n].max(initial=-1) >= 0]
-             for i, s in enumerate(seen)]  # fmt: skip
-    leaf = [dict(enumerate(alive[0]))]
-    ring = [{limb: seen[0].ring[n] for limb, n in leaf[0].items()}]
-    number = len(leaf[0])
+    least = (settings or ConeConsistencySettings()).least_overlap
+    matches, erroneous = _matched_leaves(intervals, cuts, threshold, least)
+    reliable = [
+        [n for n in range(len(own.annulus)) if (i, n) not in erroneous and own.annulus[n].max(initial=-1) >= 0]
+        for i, own in enumerate(intervals)
+    ]
+    leaf = [dict(enumerate(reliable[0]))]
+    annulus = [{cone: intervals[0].annulus[n] for cone, n in leaf[0].items()}]
+    count = len(leaf[0])
     for i, cut in enumerate(cuts):
-        carried = {limb: carry(r, cut.backward) for limb, r in ring[i].items()}
-        here: dict[int, int] = {}
-        fresh = list(alive[i + 1])
-        for limb, n in leaf[i].items():
-            partner = linked[i].get(n, -1)
-            if partner in fresh:
-                here[limb] = partner
-                fresh.remove(partner)
-        waiting = [limb for limb in carried if limb not in here]
-        for n in fresh:
-            shares = [shared(carried[limb], seen[i + 1].ring[n], seen[i + 1].area) for limb in waiting]
-            if shares and max(shares) >= SAME:
-                limb = waiting.pop(int(np.argmax(shares)))
-                here[limb] = n
-            else:
-                here[number], number = n, number + 1
-        ring.append({**carried, **{limb: seen[i + 1].ring[n] for limb, n in here.items()}})
-        leaf.append(here)
+        after = intervals[i + 1]
+        transferred = {cone: transferred_annuli(a, cut.to_previous) for cone, a in annulus[i].items()}
+        matched = {cone: matches[i][n] for cone, n in leaf[i].items() if matches[i].get(n, -1) in reliable[i + 1]}
+        leaf.append(_identified(matched, reliable[i + 1], transferred, after, count, least))
+        count += sum(cone >= count for cone in leaf[-1])
+        annulus.append({**transferred, **{cone: after.annulus[n] for cone, n in leaf[-1].items()}})
     for i in range(len(cuts) - 1, -1, -1):
-        for limb, r in ring[i + 1].items():
-            if limb not in ring[i]:
-                ring[i][limb] = carry(r, cuts[i].onward)
+        for cone, own in annulus[i + 1].items():
+            if cone not in annulus[i]:
+                annulus[i][cone] = transferred_annuli(own, cuts[i].to_next)
     rows = tuple(
-        np.array([r[limb] for limb in range(number)], np.int64).reshape(number, len(s.area))
-        for r, s in zip(ring, seen, strict=True)
+        np.array([of_cone[cone] for cone in range(count)], np.int64).reshape(count, len(own.area))
+        for of_cone, own in zip(annulus, intervals, strict=True)
     )
-    leaves = np.array([[at.get(limb, -1) for limb in range(number)] for at in leaf], np.int64)
-    return Limbs(rows, leaves.reshape(len(seen), number))
+    leaves = np.array([[here.get(cone, -1) for cone in range(count)] for here in leaf], np.int64)
+    return ConsistentCones(rows, leaves.reshape(len(intervals), count))
 
 
-def carry(ring: Ints, source: Ints) -> Ints:
-    """Gives every vertex the annulus of the vertex that it was mapped onto, v_j' ∈ A^k if v_j ∈ A^k  (Eq. 8).
+def transferred_annuli(annulus: Ints, source: Ints) -> Ints:
+    """Gives every vertex the annulus of the vertex that it is mapped onto, v_j' ∈ A^k if v_j ∈ A^k  (Eq. 8).
 
-    Eq. 8 takes the lost cone out of what may be mapped onto, and then asks what was mapped onto it; we leave it in.
+    Eq. 8 leaves the lost cone out of the vertices that may be mapped onto, and its second step asks what was mapped onto
+    that cone; we leave the cone in.
 
-    ring    : (vertex,) before the cut, source : (vertex,) behind it, the vertex before; −1 for none
+    annulus : (vertex,) on one side of the cut, −1 beyond the cone
+    source  : (vertex,) of each vertex on the other side its vertex on the first, −1 for none
+    returns : (vertex,) on the other side
     """
-    return np.where(source >= 0, ring[source], -1)
+    return np.where(source >= 0, annulus[source], -1)
 
 
-def shared(a: Ints, b: Ints, area: Floats) -> float:
-    """Area common to two cones, as share of the smaller."""
-    both, least = area[(a >= 0) & (b >= 0)].sum(), min(area[a >= 0].sum(), area[b >= 0].sum())
-    return float(both / least) if least > 0.0 else 0.0
+def overlap(a: Ints, b: Ints, area: Floats) -> float:
+    """Area common to two cones on one mesh, share of the smaller; 0 if one of them is empty.
 
-
-def _linked(seen: list[Seen], cuts: list[Cut], threshold: float) -> tuple[list[dict[int, int]], set[tuple[int, int]]]:
-    """Per cut the leaf behind it of each leaf before it, and the erroneous cones as interval and leaf.
-
-    Of two leaves that Eq. 7 finds too far apart the cone with fewer annuli goes; so does that of two leaves, both left
-    without a partner, of which one's cone lies in the other's.
+    a, b : (vertex,) annulus in each, −1 beyond the cone
+    area : (vertex,) mesh unit²
     """
-    linked: list[dict[int, int]] = []
+    both, smaller = area[(a >= 0) & (b >= 0)].sum(), min(area[a >= 0].sum(), area[b >= 0].sum())
+    return float(both / smaller) if smaller > 0.0 else 0.0
+
+
+def _identified(
+    matched: dict[int, int], reliable: list[int], transferred: dict[int, Ints], after: IntervalCones, count: int, least: float
+) -> dict[int, int]:
+    """The leaf of each cone behind a cut: matched ones, those whose cones overlap with a transferred one, and new ones."""
+    leaf = dict(matched)
+    unmatched = [cone for cone in transferred if cone not in leaf]
+    for n in (n for n in reliable if n not in matched.values()):
+        shares = [overlap(transferred[cone], after.annulus[n], after.area) for cone in unmatched]
+        if shares and max(shares) >= least:
+            leaf[unmatched.pop(int(np.argmax(shares)))] = n
+        else:
+            leaf[count], count = n, count + 1
+    return leaf
+
+
+def _matched_leaves(
+    intervals: list[IntervalCones], cuts: list[Cut], threshold: float, least: float
+) -> tuple[list[dict[int, int]], set[tuple[int, int]]]:
+    """Of each cut the leaf behind it of each leaf before it; the erroneous cones as pairs of interval and leaf.
+
+    Of two leaves that are farther apart than the threshold, the cone with fewer annuli is erroneous (Eq. 7). So it is (ours)
+    of two leaves without a match whose cones overlap.
+    """
+    matches: list[dict[int, int]] = []
     erroneous: set[tuple[int, int]] = set()
     for i, cut in enumerate(cuts):
-        a, b = seen[i], seen[i + 1]
-        pairs = list(zip(cut.before.tolist(), cut.behind.tolist(), cut.moved.tolist(), strict=True))
-        linked.append({n: m for n, m, moved in pairs if moved <= threshold})
-        doubtful = [(n, m) for n, m, moved in pairs if moved > threshold]
-        alone = [n for n in range(len(a.ring)) if n not in cut.before]
-        other = [m for m in range(len(b.ring)) if m not in cut.behind]
-        doubtful += [(n, m) for n in alone for m in other if shared(carry(a.ring[n], cut.backward), b.ring[m], b.area) >= SAME]
+        a, b = intervals[i], intervals[i + 1]
+        pairs = list(zip(cut.leaf_before.tolist(), cut.leaf_after.tolist(), cut.leaf_distance.tolist(), strict=True))
+        matches.append({n: m for n, m, distance in pairs if distance <= threshold})
+        doubtful = [(n, m) for n, m, distance in pairs if distance > threshold]
+        single_before = [n for n in range(len(a.annulus)) if n not in cut.leaf_before]
+        single_after = [m for m in range(len(b.annulus)) if m not in cut.leaf_after]
+        doubtful += [
+            (n, m)
+            for n in single_before
+            for m in single_after
+            if overlap(transferred_annuli(a.annulus[n], cut.to_previous), b.annulus[m], b.area) >= least
+        ]
         for n, m in doubtful:
             erroneous.add((i, n) if a.rank(n) < b.rank(m) else (i + 1, m))
-    return linked, erroneous
+    return matches, erroneous

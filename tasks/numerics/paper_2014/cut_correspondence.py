@@ -1,11 +1,9 @@
-"""How the meshes of two intervals lie on each other at the cut between them (2014, Sec. 6.1.1.2 to 6.1.1.4, Eqs. 7 and 8)."""
+"""Vertices and leaves of two successive intervals related at the cut between them (2014, Sec. 6.1.1.2 to 6.1.1.4)."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
 def nearest_agreeing(P: Floats, N: Floats, Q: Floats, M: Floats) -> tuple[Ints, Floats]:
@@ -13,14 +11,14 @@ def nearest_agreeing(P: Floats, N: Floats, Q: Floats, M: Floats) -> tuple[Ints, 
 
     P, N    : (vertex, xyz) mesh unit · (vertex, xyz) normals
     Q, M    : the same of the other side
-    returns : (vertex,) of the other side, −1 where the normals do not agree or there is no other side · (vertex,) how
-              far, mesh unit, infinite if there is no other side
+    returns : (vertex,) of the other side, −1 where the normals do not agree or there is no other side · (vertex,)
+              distance, mesh unit, infinite if there is no other side
     """
     if not len(Q):
         return np.full(len(P), -1), np.full(len(P), np.inf)
-    away, nearest = cKDTree(Q).query(P)
+    distance, nearest = cKDTree(Q).query(P)
     agree = np.einsum("vx,vx->v", N, M[nearest]) > 0.0
-    return np.where(agree, nearest, -1), away
+    return np.where(agree, nearest, -1), distance
 
 
 def mutual_pairs(P: Floats, N: Floats, Q: Floats, M: Floats) -> Ints:
@@ -29,7 +27,7 @@ def mutual_pairs(P: Floats, N: Floats, Q: Floats, M: Floats) -> Ints:
     P, N, Q, M : as in `nearest_agreeing`, of leaves
     returns    : (pair, 2) rows of P and of Q, ascending
     """
-    ahead, back = nearest_agreeing(P, N, Q, M)[0], nearest_agreeing(Q, M, P, N)[0]
-    row = np.flatnonzero(ahead >= 0)
-    row = row[back[ahead[row]] == row] if len(row) else row
-    return np.stack([row, ahead[row]], axis=1)
+    forwards, backwards = nearest_agreeing(P, N, Q, M)[0], nearest_agreeing(Q, M, P, N)[0]
+    row = np.flatnonzero(forwards >= 0)
+    row = row[backwards[forwards[row]] == row] if len(row) else row
+    return np.stack([row, forwards[row]], axis=1)

@@ -1,97 +1,196 @@
-"""The undefined area, and the cylinders that define it one after another (2014, Sec. 6.2; Fig. 14)."""
+"""The undefined area, the cylinders that define it one after another, and the areas of all (2014, Sec. 6.2; Figs. 13, 14)."""
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.paper_2014.cones import Bools, Floats, Ints, bands, edges, grown, pieces, reached
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters
+from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown, neighbours
+from kinetree.tasks.numerics.paper_2014.integration import integrated
 
-LEAST = 0.005
-"""Undefined pieces with less than this share of the area are left to what lies around them."""
-
-Cluster = Callable[[list[Ints]], Bools]
-"""Tells of annuli, each the vertices of the reference in it, which belong to a rigid area, all intervals considered."""
+Clustering = Callable[[list[Ints]], Flags]
+"""From the vertices of each annulus to whether each annulus belongs to a rigid area, all intervals considered."""
 
 
-class Piece(NamedTuple):
-    """A kinematic cone or cylinder.
+class CylindersSettings(NamedTuple):
+    """Which part of the undefined area a cylinder may take."""
 
-    limb  : whose leaf it starts from, cylinder : how many were found before it, −1 for a cone
-    ring  : (vertex,) annulus, −1 outside
-    rigid : (annulus,) from the lowest annulus there is to the highest
+    least_area: float = 0.005
+    """Smallest component of the undefined area that is extended into, share of the area of the body; smaller ones join the
+    areas around them. Not recorded what it was chosen on. At 0 fragments between cones become joints of their own."""
+
+
+class Cylinder(NamedTuple):
+    """A kinematic cone or a kinematic cylinder.
+
+    cone    : the cone, or the cone that the cylinder extends
+    annulus : (vertex,) annulus of every vertex, −1 outside
+    rigid   : (annulus,) whether each annulus from 0 to the last is rigid
     """
 
-    limb: int
-    cylinder: int
-    ring: Ints
-    rigid: Bools
+    cone: int
+    annulus: Ints
+    rigid: Flags
 
 
-def trimmed(ring: Ints, rigid: Bools) -> list[Piece]:
-    """Kinematic cones without the overlapping rigid area farthest from their leaves, and without other overlaps.
+class IntervalMotion(NamedTuple):
+    """One interval's reference in all of its frames.
 
-    What a cone's rigid area shares with another cone may be part of either, so all of that area is cut off (Sec. 6.2.2).
-    The area around the leaf is kept as far as it overlaps with nothing.
-
-    ring  : (limb, vertex) annulus, −1 beyond the cone
-    rigid : (limb, annulus) as integrated over the intervals
+    x            : (frame, own vertex, xyz) mesh unit
+    model_vertex : (own vertex,) the corresponding vertex of the model mesh, −1 for none
+    floor        : see `merge_error`, mesh unit
+    at_rest      : whether no part of the body moved against another
     """
-    out = []
-    overlap = (ring >= 0).sum(axis=0) > 1
-    cut = ring.copy()
-    for n, row in enumerate(ring):
-        last = int(row.max(initial=-1))
+
+    x: Floats
+    model_vertex: Ints
+    floor: float
+    at_rest: bool
+
+
+class Areas(NamedTuple):
+    """A partition of the surface into rigid and non-rigid areas.
+
+    label                       : (vertex,) area
+    rigid                       : (area,) whether it is rigid; the others are joints
+    cylinder                    : (area,) the cone or cylinder that it belongs to
+    first_annulus, last_annulus : (area,) its annuli there
+    """
+
+    label: Ints
+    rigid: Flags
+    cylinder: Ints
+    first_annulus: Ints
+    last_annulus: Ints
+
+
+def kinematic_cones(annulus: Ints, rigid: Flags) -> list[Cylinder]:
+    """Kinematic cones without the rigid area farthest from their leaves where that overlaps, and without other overlaps.
+
+    A rigid area that overlaps with another cone may be part of either, so all of it is cut off (Sec. 6.2.2). The area around
+    the leaf stays as far as it overlaps with nothing.
+
+    annulus : (cone, vertex) annulus of every vertex, −1 beyond the cone
+    rigid   : (cone, annulus) as integrated over the intervals
+    """
+    overlapping = (annulus >= 0).sum(axis=0) > 1
+    cut = annulus.copy()
+    for n, own in enumerate(annulus):
+        last = int(own.max(initial=-1))
         first = last
         while first > 0 and rigid[n, first - 1] and rigid[n, last]:
             first -= 1
-        if last >= 0 and first > 0 and rigid[n, last] and overlap[row >= first].any():
-            cut[n, row >= first] = -1
-    claimed = (cut >= 0).sum(axis=0)
-    for n, row in enumerate(cut):
-        mine = np.where(claimed == 1, row, -1)
-        out.append(Piece(n, -1, mine, rigid[n, : int(mine.max(initial=-1)) + 1]))
+        if last >= 0 and first > 0 and rigid[n, last] and overlapping[own >= first].any():
+            cut[n, own >= first] = -1
+    claims = (cut >= 0).sum(axis=0)
+    out = []
+    for n, own in enumerate(cut):
+        alone = np.where(claims == 1, own, -1)
+        out.append(Cylinder(n, alone, rigid[n, : int(alone.max(initial=-1)) + 1]))
     return out
 
 
-def cylinders(cones: list[Piece], distance: Floats, area: Floats, F: Ints, cluster: Cluster, annuli: int) -> list[Piece]:
-    """Takes the extension with the widest range of distances, clusters it, cuts it off, until nothing can be extended.
+def cylinders(
+    cones: list[Cylinder],
+    distance: Floats,
+    area: Floats,
+    F: Ints,
+    clustering: Clustering,
+    annuli: int,
+    settings: CylindersSettings | None = None,
+) -> list[Cylinder]:
+    """Takes the extension with the widest range of distances, clusters it, cuts it off, until none is left (Sec. 6.2).
 
-    cones    : of every limb
-    distance : (limb, vertex) from the limb's leaf, mesh unit; NaN for a limb whose leaf is not seen in the reference
-    area     : (vertex,) mesh unit²; F : (face, corner)
-    annuli   : in the longest distance from a leaf
-    returns  : the cylinders, in the order in which they were found
+    cones      : all kinematic cones
+    distance   : (cone, vertex) from the cone's leaf, mesh unit; NaN for a cone whose leaf is not seen in the reference
+    area, F    : (vertex,) mesh unit² · (face, corner)
+    clustering : finds the rigid annuli of an extension
+    annuli     : in the longest distance from a leaf
+    returns    : the cylinders, in the order in which they were found
     """
+    settings = settings or CylindersSettings()
     E = edges(F)
     band = [bands(d, annuli) for d in distance]
-    limb_of = np.full(len(area), -1)
-    for piece in cones:
-        limb_of[piece.ring >= 0] = piece.limb
-    found: list[Piece] = []
+    cone_of = np.full(len(area), -1)
+    for cone in cones:
+        cone_of[cone.annulus >= 0] = cone.cone
+    out: list[Cylinder] = []
     while True:
-        bare = pieces(limb_of == -1, E)
-        small = np.bincount(bare[bare >= 0], area[bare >= 0], len(area)) < LEAST * area.sum()
-        limb_of[(bare >= 0) & small[bare]] = -2
-        best: tuple[float, int, Ints] | None = None
-        for n, b in enumerate(band):
-            ring = _extension(np.where(limb_of == -1, b, -1), limb_of == n, area, E)
-            inside = ring >= 0
-            if inside.any():
-                wide = float(np.ptp(distance[n][inside]))
-                if best is None or wide > best[0]:
-                    best = (wide, n, ring)
-        if best is None:
-            break
-        _, n, ring = best
-        used = np.unique(ring[ring >= 0])
-        ring = np.where(ring >= 0, np.searchsorted(used, ring), -1)
-        rigid = cluster([np.flatnonzero(ring == k) for k in range(len(used))])
-        found.append(Piece(n, len(found), ring, rigid))
-        limb_of[ring >= 0] = n
-    return found
+        component = components(cone_of == -1, E)
+        small = np.bincount(component[component >= 0], area[component >= 0], len(area)) < settings.least_area * area.sum()
+        cone_of[(component >= 0) & small[component]] = -2
+        widest = _widest_extension(cone_of, band, distance, area, E)
+        if widest is None:
+            return out
+        n, annulus = widest
+        used = np.unique(annulus[annulus >= 0])
+        annulus = np.where(annulus >= 0, np.searchsorted(used, annulus), -1)
+        rigid = clustering([np.flatnonzero(annulus == k) for k in range(len(used))])
+        out.append(Cylinder(n, annulus, rigid))
+        cone_of[annulus >= 0] = n
 
 
-def _extension(band: Ints, mine: Bools, area: Floats, E: Ints) -> Ints:
-    """(vertex,) annuli of the undefined area that continue what a limb has, −1 elsewhere."""
-    return grown(band, reached(mine, E) & ~mine, area, E)
+def rigid_annuli(annuli: list[Ints], intervals: list[IntervalMotion], theta: float, vertices: int) -> Flags:
+    """(annulus,) whether each annulus of an extension is rigid in all intervals (Sec. 6.2.3, as Sec. 6.1.2 and 6.1.3).
+
+    annuli    : of each, its vertices on the model mesh
+    intervals : in any order
+    theta     : θ_r, threshold of Eq. 12
+    vertices  : of the model mesh
+    """
+    of_model = np.full(vertices, -1)
+    for k, inside in enumerate(annuli):
+        of_model[inside] = k
+    annulus, rigid = [], []
+    for x, model_vertex, floor, at_rest in intervals:
+        own = np.where(model_vertex >= 0, of_model[model_vertex], -1)
+        annulus.append(np.unique(own[own >= 0]))
+        rigid.append(annulus_clusters([x[:, own == k] for k in annulus[-1]], theta, floor).rigid | at_rest)
+    return integrated(annulus, rigid, len(annuli))
+
+
+def areas(cylinders: list[Cylinder], vertices: int, F: Ints) -> Areas:
+    """Contiguous annuli of a cone or cylinder that are all rigid, or all not, are one area (Sec. 6.1.2.3).
+
+    A vertex in no cone or cylinder belongs to the area that is reached first over the edges (ours).
+
+    cylinders : kinematic cones, then cylinders
+    vertices  : of the mesh
+    F         : (face, corner)
+    """
+    label = np.full(vertices, -1)
+    rows: list[tuple[bool, int, int, int]] = []
+    for number, cylinder in enumerate(cylinders):
+        used = np.unique(cylinder.annulus[cylinder.annulus >= 0])
+        for position, k in enumerate(used):
+            rigid = bool(cylinder.rigid[k])
+            if position == 0 or rows[-1][0] != rigid:
+                rows.append((rigid, number, int(k), int(k)))
+            rows[-1] = (*rows[-1][:3], int(k))
+            label[cylinder.annulus == k] = len(rows) - 1
+    if not rows:
+        return Areas(np.zeros_like(label), *(np.array([a]) for a in (True, 0, 0, 0)))
+    E = edges(F)
+    while (label < 0).any():
+        before = label.copy()
+        for a, b in (E.T, E[:, ::-1].T):
+            reached = (before[b] < 0) & (before[a] >= 0)
+            label[b[reached]] = before[a[reached]]
+        if (label == before).all():
+            label[label < 0] = 0
+    return Areas(label, *(np.array(column) for column in zip(*rows, strict=True)))
+
+
+def _widest_extension(cone_of: Ints, band: list[Ints], distance: Floats, area: Floats, E: Ints) -> tuple[int, Ints] | None:
+    """The cone whose extension into the undefined area has the widest range of distances, and (vertex,) the annuli of that."""
+    best: tuple[float, int, Ints] | None = None
+    for n, own in enumerate(band):
+        inside = cone_of == n
+        annulus = grown(np.where(cone_of == -1, own, -1), neighbours(inside, E) & ~inside, area, E)
+        if (annulus >= 0).any():
+            wide = float(np.ptp(distance[n][annulus >= 0]))
+            if best is None or wide > best[0]:
+                best = (wide, n, annulus)
+    return best[1:] if best else None

@@ -1,16 +1,15 @@
 """Non-rigid labels shared by all intervals, and the threshold with the most clusters (2014, Sec. 6.1.3; Figs. 11 and 12)."""
 
 import numpy as np
-import numpy.typing as npt
 
-Ints = npt.NDArray[np.int64]
-Bools = npt.NDArray[np.bool_]
+from kinetree.tasks.numerics.arrays import Flags, Ints
 
 
-def integrated(annulus: list[Ints], rigid: list[Bools], annuli: int) -> Bools:
-    """(annulus,) whether annulus k of a cone is rigid: not if it is a joint in any interval; true where there is none.
+def integrated(annulus: list[Ints], rigid: list[Flags], annuli: int) -> Flags:
+    """(annulus,) whether annulus k of a cone is rigid: not if it is non-rigid in any interval (Sec. 6.1.3; Fig. 12).
 
-    annulus, rigid : of each interval, (seen,) the annuli that it has, and whether they are rigid there
+    annulus, rigid : of each interval, (own annulus,) the annuli that it has · whether they are rigid there
+    annuli         : length of the result; an annulus that no interval has is rigid
     """
     out = np.ones(annuli, dtype=bool)
     for k, r in zip(annulus, rigid, strict=True):
@@ -18,17 +17,21 @@ def integrated(annulus: list[Ints], rigid: list[Bools], annuli: int) -> Bools:
     return out
 
 
-def rigid_areas(rigid: Bools) -> int:
-    """How many runs of rigid annuli there are along one cone (annulus,)."""
+def rigid_areas(rigid: Flags) -> int:
+    """How many runs of rigid annuli there are along one cone.
+
+    rigid : (annulus,)
+    """
     return int(rigid[:1].sum() + (rigid[1:] & ~rigid[:-1]).sum())
 
 
 def most_clusters(count: Ints) -> int:
-    """The threshold with the most clusters; of equally many the lowest, which finds a joint before its ring has passed.
+    """The threshold with the most clusters (caption of Fig. 11); of equally many the lowest (ours).
 
-    An annulus across a joint is not rigid itself, which hides in Eq. 11's ratio that it does not follow: a high threshold
-    takes the annulus behind it for the joint.
+    An annulus across a joint is not rigid itself, and its own error hides in Eq. 11 that it does not follow the cluster
+    before it: under a high threshold it joins, and the annulus behind it is taken for the joint.
 
-    count : (rung,) clusters that each gives, by ascending threshold
+    count   : (threshold,) clusters that each gives, by ascending threshold
+    returns : position of the threshold
     """
     return int(np.argmax(count))

@@ -1,130 +1,154 @@
-"""The finished articulated body of the 2014 paper: rotations, fixed lengths, leaf bones, names (Sec. 6.3)."""
+"""The finished articulated body of the 2014 paper: rotations, fixed lengths, bones to the leaves, names (Sec. 6.3)."""
+
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from kinetree.tasks.numerics.paper_2014.assembly import Fitted, Hung, posed, rotations
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.paper_2014.fixed_lengths import Observed, Posed, posed, rotations
+from kinetree.tasks.numerics.paper_2014.joint_tree import JointTree
 from kinetree.tasks.numerics.structure.joint_names import named
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.kinematic_tree import KinematicTree
 
-HALF = 0.04
-"""At this distance between a joint and where it was seen it is half believed, share of the root of the area."""
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+class KinematicStructureSettings(NamedTuple):
+    """How confident a joint's position is (ours)."""
+
+    half_confidence: float = 0.04
+    """Distance between a joint and the centroid of its area at which confidence is one half, share of the root of the area.
+    Not recorded what it was chosen on; it changes the reported confidence only."""
+
+
+class Model(NamedTuple):
+    """The model mesh with its areas.
+
+    V     : (vertex, xyz) mesh unit
+    area  : (vertex,) mesh unit²
+    label : (vertex,) area, rigid or not
+    part  : (area,) rigid part of each area, −1 for joints
+    """
+
+    V: Floats
+    area: Floats
+    label: Ints
+    part: Ints
 
 
 def kinematic_structure(
-    V: Floats,
-    area: Floats,
-    y: Floats,
-    label: Ints,
-    body: Ints,
-    tree: Hung,
+    model: Model,
+    x: Floats,
+    tree: JointTree,
     centroid: Floats,
-    tip: Ints,
-    tips: Floats,
+    leaf_vertex: Ints,
+    leaf_position: Floats,
     surface: float = 1.0,
+    settings: KinematicStructureSettings | None = None,
 ) -> KinematicTree:
-    """The whole of it.
+    """Rotations of the parts, fixed bone lengths, bones to the leaves, skin and names of all joints (Sec. 6.3.2).
 
-    V, area  : (vertex, xyz) mesh unit, (vertex,) mesh unit²
-    y        : (frame, vertex, xyz) mesh unit, NaN where not seen
-    label    : (vertex,) area, body : (area,) rigid body, −1 for joints
-    centroid : (frame, area, xyz) mesh unit, NaN where not seen
-    tip      : (leaf,) vertices, tips : (frame, leaf, xyz) where they are, NaN where not seen
-    surface  : weight of a body's surface against one joint
+    model         : the mesh that the skeleton is of
+    x             : (frame, vertex, xyz) its vertices in every frame, mesh unit, NaN where not seen
+    tree          : joints and parts
+    centroid      : (frame, area, xyz) mesh unit, NaN where not seen
+    leaf_vertex   : (leaf,) vertex of the model mesh at each leaf
+    leaf_position : (frame, leaf, xyz) mesh unit, NaN where not seen
+    surface       : weight of a part's surface against one joint
     """
-    of, own = _carriers(label, body, tree), _own(label, body, tree)
-    R = np.stack([rotations(V, y, mine) for mine in own], axis=1)
-    weight = area * own[0]
-    X = np.concatenate([np.full((len(y), 1, 3), np.nan), centroid[:, tree.joint[1:]]], axis=1)
-    X[:, 0] = _middle(weight, y)
-    on = _bearers(V, tip, of, label, tree)
-    middle = weight @ V / weight.sum()
-    found = posed(V, y, of, tree, X, R, middle, on, tips, surface)
-    return _named(V, label, body, of, tree, X, tips, on, found, HALF * float(np.sqrt(area.sum())))
+    settings = settings or KinematicStructureSettings()
+    carried = _carried(model, tree)
+    node = _nodes(carried)
+    R = np.stack([rotations(model.V, x, own) for own in carried], axis=1)
+    weight = model.area * carried[0]
+    X = np.concatenate([np.full((len(x), 1, 3), np.nan), centroid[:, tree.joint[1:]]], axis=1)
+    X[:, 0] = _seen_middle(weight, x)
+    leaf_node = _leaf_nodes(node, model.label, tree, leaf_vertex)
+    root = weight @ model.V / weight.sum()
+    observed = Observed(X, R, leaf_position)
+    motion = posed(model.V, x, node, tree.parents, observed, root, leaf_node, surface)
+    half = settings.half_confidence * float(np.sqrt(model.area.sum()))
+    return _assembled(model, node, tree, observed, leaf_node, motion, half)
 
 
-def _own(label: Ints, body: Ints, tree: Hung) -> list[npt.NDArray[np.bool_]]:
-    """Of each node, the vertices of the body that it carries, else of the joint's own area; all if it is nothing's."""
-    of_body = body[label] if len(body) else np.zeros_like(label)
-    own = [of_body == b if b >= 0 else label == j for j, b in zip(tree.joint, tree.carries, strict=True)]
-    return [mine if mine.any() else np.ones(len(label), dtype=bool) for mine in own]
+def _carried(model: Model, tree: JointTree) -> list[Flags]:
+    """Of each node, (vertex,) its part's vertices, else its joint's own area; all vertices if there are none of either."""
+    part = model.part[model.label] if len(model.part) else np.zeros_like(model.label)
+    own = [part == p if p >= 0 else model.label == j for j, p in zip(tree.joint, tree.part, strict=True)]
+    return [vertices if vertices.any() else np.ones(len(model.label), dtype=bool) for vertices in own]
 
 
-def _carriers(label: Ints, body: Ints, tree: Hung) -> Ints:
-    """(vertex,) node whose rotation a vertex has, −1 for a joint beyond which there is a body."""
-    of = np.full(len(label), -1)
-    for node, mine in enumerate(_own(label, body, tree)):
-        of[mine & (of < 0)] = node
-    return of
+def _nodes(carried: list[Flags]) -> Ints:
+    """(vertex,) the node that carries a vertex, −1 for a joint beyond which there is a part."""
+    node = np.full(len(carried[0]), -1)
+    for n, own in enumerate(carried):
+        node[own & (node < 0)] = n
+    return node
 
 
-def _middle(weight: Floats, y: Floats) -> Floats:
-    """(frame, xyz) middle of what is seen; NaN where nothing is."""
-    seen = weight * np.isfinite(y[:, :, 0])
+def _seen_middle(weight: Floats, x: Floats) -> Floats:
+    """(frame, xyz) weighted middle of the vertices that are seen; NaN where none is."""
+    seen = weight * np.isfinite(x[:, :, 0])
     total = seen.sum(axis=1)[:, None]
-    place = np.einsum("tv,tvx->tx", seen, np.nan_to_num(y))
-    return np.asarray(np.where(total > 0.0, place / np.maximum(total, 1e-300), np.nan), dtype=np.float64)
+    middle = np.einsum("tv,tvx->tx", seen, np.nan_to_num(x))
+    return np.asarray(np.where(total > 0.0, middle / np.maximum(total, 1e-300), np.nan), dtype=np.float64)
 
 
-def _bearers(V: Floats, tip: Ints, of: Ints, label: Ints, tree: Hung) -> Ints:
-    """(leaf,) the node on which each leaf's bone hangs: that which carries it, else that of the joint it lies in."""
-    on = of[tip].copy()
-    for e in np.flatnonzero(on < 0):
-        mine = np.flatnonzero(tree.joint == label[tip[e]])
-        on[e] = mine[0] if len(mine) else 0
-    return on
+def _leaf_nodes(node: Ints, label: Ints, tree: JointTree, leaf_vertex: Ints) -> Ints:
+    """(leaf,) the node on which each leaf's bone hangs: the one that carries it, else that of the joint it lies in."""
+    out = node[leaf_vertex].copy()
+    for e in np.flatnonzero(out < 0):
+        own = np.flatnonzero(tree.joint == label[leaf_vertex[e]])
+        out[e] = own[0] if len(own) else 0
+    return out
 
 
-def _named(
-    V: Floats, label: Ints, body: Ints, of: Ints, tree: Hung, X: Floats, tips: Floats, on: Ints, found: Fitted, half: float
+def _assembled(
+    model: Model, node: Ints, tree: JointTree, observed: Observed, leaf_node: Ints, posed: Posed, half: float
 ) -> KinematicTree:
     """Nodes and leaves as one list of joints, named and in the order of their names.
 
-    A joint is believed as far as it is where it was seen, 1 / (1 + (gap / half)²), and not at all where it was not.
+    A joint's confidence is 1 / (1 + (distance / half)²) of its distance to where it was observed, and 0 where it was not.
     """
-    nodes, frames = len(tree.parents), len(X)
-    carrying = np.concatenate([np.arange(nodes), on])
-    above = np.concatenate([tree.parents, on])
-    rest = np.concatenate([found.motion.rest, found.end_rest])
-    is_end = np.arange(len(above)) >= nodes
-    order, names = named(rest, above, is_end)
-    place = np.argsort(order)
-    R = found.motion.R
+    nodes, frames = len(tree.parents), len(observed.joint)
+    carrying = np.concatenate([np.arange(nodes), leaf_node])
+    above = np.concatenate([tree.parents, leaf_node])
+    rest = np.concatenate([posed.motion.rest, posed.leaf_rest])
+    is_leaf = np.arange(len(above)) >= nodes
+    order, names = named(rest, above, is_leaf)
+    position = np.argsort(order)
+    R = posed.motion.R
     turns = np.einsum("tpxy,tpxz->tpyz", R[:, np.maximum(tree.parents, 0)], R)
-    degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, nodes)), *np.zeros(len(on))])
-    seen = np.isfinite(np.concatenate([X, tips], axis=1)[:, :, 0])
-    gap = np.nan_to_num(np.concatenate([found.gap, np.linalg.norm(found.ends - tips, axis=2)], axis=1))
-    influence, weight = _skin(label, of, tree)
-    rigid = body[label] >= 0 if len(body) else np.ones(len(V), dtype=bool)
+    degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, nodes)), *np.zeros(len(leaf_node))])
+    seen = np.isfinite(np.concatenate([observed.joint, observed.leaf], axis=1)[:, :, 0])
+    leaf_distance = np.linalg.norm(posed.leaf_positions - observed.leaf, axis=2)
+    distance = np.nan_to_num(np.concatenate([posed.distance, leaf_distance], axis=1))
+    influence, weight = _skin(model.label, node, tree)
+    rigid = model.part[model.label] >= 0 if len(model.part) else np.ones(len(model.V), dtype=bool)
     return KinematicTree(
         names=names,
-        kinds=tuple("leaf" if is_end[j] else "joint" if above[j] >= 0 else "root" for j in order),
-        parents=np.where(above[order] >= 0, place[above[order]], -1),
+        kinds=tuple("leaf" if is_leaf[j] else "joint" if above[j] >= 0 else "root" for j in order),
+        parents=np.where(above[order] >= 0, position[above[order]], -1),
         rest=rest[order],
-        positions=np.concatenate([found.positions, found.ends], axis=1)[:, order],
+        positions=np.concatenate([posed.positions, posed.leaf_positions], axis=1)[:, order],
         rotation=R[:, carrying[order]],
-        confidence=(seen / (1.0 + (gap / half) ** 2))[:, order].reshape(frames, -1),
+        confidence=(seen / (1.0 + (distance / half) ** 2))[:, order].reshape(frames, -1),
         degrees=degrees[order],
-        drift=np.concatenate([found.drift, np.zeros(len(on))])[order],
+        drift=np.concatenate([posed.drift, np.zeros(len(leaf_node))])[order],
         support=seen.sum(axis=0)[order],
-        label=np.where(rigid & (of >= 0), place[of], -1),
-        influence=np.where(weight > 0, place[influence], 0),
+        label=np.where(rigid & (node >= 0), position[node], -1),
+        influence=np.where(weight > 0, position[influence], 0),
         weight=weight,
     )
 
 
-def _skin(label: Ints, of: Ints, tree: Hung) -> tuple[Ints, Floats]:
-    """(vertex, 4) nodes and weights: rigid areas follow their node, joints half of what they join."""
+def _skin(label: Ints, node: Ints, tree: JointTree) -> tuple[Ints, Floats]:
+    """(vertex, 4) nodes and weights: vertices with a node follow it, a joint's area the parts it joins in equal shares."""
     influence, weight = np.zeros((len(label), 4), np.int64), np.zeros((len(label), 4))
-    influence[:, 0], weight[:, 0] = np.maximum(of, 0), 1.0
-    for joint in np.unique(label[of < 0]):
+    influence[:, 0], weight[:, 0] = np.maximum(node, 0), 1.0
+    for joint in np.unique(label[node < 0]):
         nodes = np.flatnonzero(tree.joint == joint)
-        both = np.unique([*tree.parents[nodes], *nodes])[:4]
-        mine = (label == joint) & (of < 0)
-        if len(both):
-            influence[mine, : len(both)], weight[mine, : len(both)] = both, 1.0 / len(both)
+        joined = np.unique([*tree.parents[nodes], *nodes])[:4]
+        own = (label == joint) & (node < 0)
+        if len(joined):
+            influence[own, : len(joined)], weight[own, : len(joined)] = joined, 1.0 / len(joined)
     return influence, weight

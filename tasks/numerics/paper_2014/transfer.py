@@ -1,55 +1,47 @@
-"""From one mesh over another to a third, vertex by vertex: how labels come back from interval to interval."""
+"""Vertices and places transferred between the references of intervals, over the cuts (ours, for 2014, Sec. 6.1.3)."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
-
-AROUND = 12
-"""Vertices whose motion one without a place follows."""
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
-def landed(P: Floats, x: Floats, area: Floats, way: Ints) -> tuple[Ints, Floats]:
-    """The vertex of the third mesh at each point: that of the nearest vertex of the second which has one.
+def composed_map(to_next: list[Ints], to_previous: list[Ints], source: int, target: int, vertices: int) -> Ints:
+    """The vertex of interval `target` at each vertex of interval `source`: the maps of all cuts between them, composed.
+
+    to_next     : of each cut, (vertex,) of the interval before it its vertex in the one behind; −1 for none
+    to_previous : of each cut, (vertex,) of the interval behind it its vertex in the one before; −1 for none
+    vertices    : number of vertices of interval `source`
+    returns     : (vertex,) −1 where one of the maps has none
+    """
+    image = np.arange(vertices)
+    for cut in range(source, target) if target > source else range(source - 1, target - 1, -1):
+        step = to_next[cut] if target > source else to_previous[cut]
+        image = np.where(image >= 0, step[image], -1)
+    return image
+
+
+def mapped_positions(x: Floats, image: Ints) -> Floats:
+    """(…, vertex, xyz) the positions of the images, mesh unit; NaN for a vertex without one.
+
+    x     : (…, other vertex, xyz) mesh unit
+    image : (vertex,) see `composed_map`
+    """
+    return np.where((image >= 0)[:, None], x[..., image, :], np.nan)
+
+
+def nearest_image(P: Floats, x: Floats, area: Floats, image: Ints) -> tuple[Ints, Floats]:
+    """The image of the vertex that is nearest to each point, among the vertices that have one.
 
     P       : (point, xyz) mesh unit
-    x, area : (vertex, xyz) of the second, (vertex,) 0 for vertices that do not count
-    way     : (vertex,) vertex of the third, −1 for none
-    returns : (point,) −1 if no vertex leads on · (point,) how far the nearest is, mesh unit
+    x       : (vertex, xyz) mesh unit
+    area    : (vertex,) mesh unit²; vertices with none do not count
+    image   : (vertex,) vertex of a third mesh, −1 for none
+    returns : (point,) vertex of the third mesh, −1 if no vertex has an image · (point,) distance to the nearest, mesh unit,
+              NaN then
     """
-    leads = np.flatnonzero((way >= 0) & (area > 0.0))
-    if not len(leads):
+    mapped = np.flatnonzero((image >= 0) & (area > 0.0))
+    if not len(mapped):
         return np.full(len(P), -1), np.full(len(P), np.nan)
-    away, nearest = cKDTree(x[leads]).query(P)
-    return way[leads[nearest]], np.asarray(away, dtype=np.float64)
-
-
-def first_corners(vertices: int, F: Ints) -> tuple[Ints, Floats]:
-    """(vertex,) the first face around each vertex, −1 for none · (vertex, corner) 1 at the corner of that face which it is."""
-    face, share = np.full(vertices, -1), np.zeros((vertices, 3))
-    used, first = np.unique(F.ravel(), return_index=True)
-    face[used] = first // 3
-    share[used, first % 3] = 1.0
-    return face, share
-
-
-def completed(rest: Floats, place: Floats) -> Floats:
-    """(vertex, xyz) places of all vertices: one that has none moves rigidly with the nearest that have.
-
-    rest  : (vertex, xyz) the mesh where every vertex is known
-    place : (vertex, xyz) in a frame, NaN where there is no way; all are as at rest if none has one
-    """
-    known = np.isfinite(place[:, 0])
-    if not known.any():
-        return rest.copy()
-    out, bare = place.copy(), np.flatnonzero(~known)
-    if len(bare):
-        there = np.flatnonzero(known)
-        near = there[cKDTree(rest[there]).query(rest[bare], k=min(AROUND, len(there)))[1].reshape(len(bare), -1)]
-        R, t = rigid_motion(rest[near], place[near])
-        out[bare] = np.einsum("vxy,vy->vx", R, rest[bare]) + t
-    return out
+    distance, nearest = cKDTree(x[mapped]).query(P)
+    return image[mapped[nearest]], np.asarray(distance, dtype=np.float64)

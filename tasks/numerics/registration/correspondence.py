@@ -106,7 +106,7 @@ def covered(x: Floats, n: Floats, F: Ints, target: Target) -> npt.NDArray[np.boo
     F       : (face, corner) of the body
     returns : (sample,) True where covered
     """
-    on = projected(target.V[target.sample], x, F, 1)
+    on = projected(target.V[target.sample], x, F)
     alike = np.einsum("pk,pkx,px->p", on.share, n[F[on.face]], target.N[target.sample])
     return (on.distance < COVERED * target.size) & (alike > ALIKE)
 

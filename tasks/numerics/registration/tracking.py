@@ -85,7 +85,7 @@ def tracked(
 
 def strayed(template: DeformationGraph, pose: Pose, target: Target) -> float:
     """Share of a frame further than AWAY from the body: a lost limb, where what is merely uncovered may be a fold."""
-    distance = projected(target.V[target.sample], shape(template, pose)[0], template.F, 1).distance
+    distance = projected(target.V[target.sample], shape(template, pose)[0], template.F).distance
     return float((distance > AWAY * target.size).mean())
 
 

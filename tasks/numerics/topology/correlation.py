@@ -8,7 +8,7 @@ does not change with scale; μ / A is the mean distance, and x that distance in 
 Frames meet as summaries, never as vertices: a summary is a histogram of 2,000 fine bins over the frame's own range.
 """
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -17,46 +17,8 @@ from kinetree.tasks.numerics.arrays import Floats
 
 Normalisation = Literal["sequence", "frame"]
 
-FINE = 2000
 # A surface whose x varies by less than this share of its largest value has no limbs: a finer histogram shows the mesh.
 _LEAST_RANGE = 0.2
-
-
-class Summary(NamedTuple):
-    """Distribution of x on one frame.
-
-    low, high : range of x
-    mass      : (fine,) share of the weight in each of the even bins from low to high; all in the first if low = high
-    """
-
-    low: float
-    high: float
-    mass: Floats
-
-
-def dimensionless(mu: Floats, area: Floats) -> Floats:
-    """Mean distance x = μ / A^{3/2} from a vertex to the surface in units of √A: no unit, the same at any scale.
-
-    mu      : (vertex,) ∫ g dA, mesh unit³
-    area    : (vertex,) mesh unit², summing to A
-    returns : (vertex,); 0.443 everywhere on a sphere
-    """
-    return mu / float(area.sum()) ** 1.5
-
-
-def summary(x: Floats, weight: Floats | None = None, fine: int = FINE) -> Summary:
-    """What a gather over frames needs to know of one of them.
-
-    x      : (vertex,) finite, at least one
-    weight : (vertex,) at least 0, not all 0; None counts every vertex once (the paper)
-    fine   : bins; a multiple of the bins it will be read in keeps "frame" histograms exact
-    """
-    low, high = float(x.min()), float(x.max())
-    if not high > low:
-        return Summary(low, high, np.eye(1, fine)[0])
-    bin_of = np.minimum(((x - low) * (fine / (high - low))).astype(np.int64), fine - 1)
-    mass = np.bincount(bin_of, weight, fine).astype(np.float64)
-    return Summary(low, high, mass / mass.sum())
 
 
 def histograms(
@@ -73,7 +35,7 @@ def histograms(
     ends hold; "frame" cuts none if `bins` divides their number.
 
     low, high : (frame,) range of x
-    mass      : (frame, fine) see `Summary`
+    mass      : (frame, fine) see `mu_histogram.Summary`
     smoothing : standard deviation of a Gaussian in bins, for "sequence" only: motion shifts sharp peaks, contact moves mass
     returns   : (frame, bin)
     """

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinetree.errors import ConfigError, DisconnectedMeshError
+from kinetree.errors import DisconnectedMeshError
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.bucketed_dijkstra import propagate, workspace
@@ -36,12 +36,10 @@ def farthest_bases(surface: Surface, count: int = 200) -> Bases:
     over the surface, from all before it. Both choices follow rigid motion, scale and renumbering, ties excepted.
 
     surface : one component
-    count   : bases wanted; as many as there are vertices if that is fewer
+    count   : bases wanted, at least 1; as many as there are vertices if that is fewer
     returns : Bases; the first field found every next base and is kept, so that μ costs no further propagation
-    raises  : ConfigError if count < 1; DisconnectedMeshError if a vertex cannot be reached from the first base
+    raises  : DisconnectedMeshError if a vertex cannot be reached from the first base
     """
-    if count < 1:
-        raise ConfigError(f"{count} bases were asked for; μ needs at least 1, and 200 miss it by less than 0.5 %")
     vertex, distance, cell = farthest_points_with_fields(surface, count)
     _refuse_infinite(distance[0], int(vertex[0]))
     weight = np.bincount(cell, surface.area, len(vertex)).astype(np.float64)
@@ -104,13 +102,13 @@ def _streamed_sum(mesh: Links, order: Ints, edge: float, weight: Floats) -> tupl
     """Σ_u w_u g(u, ·) and, if some vertex is out of reach, how many are and from which source."""
     vertices = len(order)
     total = np.zeros(vertices)
-    room = workspace(vertices, len(mesh[1]))
+    work = workspace(vertices, len(mesh[1]))
     for s in range(vertices):
-        propagate(mesh, np.uint64(s), edge, np.inf, room)
+        propagate(mesh, np.uint64(s), edge, np.inf, work)
         unreached = 0
         for i in range(vertices):
-            total[order[i]] += weight[order[s]] * room[0][i]
-            unreached += np.isinf(room[0][i])
+            total[order[i]] += weight[order[s]] * work[0][i]
+            unreached += np.isinf(work[0][i])
         if unreached:
             return total, unreached, order[s]
     return total, 0, 0

@@ -22,7 +22,7 @@ def test_one_long_edge_among_short_ones_is_waited_for() -> None:
     V, F = shapes.flat_grid(30, 30)
     tip = len(V)
     surface = Surface.of(np.concatenate([V, [[29.0, 400.0, 0.0]]]), np.concatenate([F, [[898, 899, tip]]]))
-    room = workspace(len(surface.order), len(surface.links.link))
+    work = workspace(len(surface.order), len(surface.links.link))
     inside = np.flatnonzero(surface.order == 0)[0]
-    propagate(surface.links, np.uint64(inside), surface.edge, np.inf, room)
-    assert np.isclose(room[0][np.flatnonzero(surface.order == tip)[0]], np.hypot(29, 29) + 371.0, rtol=0.01)
+    propagate(surface.links, np.uint64(inside), surface.edge, np.inf, work)
+    assert np.isclose(work[0][np.flatnonzero(surface.order == tip)[0]], np.hypot(29, 29) + 371.0, rtol=0.01)

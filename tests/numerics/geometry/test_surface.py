@@ -3,7 +3,7 @@
 import numpy as np
 import shapes
 
-from kinetree.tasks.numerics.geometry.surface import BLIND, NONE, Surface
+from kinetree.tasks.numerics.geometry.surface import BORDER, NON_MANIFOLD, Surface
 
 
 def test_vertex_areas_sum_to_the_area_of_the_surface() -> None:
@@ -30,14 +30,14 @@ def test_a_twin_of_a_twin_is_the_half_edge_itself() -> None:
 
 def test_only_borders_lack_a_twin_on_an_orientable_surface() -> None:
     surface = Surface.of(*shapes.open_cylinder(24, 9))
-    assert (surface.twin == NONE).sum() == 2 * 24
+    assert (surface.twin == BORDER).sum() == 2 * 24
 
 
 def test_an_edge_of_three_faces_pairs_none_of_them() -> None:
     V, F, _ = shapes.three_pages(4, 6)
     twin = Surface.of(V, F).twin
-    assert (twin == BLIND).sum() == 3 * 5
-    assert (twin == NONE).sum() == 3 * (2 * 3 + 5)
+    assert (twin == NON_MANIFOLD).sum() == 3 * 5
+    assert (twin == BORDER).sum() == 3 * (2 * 3 + 5)
 
 
 def test_every_edge_is_in_the_rings_of_both_its_ends() -> None:

@@ -5,8 +5,8 @@ import numpy.typing as npt
 import pytest
 import shapes
 
-from kinetree.tasks.numerics.geometry import visibility as sight
-from kinetree.tasks.numerics.geometry.geodesic_graph import NARROW
+from kinetree.tasks.numerics.geometry import visibility
+from kinetree.tasks.numerics.geometry.geodesic_graph import NARROWEST_WINDOW
 from kinetree.tasks.numerics.geometry.surface import Surface
 
 Floats = npt.NDArray[np.float64]
@@ -16,25 +16,25 @@ def seen_from(V: Floats, F: npt.NDArray[np.int64], vertex: int, limit: float) ->
     """Input vertices that one sees, edges first, how far and in which direction."""
     s = Surface.of(V, F)
     rings = s.ring_start, s.ring, s.ring_edge, s.apex, s.twin, s.length, s.ring_length
-    tail = s.apex[[int(sight.after(np.uint64(h))) for h in range(len(s.apex))]]
-    head = s.apex[[int(sight.before(np.uint64(h))) for h in range(len(s.apex))]]
+    tail = s.apex[[int(visibility.after(np.uint64(h))) for h in range(len(s.apex))]]
+    head = s.apex[[int(visibility.before(np.uint64(h))) for h in range(len(s.apex))]]
     P = V[s.order]
     a, b = P[head] - P[tail], P[s.apex] - P[tail]
     angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
-    shape, _ = sight.corners(rings[0], rings[1], rings[2], angle, rings[5])
+    shape, _ = visibility.face_shapes(rings[0], rings[1], rings[2], angle, rings[5])
     found = np.empty(1000, np.uint32), *(np.empty(1000, np.float32) for _ in range(3))
     seen, v, none = np.zeros(len(V), np.uint32), np.uint64(np.flatnonzero(s.order == vertex)[0]), np.uint64(0)
-    k = np.uint64(sight.edges_of(v, rings, shape, seen, none, found))
-    room = np.empty((sight.DEPTH, 8)), np.empty(sight.DEPTH, np.uint32)
-    k = int(sight.shine(v, limit**2, np.sin(NARROW), rings, shape, seen, none, k, found, *room))
+    k = np.uint64(visibility.append_edges(v, rings, shape, seen, none, found))
+    room = np.empty((visibility.MAX_WINDOWS, 8)), np.empty(visibility.MAX_WINDOWS, np.uint32)
+    k = int(visibility.append_visible(v, limit**2, np.sin(NARROWEST_WINDOW), rings, shape, seen, none, k, found, *room))
     return s.order[found[0][:k]], found[1][:k].astype(float), found[2][:k].astype(float)
 
 
 def test_the_three_half_edges_of_a_face_follow_each_other() -> None:
     for h in map(np.uint64, range(12)):
-        assert sight.after(h) // 3 == h // 3 == sight.before(h) // 3
-        assert sight.before(sight.after(h)) == h
-        assert sight.after(sight.after(h)) == sight.before(h) != h
+        assert visibility.after(h) // 3 == h // 3 == visibility.before(h) // 3
+        assert visibility.before(visibility.after(h)) == h
+        assert visibility.after(visibility.after(h)) == visibility.before(h) != h
 
 
 @pytest.mark.parametrize("shear", [0.0, 1.5])
@@ -48,11 +48,11 @@ def test_in_the_plane_every_vertex_is_seen_where_it_is(shear: float) -> None:
     assert np.abs((turned - turned[0] + np.pi) % (2 * np.pi) - np.pi).max() < 2e-3
 
 
-def test_lines_leave_in_all_directions_and_no_gap_is_twice_as_wide_as_light_is_split() -> None:
+def test_lines_leave_in_all_directions_and_no_gap_is_twice_as_wide_as_the_narrowest_window() -> None:
     V, F = shapes.flat_grid(31, 31)
     _, _, direction = seen_from(V, F, 480, 9.0)
     around = np.sort(direction)
-    assert np.diff(np.append(around, around[0] + 2 * np.pi)).max() < 2 * NARROW
+    assert np.diff(np.append(around, around[0] + 2 * np.pi)).max() < 2 * NARROWEST_WINDOW
 
 
 def test_nothing_is_seen_beyond_the_limit_but_the_ends_of_edges() -> None:
@@ -64,5 +64,5 @@ def test_nothing_is_seen_beyond_the_limit_but_the_ends_of_edges() -> None:
 
 def test_directions_are_those_of_the_arctangent() -> None:
     theta = np.linspace(0, np.pi, 1001)
-    found = [sight.direction(3 * np.cos(t), 3 * np.sin(t)) for t in theta]
+    found = [visibility.direction(3 * np.cos(t), 3 * np.sin(t)) for t in theta]
     assert np.abs(found - theta).max() < 1e-3

@@ -11,17 +11,17 @@ N = smoothed_normals(V, F)
 
 
 def test_mesh_lies_on_itself():
-    image, away = nearest_agreeing(V, N, V, N)
+    image, distance = nearest_agreeing(V, N, V, N)
     np.testing.assert_array_equal(image, np.arange(len(V)))
-    np.testing.assert_array_equal(away, 0.0)
+    np.testing.assert_array_equal(distance, 0.0)
 
 
 def test_other_sampling_of_the_surface_is_nearer_than_an_edge():
     other, faces = tube(30, 60, start=0.1)
-    image, away = nearest_agreeing(V, N, other, smoothed_normals(other, faces))
+    image, distance = nearest_agreeing(V, N, other, smoothed_normals(other, faces))
     assert (image >= 0).all()
-    assert away.max() < 0.3
-    np.testing.assert_allclose(np.linalg.norm(other[image] - V, axis=1), away)
+    assert distance.max() < 0.3
+    np.testing.assert_allclose(np.linalg.norm(other[image] - V, axis=1), distance)
 
 
 def test_other_side_of_a_thin_wall_is_no_partner():
@@ -30,9 +30,9 @@ def test_other_side_of_a_thin_wall_is_no_partner():
 
 
 def test_nothing_lies_on_no_mesh():
-    image, away = nearest_agreeing(V, N, V[:0], N[:0])
+    image, distance = nearest_agreeing(V, N, V[:0], N[:0])
     assert (image == -1).all()
-    assert np.isinf(away).all()
+    assert np.isinf(distance).all()
     assert len(nearest_agreeing(V[:0], N[:0], V, N)[0]) == 0
 
 

@@ -1,16 +1,23 @@
 """Laws of the undefined area: a pipe of three arms, each with a cone that reaches past the middle of the body."""
 
 import numpy as np
+from articulated import chain, swings
 from shapes import y_pipe
 
-from kinetree.tasks.numerics.paper_2014.cones import bands, edges, grown, pieces
-from kinetree.tasks.numerics.paper_2014.cylinders import LEAST, cylinders, trimmed
+from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown
+from kinetree.tasks.numerics.paper_2014.cylinders import (
+    CylindersSettings,
+    IntervalMotion,
+    cylinders,
+    kinematic_cones,
+    rigid_annuli,
+)
 
 V, F, _ = y_pipe()
-WAY = np.stack([[np.cos(a), np.sin(a), 0.0] for a in (0.0, 2 * np.pi / 3, 4 * np.pi / 3)])
-DISTANCE = np.linalg.norm(V[None] - 28.0 * WAY[:, None], axis=2)
+DIRECTION = np.stack([[np.cos(a), np.sin(a), 0.0] for a in (0.0, 2 * np.pi / 3, 4 * np.pi / 3)])
+DISTANCE = np.linalg.norm(V[None] - 28.0 * DIRECTION[:, None], axis=2)
 AREA = np.ones(len(V))
-RING = np.stack([grown(bands(d), np.arange(len(V)) == np.argmin(d), AREA, edges(F)) for d in DISTANCE])
+ANNULUS = np.stack([grown(bands(d, 25), np.arange(len(V)) == np.argmin(d), AREA, edges(F)) for d in DISTANCE])
 
 
 def all_rigid(annuli):
@@ -20,62 +27,81 @@ def all_rigid(annuli):
 def test_cones_overlap_at_the_branch_and_what_they_share_is_cut_off():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
-    assert ((RING >= 0).sum(axis=0) > 1).any()
-    cut = trimmed(RING, rigid)
-    assert [p.ring.max() for p in cut] == [4, 4, 4], "the rigid area beyond the joint goes, the joint stays"
-    assert (sum((p.ring >= 0).astype(int) for p in cut) <= 1).all()
+    assert ((ANNULUS >= 0).sum(axis=0) > 1).any()
+    cut = kinematic_cones(ANNULUS, rigid)
+    assert [p.annulus.max() for p in cut] == [4, 4, 4], "the rigid area beyond the joint is cut off, the joint is not"
+    assert (sum((p.annulus >= 0).astype(int) for p in cut) <= 1).all()
 
 
 def test_cone_without_a_joint_keeps_what_is_its_own():
-    cut = trimmed(RING, np.ones((3, 25), bool))
-    for n, piece in enumerate(cut):
-        alone = (RING >= 0).sum(axis=0) == 1
-        assert ((piece.ring >= 0) == (alone & (RING[n] >= 0))).all()
+    cut = kinematic_cones(ANNULUS, np.ones((3, 25), bool))
+    for n, cylinder in enumerate(cut):
+        alone = (ANNULUS >= 0).sum(axis=0) == 1
+        assert ((cylinder.annulus >= 0) == (alone & (ANNULUS[n] >= 0))).all()
 
 
 def test_cone_that_overlaps_with_nothing_is_left_whole():
-    (piece,) = trimmed(RING[:1], np.ones((1, 25), bool))
-    assert (piece.ring == RING[0]).all()
+    (cylinder,) = kinematic_cones(ANNULUS[:1], np.ones((1, 25), bool))
+    assert (cylinder.annulus == ANNULUS[0]).all()
 
 
 def test_cylinders_define_all_of_the_surface_and_nothing_twice():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
-    cones = trimmed(RING, rigid)
-    found = cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
-    claimed = sum((p.ring >= 0).astype(int) for p in (*cones, *found))
+    cones = kinematic_cones(ANNULUS, rigid)
+    extensions = cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
+    claimed = sum((p.annulus >= 0).astype(int) for p in (*cones, *extensions))
     assert claimed.max() == 1
-    bare = pieces(claimed == 0, edges(F))
-    assert np.bincount(bare[bare >= 0]).max(initial=0) < LEAST * len(V)
+    component = components(claimed == 0, edges(F))
+    assert np.bincount(component[component >= 0]).max(initial=0) < CylindersSettings().least_area * len(V)
 
 
 def test_first_cylinder_is_the_extension_with_the_widest_range():
     rigid = np.ones((3, 25), bool)
-    for limb, joint in enumerate((2, 5, 5)):
-        rigid[limb, joint] = False
-    found = cylinders(trimmed(RING, rigid), DISTANCE, AREA, F, all_rigid, 25)
-    assert found[0].limb == 0
-    assert [p.cylinder for p in found] == list(range(len(found)))
+    for cone, joint in enumerate((2, 5, 5)):
+        rigid[cone, joint] = False
+    extensions = cylinders(kinematic_cones(ANNULUS, rigid), DISTANCE, AREA, F, all_rigid, 25)
+    assert extensions[0].cone == 0
 
 
 def test_annuli_of_a_cylinder_are_numbered_from_its_near_end():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
-    asked = []
-    found = cylinders(trimmed(RING, rigid), DISTANCE, AREA, F, lambda a: asked.append(a) or all_rigid(a), 25)
-    for piece, annuli in zip(found, asked, strict=True):
-        reach = [DISTANCE[piece.limb][mine].mean() for mine in annuli]
+    clustered = []
+    extensions = cylinders(
+        kinematic_cones(ANNULUS, rigid), DISTANCE, AREA, F, lambda a: clustered.append(a) or all_rigid(a), 25
+    )
+    for cylinder, annuli in zip(extensions, clustered, strict=True):
+        reach = [DISTANCE[cylinder.cone][inside].mean() for inside in annuli]
         assert reach == sorted(reach)
 
 
-def test_limb_whose_leaf_is_not_seen_is_not_extended():
+def test_cone_whose_leaf_is_not_seen_is_not_extended():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
     unseen = DISTANCE.copy()
     unseen[0] = np.nan
-    found = cylinders(trimmed(RING, rigid), unseen, AREA, F, all_rigid, 25)
-    assert 0 not in {p.limb for p in found}
+    extensions = cylinders(kinematic_cones(ANNULUS, rigid), unseen, AREA, F, all_rigid, 25)
+    assert 0 not in {p.cone for p in extensions}
 
 
 def test_body_without_cones_has_no_cylinders():
     assert cylinders([], np.zeros((0, len(V))), AREA, F, all_rigid, 25) == []
+
+
+def test_undefined_components_that_are_small_are_not_extended_into():
+    cones = kinematic_cones(ANNULUS, np.ones((3, 25), bool))
+    assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
+    assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25, CylindersSettings(least_area=1.1)) == []
+
+
+def test_annulus_is_rigid_only_if_it_is_so_in_all_intervals_that_have_it():
+    body = chain((0.0,), swings(12, 2, degrees=60.0, axes=1))
+    of_vertex = np.minimum(((body.V[:, 2] + 5.0) / 0.8).astype(int), 11)
+    annuli, every = [np.flatnonzero(of_vertex == k) for k in range(12)], np.arange(len(body.V))
+    bending = IntervalMotion(body.x, every, 1e-4, False)
+    at_rest = bending._replace(at_rest=True)
+    elsewhere = bending._replace(model_vertex=np.full(len(every), -1))
+    (joint,) = np.flatnonzero(~rigid_annuli(annuli, [at_rest, bending, elsewhere], 1.5, len(every)))
+    assert abs(body.V[annuli[joint], 2].mean()) < 0.9
+    assert rigid_annuli(annuli, [at_rest, elsewhere], 1.5, len(every)).all()

@@ -1,43 +1,38 @@
-"""Laws of labels that come back over two meshes."""
+"""Laws of vertices and places transferred between meshes."""
 
 import numpy as np
 from limbs import tube
 
-from kinetree.tasks.numerics.paper_2014.transfer import completed, first_corners, landed
+from kinetree.tasks.numerics.paper_2014.transfer import composed_map, mapped_positions, nearest_image
 
 V, F = tube()
+TO_NEXT = [np.array([1, 2, -1]), np.array([3, 2, 1, 0])]
+TO_PREVIOUS = [np.array([-1, 0, 1, 2]), np.array([3, 2, 1, 0])]
 
 
-def test_points_land_on_the_vertex_to_which_the_nearest_leads():
-    way = np.arange(len(V))[::-1]
-    corner, distance = landed(V + 1e-3, V, np.ones(len(V)), way)
-    assert (corner == way).all()
+def test_maps_are_composed_over_all_cuts_in_both_directions():
+    assert composed_map(TO_NEXT, TO_PREVIOUS, 0, 0, 3).tolist() == [0, 1, 2]
+    assert composed_map(TO_NEXT, TO_PREVIOUS, 0, 2, 3).tolist() == [2, 1, -1]
+    assert composed_map(TO_NEXT, TO_PREVIOUS, 2, 0, 4).tolist() == [2, 1, 0, -1]
+
+
+def test_positions_are_those_of_the_images_and_others_are_not_known():
+    x = np.arange(6.0).reshape(1, 2, 3)
+    out = mapped_positions(x, np.array([1, -1, 0]))
+    np.testing.assert_array_equal(out[0, [0, 2]], x[0, [1, 0]])
+    assert np.isnan(out[0, 1]).all()
+
+
+def test_point_has_the_image_of_its_nearest_vertex():
+    image = np.arange(len(V))[::-1]
+    vertex, distance = nearest_image(V + 1e-3, V, np.ones(len(V)), image)
+    assert (vertex == image).all()
     np.testing.assert_allclose(distance, np.sqrt(3) * 1e-3)
 
 
-def test_vertices_that_lead_nowhere_are_passed_by():
-    way = np.where(V[:, 2] > 0, np.arange(len(V)), -1)
-    assert V[landed(V, V, np.ones(len(V)), way)[0], 2].min() > 0
-    corner, distance = landed(V, V, np.ones(len(V)), np.full(len(V), -1))
-    assert (corner == -1).all()
+def test_vertices_without_an_image_are_left_out():
+    image = np.where(V[:, 2] > 0, np.arange(len(V)), -1)
+    assert V[nearest_image(V, V, np.ones(len(V)), image)[0], 2].min() > 0
+    vertex, distance = nearest_image(V, V, np.ones(len(V)), np.full(len(V), -1))
+    assert (vertex == -1).all()
     assert np.isnan(distance).all()
-
-
-def test_every_vertex_is_a_corner_of_its_face():
-    face, share = first_corners(len(V) + 1, F)
-    assert (np.einsum("vk,vk->v", share[:-1], F[face[:-1]]) == np.arange(len(V))).all()
-    assert face[-1] == -1
-    assert share[-1].tolist() == [0, 0, 0]
-
-
-def test_places_that_are_missing_of_a_body_that_moves_rigidly_are_found_exactly():
-    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
-    x = V @ turn.T + [1, 2, 3]
-    place = x.copy()
-    place[:5] = np.nan
-    np.testing.assert_allclose(completed(V, place), x, atol=1e-9)
-    np.testing.assert_array_equal(completed(V, x), x)
-
-
-def test_body_of_which_nothing_is_known_stays_as_it_was():
-    np.testing.assert_array_equal(completed(V, np.full_like(V, np.nan)), V)

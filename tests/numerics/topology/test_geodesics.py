@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapes
 
-from kinetree.errors import ConfigError, DisconnectedMeshError
+from kinetree.errors import DisconnectedMeshError
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu, mu_from_every_vertex
@@ -102,11 +102,6 @@ def test_the_bases_are_where_they_were_after_moving_scaling_and_renumbering() ->
 def test_a_finer_mesh_has_the_same_mu() -> None:
     coarse, fine = from_bases(Surface.of(*shapes.sphere(3))), from_bases(Surface.of(*shapes.sphere(4)))
     assert np.isclose(coarse.mean(), fine.mean(), rtol=0.02)
-
-
-def test_no_bases_at_all_are_refused() -> None:
-    with pytest.raises(ConfigError, match="0 bases were asked for"):
-        farthest_bases(Surface.of(*shapes.sphere(1)), 0)
 
 
 def test_two_components_have_no_mu() -> None:

@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.input.synth.cameras import Cameras, camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.contacts import Contact, merging, touching
@@ -91,11 +91,11 @@ class Body:
         fps      : frames per second of the clip, the figure's own when None; curves are functions of seconds
         contacts : {limb, target, begin, end, ramp, direction} each, see `contacts.Contact`
         dropped  : {limb, begin, end} each: everything beyond the joint `limb` is missing in these frames
-        raises   : ConfigError at a number out of range or a name that the figure does not know
+        raises   : FigureError at a number out of range or a name that the figure does not know
         """
         _check(frames, fps, vertices, noise, holes, hole_size, connectivity, seed)
         if connectivity == "fixed" and (holes or dropped):
-            raise ConfigError("fixed connectivity can have neither holes nor dropped limbs: both would change its faces")
+            raise FigureError("fixed connectivity can have neither holes nor dropped limbs: both would change its faces")
         flesh = Flesh.of(figure)
         rate = figure.fps if fps is None else float(fps)
         touches = tuple(Contact.of(figure, row, frames) for row in contacts)
@@ -158,7 +158,7 @@ class Body:
         self._check_frame(t)
         step = self.figure.height / 100.0 if voxel is None else float(voxel)
         if not step > 0.0:
-            raise ConfigError(f"voxel is {voxel!r}, expected a length above 0")
+            raise FigureError(f"voxel is {voxel!r}, expected a length above 0")
         low, high = self._box
         origin = low - 2.0 * step
         nx, ny, nz = (int(n) for n in np.ceil((high - low) / step) + 5)
@@ -213,7 +213,7 @@ class Body:
 
     def _check_frame(self, t: int) -> None:
         if not 0 <= t < len(self.X):
-            raise ConfigError(f"frame {t} was asked for, but the clip has frames 0 to {len(self.X) - 1}")
+            raise FigureError(f"frame {t} was asked for, but the clip has frames 0 to {len(self.X) - 1}")
 
 
 def _check(
@@ -222,14 +222,14 @@ def _check(
     """Refuse numbers out of range; the message names the setting, what was found and what was expected."""
     for name, value, least in (("frames", frames, 1), ("vertices", vertices, 100), ("holes", holes, 0), ("seed", seed, 0)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
-            raise ConfigError(f"{name} is {value!r}, expected a whole number of at least {least}")
+            raise FigureError(f"{name} is {value!r}, expected a whole number of at least {least}")
     for name, count, most in (("frames", frames, MOST_FRAMES), ("holes", holes, vertices // 10)):
         if count > most:
-            raise ConfigError(f"{name} is {count}, expected at most {most}" + (", a tenth of the vertices" * (name == "holes")))
+            raise FigureError(f"{name} is {count}, expected at most {most}" + (", a tenth of the vertices" * (name == "holes")))
     for name, share in (("noise", noise), ("hole_size", hole_size)):
         if not isinstance(share, int | float) or not 0.0 <= share < 0.5:
-            raise ConfigError(f"{name} is {share!r}, expected a share of the height, from 0 to below 0.5")
+            raise FigureError(f"{name} is {share!r}, expected a share of the height, from 0 to below 0.5")
     if fps is not None and (not isinstance(fps, int | float) or not 0.0 < fps < np.inf):
-        raise ConfigError(f"fps is {fps!r}, expected frames per second above 0")
+        raise FigureError(f"fps is {fps!r}, expected frames per second above 0")
     if connectivity not in ("new", "fixed"):
-        raise ConfigError(f"connectivity is {connectivity!r}{suggestion(connectivity, ('new', 'fixed'))}")
+        raise FigureError(f"connectivity is {connectivity!r}{suggestion(connectivity, ('new', 'fixed'))}")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 
@@ -36,10 +36,10 @@ def camera_ring(
     centre, radius : the ball that holds the subject, its unit
     size           : (rows, columns) in pixels; elevation : degrees above the plane of the ring
     up             : coordinate axis around which the ring runs
-    raises         : ConfigError without cameras or pixels
+    raises         : FigureError without cameras or pixels
     """
     if count < 1 or min(size) < 8:
-        raise ConfigError(f"{count} cameras of {size[0]} × {size[1]} pixels: expected at least one of at least 8 × 8")
+        raise FigureError(f"{count} cameras of {size[0]} × {size[1]} pixels: expected at least one of at least 8 × 8")
     distance = 4.0 * radius
     focal = 0.48 * min(size) * np.sqrt(distance**2 - radius**2) / radius
     K = np.array([[focal, 0.0, 0.5 * (size[1] - 1)], [0.0, focal, 0.5 * (size[0] - 1)], [0.0, 0.0, 1.0]])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.descriptions import suggestion, triple
 from kinetree.tasks.numerics.input.synth.figures import Figure
@@ -46,31 +46,31 @@ class Contact:
     def of(cls, figure: Figure, row: Mapping[str, Any], frames: int) -> Contact:
         """Check a contact written as data: {limb, target, begin, end} and optionally ramp and direction.
 
-        raises : ConfigError at unknown keys or joints, at frames outside the clip, at a limb that cannot bend
+        raises : FigureError at unknown keys or joints, at frames outside the clip, at a limb that cannot bend
         """
         where = f"contact {dict(row)}"
         for key in row:
             if key not in _KEYS:
-                raise ConfigError(f"{where}: unknown key {key!r}{suggestion(key, _KEYS)}")
+                raise FigureError(f"{where}: unknown key {key!r}{suggestion(key, _KEYS)}")
         for key in _KEYS[:4]:
             if key not in row:
-                raise ConfigError(f"{where}: {key} is missing; a contact needs limb, target, begin and end")
+                raise FigureError(f"{where}: {key} is missing; a contact needs limb, target, begin and end")
         limb, target = (figure.index(str(row[key]), where) for key in ("limb", "target"))
         begin, end, ramp = (row.get(key, 5) for key in ("begin", "end", "ramp"))
         if not all(isinstance(n, int) and not isinstance(n, bool) for n in (begin, end, ramp)):
-            raise ConfigError(f"{where}: begin, end and ramp must be whole numbers of frames")
+            raise FigureError(f"{where}: begin, end and ramp must be whole numbers of frames")
         if not 0 <= begin <= end < frames or ramp < 0:
-            raise ConfigError(f"{where}: expected 0 ≤ begin ≤ end < {frames} (the clip's frames) and ramp ≥ 0")
+            raise FigureError(f"{where}: expected 0 ≤ begin ≤ end < {frames} (the clip's frames) and ramp ≥ 0")
         chain = bending_chain(figure, limb)
         if not chain:
-            raise ConfigError(f"{where}: {row['limb']!r} has no joint to bend before the trunk; name the limb's end")
+            raise FigureError(f"{where}: {row['limb']!r} has no joint to bend before the trunk; name the limb's end")
         if target in figure.below(chain[-1]) - {chain[-1]}:
-            raise ConfigError(f"{where}: {row['target']!r} is part of the limb that shall touch it")
+            raise FigureError(f"{where}: {row['target']!r} is part of the limb that shall touch it")
         direction = row.get("direction")
         if direction is not None:
             direction = triple(where, "direction", direction)
             if not any(direction):
-                raise ConfigError(f"{where}: direction is {direction!r}, expected three numbers, not all zero")
+                raise FigureError(f"{where}: direction is {direction!r}, expected three numbers, not all zero")
         return cls(limb, target, begin, end, ramp, direction)
 
     def weights(self, frames: int) -> Floats:
@@ -97,7 +97,7 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
 
     R       : (frame, joint, 3, 3) rotations against the parent; shift : (frame, xyz) of the root
     returns : (frame, joint, 3, 3)
-    raises  : ConfigError if the limb is too short to reach
+    raises  : FigureError if the limb is too short to reach
     """
     weight = contact.weights(len(R))
     busy = np.flatnonzero(weight > 0.0)
@@ -107,7 +107,7 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
     held = weight[busy] == 1.0
     if miss[held].max() > 0.002 * figure.height:
         names = ", ".join(figure.joints[j].name for j in chain)
-        raise ConfigError(
+        raise FigureError(
             f"contact of {figure.joints[contact.limb].name!r} with {figure.joints[contact.target].name!r}: turning "
             f"{names} leaves the limb {miss[held].max():.3g} {figure.unit} short of it; choose a nearer target"
         )

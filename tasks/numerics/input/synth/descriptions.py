@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 
 Triple = tuple[float, float, float]
 
@@ -71,22 +71,22 @@ def read_joints(where: str, entries: Sequence[Any]) -> tuple[Joint, ...]:
         refuse_unknown(f"{where}, joint {row.get('name')!r}", row, _JOINT_KEYS)
         name = str(row.get("name", ""))
         if not name or name in waiting:
-            raise ConfigError(f"{where}: joint name {name!r} is {'given twice' if name else 'missing'}")
+            raise FigureError(f"{where}: joint name {name!r} is {'given twice' if name else 'missing'}")
         waiting[name] = row
     for name, row in waiting.items():
         parent = row.get("parent")
         if parent is not None and (not isinstance(parent, str) or parent not in waiting):
-            raise ConfigError(f"{where}, joint {name!r}: parent {parent!r} is no joint{suggestion(parent, waiting)}")
+            raise FigureError(f"{where}, joint {name!r}: parent {parent!r} is no joint{suggestion(parent, waiting)}")
     roots = [name for name, row in waiting.items() if row.get("parent") is None]
     if len(roots) != 1:
-        raise ConfigError(f"{where}: {len(roots)} joints have no parent ({', '.join(roots)}), expected exactly one root")
+        raise FigureError(f"{where}: {len(roots)} joints have no parent ({', '.join(roots)}), expected exactly one root")
     order: dict[str, int] = {}
     joints: list[Joint] = []
     while len(order) < len(waiting):
         ready = [n for n, row in waiting.items() if n not in order and (n == roots[0] or row.get("parent") in order)]
         if not ready:
             lost = ", ".join(n for n in waiting if n not in order)
-            raise ConfigError(f"{where}: the joints {lost} hang on each other in a circle, not on the root {roots[0]!r}")
+            raise FigureError(f"{where}: the joints {lost} hang on each other in a circle, not on the root {roots[0]!r}")
         row = waiting[ready[0]]
         parent = row.get("parent")
         joints.append(_joint(f"{where}, joint {ready[0]!r}", row, None if parent is None else joints[order[parent]], order))
@@ -102,18 +102,18 @@ def _joint(where: str, row: Mapping[str, Any], parent: Joint | None, order: Mapp
     elif "radius" in row:
         values = [row["radius"]] if parent is None else [parent.radii[-1], row["radius"]]
     else:
-        raise ConfigError(f"{where}: it has neither radius nor radii")
+        raise FigureError(f"{where}: it has neither radius nor radii")
     radii = tuple(number(where, "radius", r, low=0.0) for r in values)
     if parent is not None and len(radii) < 2:
-        raise ConfigError(f"{where}: radii is {list(radii)}, expected at least two, from the parent to the joint")
+        raise FigureError(f"{where}: radii is {list(radii)}, expected at least two, from the parent to the joint")
     if parent is not None and math.dist(position, parent.position) <= 0.0:
-        raise ConfigError(f"{where}: it lies at its parent {parent.name!r}; a limb needs a length")
+        raise FigureError(f"{where}: it lies at its parent {parent.name!r}; a limb needs a length")
     flatten = number(where, "flatten", row.get("flatten", 1.0), low=0.0, high=1.0)
     side = triple(where, "side", row.get("side", (0.0, 0.0, 0.0)))
     if flatten < 1.0 and parent is not None:
         along = np.cross(side, np.subtract(position, parent.position))
         if np.linalg.norm(along) <= 0.0:
-            raise ConfigError(f"{where}: flatten needs a side across the limb, found {list(side)}")
+            raise FigureError(f"{where}: flatten needs a side across the limb, found {list(side)}")
     blend = number(where, "blend", row.get("blend", 0.7), low=-1e-9)
     return Joint(str(row["name"]), -1 if parent is None else order[parent.name], position, radii, flatten, side, blend)
 
@@ -123,9 +123,9 @@ def read_motion(where: str, curves: object, names: Sequence[str]) -> Motion:
     motion: dict[str, tuple[Curve, ...]] = {}
     for joint, rows in mapping(where, "the motion", curves).items():
         if joint not in names:
-            raise ConfigError(f"{where}: {joint!r} is no joint{suggestion(joint, names)}")
+            raise FigureError(f"{where}: {joint!r} is no joint{suggestion(joint, names)}")
         if not isinstance(rows, Sequence) or isinstance(rows, str):
-            raise ConfigError(f"{where}, joint {joint!r}: found {rows!r}, expected a list of curves")
+            raise FigureError(f"{where}, joint {joint!r}: found {rows!r}, expected a list of curves")
         motion[joint] = tuple(_curve(f"{where}, joint {joint!r}", row, joint == names[0]) for row in rows)
     return motion
 
@@ -137,18 +137,18 @@ def _curve(where: str, entry: object, is_root: bool) -> Curve:
     axis = triple(where, "axis", row.get("axis"))
     length = math.hypot(*axis)
     if length <= 0.0:
-        raise ConfigError(f"{where}: the axis is {list(axis)}, expected a direction")
+        raise FigureError(f"{where}: the axis is {list(axis)}, expected a direction")
     if sum(key in row for key in ("amplitude", "distance", "keys")) != 1:
-        raise ConfigError(f"{where}: found {sorted(row)}, expected exactly one of amplitude, distance and keys")
+        raise FigureError(f"{where}: found {sorted(row)}, expected exactly one of amplitude, distance and keys")
     slides = "distance" in row or row.get("slides", False) is True
     if slides and not is_root:
-        raise ConfigError(f"{where}: only the root may slide by a distance; other joints turn by an amplitude")
+        raise FigureError(f"{where}: only the root may slide by a distance; other joints turn by an amplitude")
     pairs = row.get("keys", ())
     if not isinstance(pairs, Sequence) or not all(isinstance(pair, Sequence) and len(pair) == 2 for pair in pairs):
-        raise ConfigError(f"{where}: keys is {pairs!r}, expected a list of pairs of second and value")
+        raise FigureError(f"{where}: keys is {pairs!r}, expected a list of pairs of second and value")
     keys = tuple((number(where, "a key's second", s), number(where, "a key", v)) for s, v in pairs)
     if "keys" in row and (len(keys) < 2 or any(b[0] <= a[0] for a, b in itertools.pairwise(keys))):
-        raise ConfigError(f"{where}: keys are {list(keys)}, expected two or more with increasing seconds")
+        raise FigureError(f"{where}: keys are {list(keys)}, expected two or more with increasing seconds")
     reach, frequency, phase, offset = (
         number(where, key, row.get(key, default))
         for key, default in (
@@ -165,26 +165,26 @@ def _curve(where: str, entry: object, is_root: bool) -> Curve:
 def refuse_unknown(where: str, row: Mapping[str, Any], known: Sequence[str]) -> None:
     for key in row:
         if key not in known:
-            raise ConfigError(f"{where}: unknown key {key!r}{suggestion(key, known)}")
+            raise FigureError(f"{where}: unknown key {key!r}{suggestion(key, known)}")
 
 
 def mapping(where: str, what: str, value: object) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
-        raise ConfigError(f"{where}: {what} is {value!r}, expected names with values")
+        raise FigureError(f"{where}: {what} is {value!r}, expected names with values")
     return value
 
 
 def triple(where: str, what: str, value: object) -> Triple:
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 3:
-        raise ConfigError(f"{where}: {what} is {value!r}, expected three numbers")
+        raise FigureError(f"{where}: {what} is {value!r}, expected three numbers")
     x, y, z = (number(where, what, component) for component in value)
     return (x, y, z)
 
 
 def number(where: str, what: str, value: object, low: float = -math.inf, high: float = math.inf) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ConfigError(f"{where}: {what} is {value!r}, expected a finite number")
+        raise FigureError(f"{where}: {what} is {value!r}, expected a finite number")
     if not low < value <= high:
         wanted = f"more than {low:g}" + (f" and at most {high:g}" if high < math.inf else "")
-        raise ConfigError(f"{where}: {what} is {value!r}, expected {wanted}")
+        raise FigureError(f"{where}: {what} is {value!r}, expected {wanted}")
     return float(value)

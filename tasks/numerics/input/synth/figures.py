@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import (
     Joint,
@@ -54,13 +54,13 @@ class Figure:
     def of(cls, description: Mapping[str, Any]) -> Figure:
         """Check and freeze a figure that was written as data.
 
-        raises : ConfigError at an unknown key, an unknown or missing parent, two roots, a cycle, a number out of range
+        raises : FigureError at an unknown key, an unknown or missing parent, two roots, a cycle, a number out of range
         """
         where = f"figure {description.get('name', '(no name)')!r}"
         refuse_unknown(where, description, _FIGURE_KEYS)
         entries = description.get("joints")
         if not isinstance(entries, Sequence) or isinstance(entries, str) or len(entries) < 2:
-            raise ConfigError(f"{where}: joints is {entries!r}, expected a list of at least two joints")
+            raise FigureError(f"{where}: joints is {entries!r}, expected a list of at least two joints")
         joints = read_joints(where, entries)
         names = [joint.name for joint in joints]
         motions: dict[str, Motion] = {}
@@ -91,9 +91,9 @@ class Figure:
         return float(np.max((self.rest + R).max(axis=0) - (self.rest - R).min(axis=0)))
 
     def index(self, name: str, where: str) -> int:
-        """Index of the joint of that name; ConfigError with the nearest known name when there is none."""
+        """Index of the joint of that name; FigureError with the nearest known name when there is none."""
         if name not in self.names:
-            raise ConfigError(f"{where}: figure {self.name!r} has no joint {name!r}{suggestion(name, self.names)}")
+            raise FigureError(f"{where}: figure {self.name!r} has no joint {name!r}{suggestion(name, self.names)}")
         return self.names.index(name)
 
     def below(self, joint: int) -> set[int]:
@@ -105,15 +105,15 @@ class Figure:
         return below
 
     def motion(self, name: str | None) -> Motion:
-        """The motion of that name, or the first one; ConfigError with the nearest known name when there is none."""
+        """The motion of that name, or the first one; FigureError with the nearest known name when there is none."""
         known = list(self.motions)
         if name is not None and name not in self.motions:
-            raise ConfigError(f"figure {self.name!r} has no motion {name!r}{suggestion(name, known)}")
+            raise FigureError(f"figure {self.name!r} has no motion {name!r}{suggestion(name, known)}")
         return self.motions[name if name is not None else known[0]] if known else {}
 
 
 def named(name: str, figures: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """The figure of that name among `figures` (name → description); ConfigError suggesting the nearest known name."""
+    """The figure of that name among `figures` (name → description); FigureError suggesting the nearest known name."""
     if name not in figures:
-        raise ConfigError(f"there is no figure {name!r}{suggestion(name, figures)}")
+        raise FigureError(f"there is no figure {name!r}{suggestion(name, figures)}")
     return Figure.of(figures[name])

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Flags
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
@@ -32,17 +32,17 @@ class Dropped:
     def of(cls, figure: Figure, flesh: Flesh, row: Mapping[str, Any], frames: int) -> Dropped:
         """Check a dropped limb written as data: {limb, begin, end}.
 
-        raises : ConfigError at an unknown joint, frames outside the clip, or when all or nothing would be lost
+        raises : FigureError at an unknown joint, frames outside the clip, or when all or nothing would be lost
         """
         where = f"dropped {dict(row)}"
         if set(row) != _KEYS:
-            raise ConfigError(f"{where}: expected exactly limb, begin and end")
+            raise FigureError(f"{where}: expected exactly limb, begin and end")
         joint = figure.index(str(row["limb"]), where)
         begin, end = row["begin"], row["end"]
         if not (isinstance(begin, int) and isinstance(end, int) and 0 <= begin <= end < frames):
-            raise ConfigError(f"{where}: expected 0 ≤ begin ≤ end < {frames}, the clip's frames")
+            raise FigureError(f"{where}: expected 0 ≤ begin ≤ end < {frames}, the clip's frames")
         limbs = np.isin(flesh.parent, sorted(figure.below(joint)))
         if limbs.all() or not limbs.any():
             lost = "the whole figure" if limbs.all() else "no limb"
-            raise ConfigError(f"{where}: beyond {row['limb']!r} lies {lost}; name a joint inside a limb")
+            raise FigureError(f"{where}: beyond {row['limb']!r} lies {lost}; name a joint inside a limb")
         return cls(joint, begin, end, limbs)

@@ -12,7 +12,7 @@ import pytest
 import trimesh
 import yaml
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.defects import punctured
@@ -256,19 +256,19 @@ def test_volumes_of_a_clip_share_their_grid():
     ],
 )
 def test_a_clip_that_cannot_be_is_refused_in_words(settings, words):
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(FigureError) as refusal:
         body(**settings)
     assert words in str(refusal.value)
 
 
 def test_a_frame_or_voxel_that_cannot_be_is_refused_in_words():
     clip = body(frames=3)
-    with pytest.raises(ConfigError, match="frame 3 was asked for, but the clip has frames 0 to 2"):
+    with pytest.raises(FigureError, match="frame 3 was asked for, but the clip has frames 0 to 2"):
         clip.frame(3)
-    with pytest.raises(ConfigError, match="voxel is 0, expected a length above 0"):
+    with pytest.raises(FigureError, match="voxel is 0, expected a length above 0"):
         clip.volume(0, voxel=0)
 
 
 def test_an_unknown_figure_is_refused_with_the_nearest_name():
-    with pytest.raises(ConfigError, match="did you mean 'human'"):
+    with pytest.raises(FigureError, match="did you mean 'human'"):
         named("hunam", FIGURES)

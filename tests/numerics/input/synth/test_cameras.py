@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.cameras import camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.figures import Figure
@@ -69,7 +69,7 @@ def test_silhouettes_of_a_moving_figure_contain_its_joints_and_stay_inside_the_i
 
 
 def test_a_ring_without_cameras_or_pixels_is_refused_in_words():
-    with pytest.raises(ConfigError, match="0 cameras of 100 × 100 pixels"):
+    with pytest.raises(FigureError, match="0 cameras of 100 × 100 pixels"):
         camera_ring(0, CENTRE, 1.0, (100, 100))
-    with pytest.raises(ConfigError, match="at least 8 × 8"):
+    with pytest.raises(FigureError, match="at least 8 × 8"):
         camera_ring(3, CENTRE, 1.0, (100, 2))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.input.synth.contacts import Contact, bending_chain, merging, touching
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
@@ -85,18 +85,18 @@ def test_a_limb_bends_from_its_end_to_the_trunk():
     ],
 )
 def test_a_contact_that_cannot_be_is_refused_in_words(row, words):
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(FigureError) as refusal:
         Contact.of(gripper(), {"limb": "hand", "target": "top", "begin": 3, "end": 5, **row}, 20)
     assert words in str(refusal.value)
 
 
 def test_a_contact_without_its_target_is_refused_in_words():
-    with pytest.raises(ConfigError, match="target is missing"):
+    with pytest.raises(FigureError, match="target is missing"):
         Contact.of(gripper(), {"limb": "hand", "begin": 3, "end": 5}, 20)
 
 
 def test_a_limb_that_is_too_short_is_refused_with_the_length_it_lacks():
-    with pytest.raises(ConfigError, match=r"turning elbow, shoulder leaves the limb [\d.]+ unknown short of it"):
+    with pytest.raises(FigureError, match=r"turning elbow, shoulder leaves the limb [\d.]+ unknown short of it"):
         bent(gripper(reach=0.8), {"limb": "hand", "target": "top", "begin": 8, "end": 12})
 
 

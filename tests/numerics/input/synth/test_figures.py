@@ -4,7 +4,7 @@ import copy
 
 import pytest
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.input.synth.figures import Figure
 
 HINGE = {
@@ -78,7 +78,7 @@ def test_axes_become_unit_vectors():
     ],
 )
 def test_a_figure_that_cannot_be_is_refused_in_words(path, value, words):
-    with pytest.raises(ConfigError) as refusal:
+    with pytest.raises(FigureError) as refusal:
         Figure.of(altered(path, value))
     assert words in str(refusal.value)
     assert "hinge" in str(refusal.value)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinetree.errors import ConfigError
+from kinetree.errors import FigureError
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.losses import Dropped
@@ -39,10 +39,10 @@ def test_what_lies_beyond_the_joint_is_lost_and_nothing_else():
     [({"limb": "rihgt"}, "right"), ({"end": 9}, "4"), ({"begin": 3, "end": 1}, "begin"), ({"limb": "handle"}, "handle")],
 )
 def test_what_cannot_be_lost_is_refused(row, words):
-    with pytest.raises(ConfigError, match=words):
+    with pytest.raises(FigureError, match=words):
         lost(**row)
 
 
 def test_row_with_other_keys_is_refused():
-    with pytest.raises(ConfigError, match="exactly limb, begin and end"):
+    with pytest.raises(FigureError, match="exactly limb, begin and end"):
         lost(until=3)

@@ -1,10 +1,10 @@
-"""Laws of stillness: one rigid body is known for one, whatever its triangles are and whatever an alignment errs by."""
+"""Laws of the rigid residual: a rigid body is recognised, whatever its triangles and the errors of an alignment."""
 
 import numpy as np
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.paper_2014.stillness import rigid_gap
+from kinetree.tasks.numerics.paper_2014.rigid_residual import RigidResidualSettings, rigid_residual
 
 
 def egg(turn: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -27,11 +27,18 @@ def test_other_triangles_and_a_slipping_alignment_are_no_motion() -> None:
     W, _, G = egg(0.4)
     R, t = Rotation.from_euler("xyz", [20, 50, -30], degrees=True).as_matrix(), [3.0, -1.0, 2.0]
     slipped = V + 0.15 * np.random.default_rng(0).normal(size=V.shape)
-    assert rigid_gap(V, slipped @ R.T + t, area, W @ R.T + t, G) <= 1.0
+    assert rigid_residual(V, slipped @ R.T + t, area, W @ R.T + t, G) <= 1.0
 
 
 def test_end_that_turns_is_motion_in_any_unit() -> None:
     V, area, F = egg(0.0)
     for scale in (1.0, 1500.0):
         x = scale * bent(V, 20)
-        assert rigid_gap(scale * V, x, scale**2 * area, x, F) > 1.0
+        assert rigid_residual(scale * V, x, scale**2 * area, x, F) > 1.0
+
+
+def test_bound_grows_with_the_noise_that_is_allowed() -> None:
+    V, area, F = egg(0.0)
+    x = bent(V, 20)
+    residual = [rigid_residual(V, x, area, x, F, RigidResidualSettings(noise=noise, rounds=1)) for noise in (0.004, 0.4)]
+    assert residual[1] < 1.0 < residual[0]
