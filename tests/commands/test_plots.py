@@ -20,8 +20,8 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 @pytest.fixture(scope="module")
 def fetch() -> Any:
-    told = artifacts() | {"evaluation": judged(spider()), "traces": traces_of(spider())}
-    return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+    stored = artifacts() | {"evaluation": judged(spider()), "traces": traces_of(spider())}
+    return lambda name, frame=None: stored[name] if frame is None else stored[name][frame]
 
 
 def test_help_of_the_command_names_every_picture() -> None:

@@ -10,14 +10,14 @@ from kinetree.tasks.results.structure_figures import structure_figures
 
 def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_traces() -> None:
     body = spider()
-    told = structure_figures(body, traces_of(body), UP)
+    figures = structure_figures(body, traces_of(body), UP)
     begins = {"png": b"\x89PNG", "svg": b"<?xml"}
-    for chapter in told.chapters:
-        files = told.picture_files(chapter)
+    for chapter in figures.chapters:
+        files = figures.picture_files(chapter)
         assert len(files) == len(chapter.pictures) > 0
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
-    assert told.end[-1] == len(told.content)
-    np.testing.assert_array_equal(told.length_variation, traces_of(body).variation)
+    assert figures.end[-1] == len(figures.content)
+    np.testing.assert_array_equal(figures.length_variation, traces_of(body).variation)
 
 
 def test_same_traces_are_the_same_bytes() -> None:
