@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from results.rigged_bodies import skinned, spider
-from traced import traces_of
+from results.sample_derivation import parts_of, tree_of
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
@@ -45,7 +45,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
-        "structure_figures": structure_figures(skeleton, traces_of(skeleton), UP),
+        "structure_figures": structure_figures(skeleton, parts_of(skeleton), tree_of(skeleton), UP),
         "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
