@@ -1,4 +1,4 @@
-"""Lets every test import `shapes`; no example fails for being slow on a busy machine."""
+"""Lets every test import helpers such as `shapes` and `results.rigged_bodies`; no example fails on a slow machine."""
 
 import sys
 from pathlib import Path

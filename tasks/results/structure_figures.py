@@ -8,7 +8,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.results.page.chapters import Drawn, Written, evidence_of
+from kinetree.tasks.results.page.chapters import CaptionedFigure, FigureChapter, rendered_chapters
 from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 
 
@@ -23,22 +23,22 @@ def structure_figures(
         return artifacts[name]
 
     up = up_direction.axis
-    drawn = [
-        Drawn(
+    figures = [
+        CaptionedFigure(
             cones(fetch, [], up),
-            "Cones around the leaves and their annuli; pale: several, cut as the trunk is.",
+            "Cones around the leaves and their annuli; pale where cones overlap, which is cut as the trunk is.",
             vector=False,
         ),
-        Drawn(
+        CaptionedFigure(
             merging(fetch, [], up),
-            "What merging annuli across each border would cost, and the first cut; coloured: joints' parts at the end.",
+            "Cost of merging the annuli on both sides of each border, and the first cut; colours: parts of the final joints.",
         ),
-        Drawn(
+        CaptionedFigure(
             elimination(fetch, [], up),
-            "The first cut, the parts that were left of it, and what removing each of the others cost.",
+            "The first cut, the parts that remain of it, and what the removal of each other part cost.",
             vector=False,
         ),
-        Drawn(structure(fetch, [], up), "The graph of parts before pruning, and the tree after it.", vector=False),
-        Drawn(lengths(fetch, [], up), "How much bones' lengths varied before they were held; afterwards they do not."),
+        CaptionedFigure(structure(fetch, [], up), "The graph of parts before pruning, and the tree after it.", vector=False),
+        CaptionedFigure(lengths(fetch, [], up), "Variation of bone lengths before they are fixed; afterwards there is none."),
     ]
-    return evidence_of([Written("evidence", "How joints were found", drawn)], kinematic_tree.length_variation)
+    return rendered_chapters([FigureChapter("derivation", "How joints were found", figures)], kinematic_tree.length_variation)

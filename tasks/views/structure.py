@@ -47,5 +47,5 @@ def _measures(skeleton: Skeleton, joint: int) -> str:
     length = f"bone {skeleton.lengths[joint]:.4g}{unit}"
     if skeleton.kinds[joint] == "leaf":
         return length
-    seen = f"seen in {skeleton.support[joint]} of {len(skeleton.frames)} frames"
-    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, ±{skeleton.drift[joint]:.2g}{unit}, {seen}"
+    support = f"supported by {skeleton.support[joint]} of {len(skeleton.frames)} frames"
+    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, ±{skeleton.drift[joint]:.2g}{unit}, {support}"

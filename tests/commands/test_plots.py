@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from derived import parts_of, tree_of
-from pages import artifacts, judged, unjudged
-from rigs import spider
+from results.rigged_bodies import spider
+from results.sample_derivation import parts_of, tree_of
+from results.sample_report import artifacts, judged, unjudged
 
 from kinetree.errors import ConfigError
 from kinetree.tasks.commands import plot
@@ -21,8 +21,8 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 @pytest.fixture(scope="module")
 def fetch() -> Any:
     derived = {"rigid_parts": parts_of(spider()), "kinematic_tree": tree_of(spider())}
-    told = artifacts() | {"evaluation": judged(spider())} | derived
-    return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+    stored = artifacts() | {"evaluation": judged(spider())} | derived
+    return lambda name, frame=None: stored[name] if frame is None else stored[name][frame]
 
 
 def test_help_of_the_command_names_every_picture() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 from mesoscopic import SPANS, mesoscopic
-from pages import UP, artifacts, page
+from results.sample_report import UP, artifacts, page
 
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.topology.intervals import Intervals

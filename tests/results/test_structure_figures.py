@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from derived import parts_of, tree_of
 from matplotlib.text import Text
-from pages import UP
-from rigs import spider
+from results.rigged_bodies import spider
+from results.sample_derivation import parts_of, tree_of
+from results.sample_report import UP
 
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
@@ -30,14 +30,14 @@ def words(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> list[str]:
 
 def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_tree() -> None:
     body = spider()
-    told = of(body)
+    figures = of(body)
     begins = {"png": b"\x89PNG", "svg": b"<?xml"}
-    for chapter in told.chapters:
-        files = told.picture_files(chapter)
+    for chapter in figures.chapters:
+        files = figures.picture_files(chapter)
         assert len(files) == len(chapter.pictures) == len(FIGURES)
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
-    assert told.end[-1] == len(told.content)
-    np.testing.assert_array_equal(told.length_variation, tree_of(body).length_variation)
+    assert figures.end[-1] == len(figures.content)
+    np.testing.assert_array_equal(figures.length_variation, tree_of(body).length_variation)
 
 
 def test_same_derivation_gives_the_same_bytes() -> None:

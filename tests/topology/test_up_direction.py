@@ -1,8 +1,8 @@
 """Contract of upright: what the user says goes before what is found, and a guess is said to be one."""
 
 import numpy as np
-from pages import followed
-from rigs import spider
+from results.rigged_bodies import spider
+from results.sample_report import followed
 
 from kinetree.pipeline import views
 from kinetree.schemas.topology.up_direction import UpDirectionParams

@@ -62,8 +62,8 @@ def scene(
     alignments, projections, meshes : by source frame number
     up                              : axis that points up, see `view`
     """
-    shown = evenly_spread(len(skeleton.frames), limits.frames)
-    frames = [skeleton.frames[t] for t in shown]
+    selected_frames = evenly_spread(len(skeleton.frames), limits.frames)
+    frames = [skeleton.frames[t] for t in selected_frames]
     axes = view([meshes[frame].vertices for frame in frames], up)
     selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
@@ -77,7 +77,7 @@ def scene(
         "positions": lattice.levels(positions),
         "faces": faces.astype(np.uint32),
         "label": skeleton.label[selected].astype(np.int16),
-        "joints": (skeleton.positions[shown] @ axes).astype(np.float32),
+        "joints": (skeleton.positions[selected_frames] @ axes).astype(np.float32),
         "input_vertices": lattice.levels(np.concatenate([m.vertices for m in inputs]) @ axes),
         "input_faces": np.concatenate(new_faces).astype(np.uint32),
         "input_label": np.concatenate([m.label for m in inputs]).astype(np.int16),
@@ -107,7 +107,7 @@ def scene(
             {"name": name, "parent": parent, "kind": kind}
             for name, parent, kind in zip(skeleton.names, skeleton.parents, skeleton.kinds, strict=True)
         ],
-        "intervals": _starts(intervals, skeleton.frames, shown),
+        "intervals": _starts(intervals, skeleton.frames, selected_frames),
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, meshes, frames, len(selected), limits))
@@ -170,12 +170,12 @@ def _spans(faces: list[Ints]) -> NDArray[np.uint32]:
     return np.array(spans[1:], np.uint32)
 
 
-def _starts(intervals: Intervals, frames: tuple[int, ...], shown: Ints) -> list[dict[str, int]]:
+def _starts(intervals: Intervals, frames: tuple[int, ...], selected_frames: Ints) -> list[dict[str, int]]:
     """First and last frame of each interval, and the position of the first among the frames that are shown."""
     starts = []
     for begin, end in zip(intervals.begin, intervals.end, strict=True):
-        at = int(np.searchsorted(shown, begin))
-        starts.append({"at": min(at, len(shown) - 1), "begin": frames[int(begin)], "end": frames[int(end)]})
+        at = int(np.searchsorted(selected_frames, begin))
+        starts.append({"at": min(at, len(selected_frames) - 1), "begin": frames[int(begin)], "end": frames[int(end)]})
     return starts
 
 

@@ -11,7 +11,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.results.majority import centroids, labels_of_rings
-from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, graded, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view
 from kinetree.tasks.results.plots.structure import bones, part_colours
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         surface(axes, X, skeleton.faces, colour)
         for k, tip in enumerate(parts.tip):
             axes.plot(*X[tip, :2], "o", color="white", mec="black", mew=1.0, ms=6, zorder=4)
-            axes.annotate(f"{k}", X[tip, :2], xytext=(5, 5), textcoords="offset points", fontsize=8, bbox=BEHIND)
+            axes.annotate(f"{k}", X[tip, :2], xytext=(5, 5), textcoords="offset points", fontsize=8, bbox=LABEL_BOX)
         axes.set_title(side if len(parts.tip) else NO_CONES, fontsize=9)
     return figure
 

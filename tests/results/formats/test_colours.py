@@ -1,7 +1,7 @@
 """Laws of the colours of parts."""
 
 import numpy as np
-from rigs import spider
+from results.rigged_bodies import spider
 
 from kinetree.tasks.results.formats.colours import linear, part_colours
 

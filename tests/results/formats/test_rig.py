@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from rigs import skinned as truth
-from rigs import spider
+from results.rigged_bodies import skinned as truth
+from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.results.formats.rig import (

@@ -1,4 +1,4 @@
-"""What a skeleton was found from, made up so that it fits."""
+"""How a skeleton was derived: rigid parts and a kinematic tree that fit a known skeleton."""
 
 import numpy as np
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from derived import parts_of, tree_of
-from rigs import skinned, spider
+from results.rigged_bodies import skinned, spider
+from results.sample_derivation import parts_of, tree_of
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
@@ -28,9 +28,9 @@ UP = UpDirection(up="y", confidence=1.0)
 
 def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
     """The spider playing."""
-    told = artifacts(skeleton, anew=anew)
+    arguments = artifacts(skeleton, anew=anew)
     names = ("skeleton", "alignment", "projection", "mesh", "leaves", "intervals")
-    return scene(*(told[name] for name in names), limits or Limits())
+    return scene(*(arguments[name] for name in names), limits or Limits())
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
@@ -107,8 +107,10 @@ def followed(skeleton: Skeleton) -> Leaves:
     positions[0, len(skeleton.frames) // 2 :] = np.nan
     none = np.zeros(0, np.int32)
     rows = np.zeros(positions.shape[:2], np.int32)
-    kept = np.ones((2, len(tips)), np.bool_)
-    return Leaves(frames=skeleton.frames, rows=rows, positions=positions, kept=kept, lost=none, lost_begin=none, lost_end=none)
+    counts = np.ones((2, len(tips)), np.bool_)
+    return Leaves(
+        frames=skeleton.frames, rows=rows, positions=positions, kept=counts, lost=none, lost_begin=none, lost_end=none
+    )
 
 
 def halves(frames: tuple[int, ...]) -> Intervals:
@@ -123,5 +125,5 @@ def halves(frames: tuple[int, ...]) -> Intervals:
 def page(title: str = "a walk", **more: object) -> str:
     """The whole page, what ran not yet told."""
     body = table(("joint", "turns"), [("arm", 50.5)])
-    told = {"facts": [("frames", "12")], "warnings": [], "scene": playing(), "sections": [Section("s", "Joints", body)]}
-    return document(Page(title=title, **{**told, **more}))  # type: ignore[arg-type]
+    arguments = {"facts": [("frames", "12")], "warnings": [], "scene": playing(), "sections": [Section("s", "Joints", body)]}
+    return document(Page(title=title, **{**arguments, **more}))  # type: ignore[arg-type]

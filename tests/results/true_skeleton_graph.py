@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from known import generated, observed, perfect
+from results.true_skeletons import generated, observed, perfect
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import task
