@@ -30,4 +30,4 @@ class Connectivity(Artifact):
     faces: int
     """Faces of the first frame."""
     odd: tuple[Odd, ...] = ()
-    """Frames that differ where more than half share one connectivity: but for them it would be fixed."""
+    """The frames without which the connectivity would be fixed, where more than half share one."""

@@ -27,7 +27,7 @@ class Cleaning(Params):
     degenerate: int = 0
     """Faces with a repeated corner, dropped."""
     duplicate: int = 0
-    """Faces that stand there twice, dropped."""
+    """Faces with the same corners as an earlier one, dropped."""
     needles: int = 0
     """Faces without height, kept so that no crack opens."""
     flipped: int = 0

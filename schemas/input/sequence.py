@@ -6,7 +6,7 @@ from kinetree.schemas.array import Artifact, Params
 
 
 class SequenceParams(Params):
-    """What the user says about time and unit, where the files do not or should not be believed."""
+    """What the user says of time and unit, where the files do not state it or state it wrongly."""
 
     fps: float | None = Field(default=None, gt=0)
     """Frames a second; None takes what the files state, or leaves it unknown."""

@@ -1,4 +1,4 @@
-"""The tips of the extremities on one frame: local maxima of μ that persist (2014, Sec. 5.1)."""
+"""The extrema of one frame: local maxima of μ that persist, at the ends of limbs (2014, Sec. 5.1)."""
 
 from typing import Annotated
 
@@ -9,29 +9,29 @@ from kinetree.schemas.dims import LEAF, LOOP, PEAK, STATION, XYZ
 
 
 class ExtremaParams(Params):
-    """What counts as a tip."""
+    """What counts as an extremum."""
 
     threshold: float = Field(default=0.20, gt=0, lt=1)
-    """Share of the range of μ that one must descend from a tip before a higher one is in reach."""
+    """Share of the range of μ by which one must descend from an extremum before a higher one can be reached."""
     roundness: float = Field(default=0.05, ge=0, lt=1)
-    """A body on which μ varies by less than this share of its maximum is round and has no tips."""
+    """A body on which μ varies by less than this share of its maximum is round and has no extrema."""
     stations: int = Field(default=4, ge=1, le=100)
-    """Points along a limb, from its root to its tip, by which it is followed."""
+    """Points along a limb, from its root to its end, by which it is followed."""
 
 
 class Extrema(Artifact):
-    """The tips of one frame, most persistent first; none on a ball."""
+    """The extrema of one frame, most persistent first; none on a ball."""
 
     vertices: Annotated[Ints, Array("int32", LEAF)]
-    """The vertex of each tip."""
+    """The vertex of each extremum."""
     persistence: Annotated[Floats, Array("float64", LEAF)]
     """Share of the range of μ, above the threshold to 1."""
     stems: Annotated[Floats, Array("float64", LEAF, STATION, XYZ, unit="length")]
-    """Centres of each tip's limb from its root to the tip, the tip itself last."""
+    """Centres of each extremum's limb from its root to its end, the extremum itself last."""
     normals: Annotated[Floats, Array("float64", LEAF, XYZ)]
-    """Outward unit normal at each tip."""
+    """Outward unit normal at each extremum."""
     value: Annotated[Floats, Array("float64", LEAF)]
-    """μ / area^1.5 at each tip."""
+    """μ / area^1.5 at each extremum."""
     peaks: Annotated[Floats, Array("float64", PEAK)]
     """Persistences of all maxima above a fiftieth of the range of μ, highest first."""
     loops: Annotated[Floats, Array("float64", LOOP)]

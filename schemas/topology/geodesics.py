@@ -16,7 +16,7 @@ class GeodesicsParams(Params):
     bases: int = Field(default=200, ge=1, le=100_000)
     """How many bases; 200 miss the integral over all vertices by less than 0.5 %."""
     least_share: float = Field(default=0.5, ge=0, le=1)
-    """The largest component must have this share of the area; below it there is no one body to speak of."""
+    """The largest component must have this share of the area; with less the frame shows no one body and fails."""
 
 
 class Geodesics(Artifact):

@@ -21,9 +21,9 @@ class IntervalsParams(Params):
     high: float = Field(default=2.0, ge=0)
     """A drop of the correlation begins above this many robust standard deviations of log(1 − C)."""
     low: float = Field(default=1.5, ge=0)
-    """It reaches as far as it stays above this many."""
+    """The drop extends as far as it stays above this many."""
     drop: float = Field(default=0.02, ge=0, le=2)
-    """And somewhere in it 1 − C must exceed this."""
+    """Within the drop 1 − C must exceed this."""
     minimum: int = Field(default=3, ge=1)
     """Frames an interval has at least."""
     cues: tuple[Cue, ...] = ("correlation", "leaves", "loops")
@@ -47,7 +47,7 @@ class Intervals(Artifact):
     cues: tuple[tuple[str, ...], ...]
     """What made each cut; cut i lies between interval i and the next."""
     strengths: Annotated[Floats, Array("float64", CUE, TRANSITION)]
-    """How near each cue came to cutting at each transition, by itself: 1 is its threshold. Rows in the order of `cue_names`."""
+    """How near each cue by itself came to cutting at each transition; 1 is its threshold. Rows in the order of `cue_names`."""
     cue_names: tuple[str, ...]
     """The cues, whether they were allowed to cut or not."""
     threshold: float

@@ -1,4 +1,4 @@
-"""The leaves of the body: tips followed through the sequence, a fixed set per interval (2014, Sec. 5.1, Eq. 3)."""
+"""The leaves of the body: extrema followed through the sequence, a fixed set per interval (2014, Sec. 5.1, Eq. 3)."""
 
 from typing import Annotated, Literal
 
@@ -9,16 +9,16 @@ from kinetree.schemas.dims import FRAME, GAP, INTERVAL, LEAF, XYZ
 
 
 class LeavesParams(Params):
-    """How tips are followed."""
+    """How extrema are followed."""
 
     method: Literal["stems", "nearest"] = "stems"
-    """stems: whole limbs, assigned together, across intervals; nearest: Eq. 3, tips by mutual nearest neighbours in each."""
+    """stems: whole limbs, assigned together, across intervals; nearest: Eq. 3, the nearest in each interval."""
     gate: float = Field(default=0.3, gt=0)
-    """Distance between limbs of two sights beyond which they are not the same, share of the root of the area."""
+    """Distance between limbs in two frames beyond which they are not the same, share of the root of the area."""
     likeness: float = Field(default=0.2, gt=0)
-    """Largest change of log μ at a tip between two sights."""
+    """Largest change of log μ at a leaf from one frame in which it is seen to the next."""
     margin: float = Field(default=1.5, ge=1)
-    """To take up a lost leaf again, how many times farther every other candidate must be."""
+    """A lost leaf is taken up again only where every other candidate is so many times farther."""
     share: float = Field(default=0.5, gt=0, le=1)
     """Share of an interval's frames in which a leaf must be seen to be one of the interval's; the paper has 1."""
     bridge: int = Field(default=3, ge=0)
@@ -31,7 +31,7 @@ class Leaves(Artifact):
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     rows: Annotated[Ints, Array("int32", LEAF, FRAME)]
-    """Which of the frame's tips it is, −1 where it is not seen."""
+    """Which of the frame's extrema it is, −1 where it is not seen."""
     positions: Annotated[Floats, Array("float64", LEAF, FRAME, XYZ, unit="length", finite=False)]
     """Where it is; on a straight line through short gaps, NaN where nothing is known."""
     kept: Annotated[Bools, Array("bool", INTERVAL, LEAF)]

@@ -9,14 +9,14 @@ Normalisation = Literal["sequence", "frame"]
 
 
 class MuHistogramParams(Params):
-    """What of μ frames are compared by."""
+    """How μ is counted where frames are compared."""
 
     normalisation: Normalisation = "sequence"
     """sequence: μ / area^1.5, a vertex counting its area; frame: the paper's letter, μ as it is, a vertex counting 1."""
 
 
 class MuHistogram(Artifact):
-    """A fine histogram of μ, all that a comparison of frames needs to know of one."""
+    """A fine histogram of μ, all that a comparison of frames needs of one."""
 
     normalisation: Normalisation
     """What was counted; comparing frames follows it."""

@@ -8,7 +8,7 @@ from kinetree.schemas.array import Artifact, Params
 
 
 class UpDirectionParams(Params):
-    """What the user knows."""
+    """What the user knows of the up direction."""
 
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(default=None)
     """Direction of the coordinates that points up, e.g. z or -y; None finds it. No result but pictures depends on it."""

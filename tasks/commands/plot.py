@@ -16,7 +16,7 @@ WHAT = (
     "alignment", "angles", "cones", "confidence", "correlation", "elimination", "errors", "lengths", "merging", "mu",
     "skeleton", "structure", "tree",
 )  # fmt: skip
-"""What can be drawn; `kinetree.tasks.results.plots` draws it."""
+"""What can be drawn of some method; `kinetree.tasks.results.plots` draws it, and refuses what a method does not have."""
 
 
 def plot(

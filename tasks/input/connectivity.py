@@ -22,15 +22,16 @@ def connectivity(mesh: Mapping[int, Mesh]) -> Connectivity:
         first_change=next((t for t, own in kind.items() if own != kind[next(iter(mesh))]), None),
         vertices=len(first.vertices),
         faces=len(first.faces),
-        odd=tuple(_told(t, mesh[t], typical) for t in odd),
+        odd=tuple(_difference(t, mesh[t], typical) for t in odd),
     )
 
 
-def _told(frame: int, mine: Mesh, typical: Mesh) -> Odd:
+def _difference(frame: int, other: Mesh, typical: Mesh) -> Odd:
+    """By how much a frame differs from those that share one connectivity."""
     return Odd(
         frame=frame,
-        inputs=len(mine.vertex_of_input) - len(typical.vertex_of_input),
-        welded=mine.cleaning.merged - typical.cleaning.merged,
-        vertices=len(mine.vertices) - len(typical.vertices),
-        faces=len(mine.faces) - len(typical.faces),
+        inputs=len(other.vertex_of_input) - len(typical.vertex_of_input),
+        welded=other.cleaning.merged - typical.cleaning.merged,
+        vertices=len(other.vertices) - len(typical.vertices),
+        faces=len(other.faces) - len(typical.faces),
     )

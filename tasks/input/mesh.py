@@ -14,10 +14,11 @@ def mesh(source: Source, params: MeshParams) -> Mesh:
     """Loads one frame and cleans it: welded, oriented, without debris, with the way back to the file (2014, Sec. 3)."""
     V, F = surface(source)
     cleaned = clean(V, F, merge=params.merge, component_share=params.component_share, name=name(source))
-    return Mesh(vertices=cleaned.V, faces=cleaned.F, vertex_of_input=cleaned.vertex_map, cleaning=_told(cleaned))
+    return Mesh(vertices=cleaned.V, faces=cleaned.F, vertex_of_input=cleaned.vertex_map, cleaning=_cleaning(cleaned))
 
 
-def _told(cleaned: Cleaned) -> Cleaning:
+def _cleaning(cleaned: Cleaned) -> Cleaning:
+    """What cleaning did, without the arrays."""
     return Cleaning(
         merged=cleaned.merged,
         unreferenced=cleaned.unreferenced,

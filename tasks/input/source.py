@@ -33,61 +33,63 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
 
 def _found(where: str, files: Files) -> list[Source]:
     """Every frame at a path, a pattern or in a packed sequence."""
-    path = _spoken(Path(where))
+    path = _written(Path(where))
     if path.suffix == ".npz" or _is_zarr(path):
         return _packed(path, "npz" if path.suffix == ".npz" else "zarr", files)
-    paths = [_spoken(p) for p in mesh_files(where)]
+    paths = [_written(p) for p in mesh_files(where)]
     contents = files.digests(paths)
     return [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
 
 
 def _generated(written: str, frames: int) -> list[Source]:
-    told = body(written)
-    unit, fps = told.figure.unit, told.fps
+    """Every frame of a synthetic sequence."""
+    generated = body(written)
+    unit, fps = generated.figure.unit, generated.fps
     return [
         Source(content=digest(["synth", written, t]), path="synth", part=t, kind="synth", recipe=written, fps=fps, unit=unit)
         for t in range(frames)
     ]
 
 
-def _chosen(found: Sequence[Source], frames: str, where: str) -> dict[int, Source]:
+def _chosen(sources: Sequence[Source], frames: str, where: str) -> dict[int, Source]:
     """The frames wanted, by number."""
-    chosen = _selected(frames, len(found), where)
+    chosen = _selected(frames, len(sources), where)
     if len(chosen) < 2:
-        held = f"frames {frames!r} selects" if len(found) > 1 else f"{where}: there is"
+        held = f"frames {frames!r} selects" if len(sources) > 1 else f"{where}: there is"
         raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
-    return {frame: found[frame] for frame in chosen}
+    return {frame: sources[frame] for frame in chosen}
 
 
-def surface(found: Source) -> tuple[Floats, Ints]:
+def surface(frame_source: Source) -> tuple[Floats, Ints]:
     """Vertices (vertex, xyz) and faces (face, corner) of one frame, as the user gave them.
 
     raises : MeshError, SourceError where they cannot be read, or are not the bytes that were there when planning
     """
-    path = Path(found.path)
-    if found.part is not None and found.kind == "synth":
-        V, corners = body(found.recipe).frame(found.part)
+    path = Path(frame_source.path)
+    if frame_source.part is not None and frame_source.kind == "synth":
+        V, corners = body(frame_source.recipe).frame(frame_source.part)
         F = corners.astype(np.int32)
-        now = digest(["synth", found.recipe, found.part])
-    elif found.part is None:
+        now = digest(["synth", frame_source.recipe, frame_source.part])
+    elif frame_source.part is None:
         _refuse_closed(path)
         V, F = read_mesh(path)
         now = file_digest(path)
     else:
-        V, F = _packed_frames(path, found.kind).mesh(found.part)
+        V, F = _packed_frames(path, frame_source.kind).mesh(frame_source.part)
         now = _mesh_digest(V, F)
-    if now != found.content:
-        raise SourceError(f"{name(found)}: the file changed while the run was under way; run again")
+    if now != frame_source.content:
+        raise SourceError(f"{name(frame_source)}: the file changed while the run was under way; run again")
     return V, F
 
 
-def name(found: Source) -> str:
+def name(frame_source: Source) -> str:
     """What messages call the frame."""
-    file = Path(found.path).name
-    return file if found.part is None else f"{file}, frame {found.part}"
+    file = Path(frame_source.path).name
+    return file if frame_source.part is None else f"{file}, frame {frame_source.part}"
 
 
 def _packed_frames(path: Path, kind: str) -> Frames:
+    """The frames of one npz or zarr file."""
     return read_npz(path) if kind == "npz" else _zarr_frames(path, _state(path))
 
 
@@ -102,6 +104,7 @@ def _state(path: Path) -> tuple[tuple[str, int, int], ...]:
 
 @lru_cache(maxsize=2)
 def _zarr_frames(path: Path, state: tuple[tuple[str, int, int], ...]) -> Frames:
+    """The frames of a zarr group in this state."""
     try:
         return Frames.of(group_arrays(path), str(path))
     except StoreError as error:  # the user's file, not the store
@@ -109,10 +112,12 @@ def _zarr_frames(path: Path, state: tuple[tuple[str, int, int], ...]) -> Frames:
 
 
 def _mesh_digest(V: Floats, F: Ints) -> str:
+    """Digest of one frame of a packed sequence."""
     return digest([array_digest(V), array_digest(F)])
 
 
 def _packed(path: Path, kind: str, files: Files) -> list[Source]:
+    """Every frame of one npz or zarr file."""
     if not path.exists():
         raise SourceError(f"{path}: there is no such file")
 
@@ -122,11 +127,11 @@ def _packed(path: Path, kind: str, files: Files) -> list[Source]:
         return heads + [_mesh_digest(*frames.mesh(t)) for t in range(len(frames))]
 
     fps, unit, *contents = files.parts(path, f"{kind}/2", parts)
-    told = {"path": str(path), "kind": kind, "fps": json.loads(fps), "unit": json.loads(unit)}
-    return [Source(content=c, part=t, **told) for t, c in enumerate(contents)]
+    stated = {"path": str(path), "kind": kind, "fps": json.loads(fps), "unit": json.loads(unit)}
+    return [Source(content=c, part=t, **stated) for t, c in enumerate(contents)]
 
 
-def _spoken(path: Path) -> Path:
+def _written(path: Path) -> Path:
     """The path, if its name can be written down; raises SourceError where its bytes are no text."""
     try:
         str(path).encode()

@@ -27,8 +27,8 @@ def recipe(params: SynthParams) -> str:
 
     raises : FigureError where the figure, the motion or a limb is not known
     """
-    told = params.model_dump(mode="json", exclude={"figure", "file"})
-    written = json.dumps({"figure": _description(params), **told}, sort_keys=True)
+    options = params.model_dump(mode="json", exclude={"figure", "file"})
+    written = json.dumps({"figure": _description(params), **options}, sort_keys=True)
     body(written)
     return written
 
@@ -38,8 +38,8 @@ def body(written: str) -> Body:
     """The body that a recipe describes, posed in every frame and not surfaced yet."""
     options: dict[str, Any] = json.loads(written)
     figure = options.pop("figure")
-    made = random_tree(figure["random"]) if "random" in figure else Figure.of(figure)
-    return Body.of(made, **options)
+    tree = random_tree(figure["random"]) if "random" in figure else Figure.of(figure)
+    return Body.of(tree, **options)
 
 
 def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, cameras: int = 0) -> None:
@@ -51,12 +51,12 @@ def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, 
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"{folder}: not an empty folder; name a new one, so that no frame of another sequence stays in it")
-    made = body(recipe(params))
+    generated = body(recipe(params))
     beside = folder.absolute().with_name(f".{folder.name}.{os.getpid()}")
     try:
         beside.mkdir(parents=True)
-        _write_frames(made, beside, volumes, cameras)
-        (beside / "truth.json").write_text(json.dumps(made.truth()))
+        _write_frames(generated, beside, volumes, cameras)
+        (beside / "truth.json").write_text(json.dumps(generated.truth()))
         if folder.is_dir():
             folder.rmdir()
         beside.rename(folder)
@@ -66,18 +66,19 @@ def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, 
         shutil.rmtree(beside, ignore_errors=True)
 
 
-def _write_frames(made: Body, folder: Path, volumes: bool, cameras: int) -> None:
-    ring = made.cameras(cameras) if cameras else None
+def _write_frames(generated: Body, folder: Path, volumes: bool, cameras: int) -> None:
+    """Writes every frame, with volumes and silhouettes where wanted."""
+    ring = generated.cameras(cameras) if cameras else None
     if ring is not None:
         np.savez_compressed(folder / "cameras.npz", **{f.name: getattr(ring, f.name) for f in fields(ring)})
-    for t in range(len(made.X)):
-        V, F = made.frame(t)
+    for t in range(len(generated.X)):
+        V, F = generated.frame(t)
         ply = trimesh.Trimesh(V, F, process=False).export(file_type="ply", vertex_normal=False)
         (folder / f"frame_{t:04d}.ply").write_bytes(ply)
         if volumes:
-            np.savez_compressed(folder / f"volume_{t:04d}.npz", **made.volume(t)._asdict())
+            np.savez_compressed(folder / f"volume_{t:04d}.npz", **generated.volume(t)._asdict())
         if ring is not None:
-            np.savez_compressed(folder / f"silhouettes_{t:04d}.npz", silhouettes=made.silhouettes(t, ring))
+            np.savez_compressed(folder / f"silhouettes_{t:04d}.npz", silhouettes=generated.silhouettes(t, ring))
 
 
 def figure_names() -> list[str]:
@@ -100,12 +101,13 @@ def _description(params: SynthParams) -> dict[str, Any]:
 
 
 def _read(path: Any) -> dict[str, Any]:
+    """A figure's description from a YAML file."""
     try:
-        told = yaml.safe_load(path.read_text(encoding="utf-8"))
+        description = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         raise FigureError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except yaml.YAMLError as error:
         raise FigureError(f"{path}: not valid YAML: {error}") from None
-    if not isinstance(told, dict):
-        raise FigureError(f"{path}: expected a figure with its joints, got {type(told).__name__}")
-    return told
+    if not isinstance(description, dict):
+        raise FigureError(f"{path}: expected a figure with its joints, got {type(description).__name__}")
+    return description

@@ -9,13 +9,13 @@ from kinetree.tasks.numerics.topology.correlation import correlations, histogram
 
 
 @task()
-def correlation(distribution: tuple[MuHistogram, ...], params: CorrelationParams) -> Correlation:
+def correlation(mu_histogram: tuple[MuHistogram, ...], params: CorrelationParams) -> Correlation:
     """Correlates the histograms of μ of successive frames (2014, Sec. 4, Eq. 2)."""
     H = histograms(
-        np.array([d.low for d in distribution]),
-        np.array([d.high for d in distribution]),
-        np.array([d.mass for d in distribution]),
-        distribution[0].normalisation,
+        np.array([d.low for d in mu_histogram]),
+        np.array([d.high for d in mu_histogram]),
+        np.array([d.mass for d in mu_histogram]),
+        mu_histogram[0].normalisation,
         params.bins,
         params.smoothing,
     )

@@ -16,28 +16,28 @@ from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu, mu_fr
 @task(over="frame")
 def geodesics(mesh: Mesh, params: GeodesicsParams) -> Geodesics:
     """Integrates geodesic distance over one frame's largest component, μ (2014, Sec. 4, Eq. 1)."""
-    kept, F, share = largest_component(mesh.vertices, mesh.faces)
+    inside, F, share = largest_component(mesh.vertices, mesh.faces)
     if share < params.least_share:
         raise MeshError(
             f"the largest component has {share:.0%} of the surface's area, {params.least_share:.0%} are needed for one body;"
             " join the pieces, or lower geodesics.least_share"
         )
-    surface = Surface.of(mesh.vertices[kept], F)
+    surface = Surface.of(mesh.vertices[inside], F)
     if params.sum == "vertices":
         integral, bases = mu_from_every_vertex(surface), np.empty(0, np.int64)
     else:
-        found = farthest_bases(surface, params.bases)
-        integral, bases = mu(found.distance, found.weight), kept[found.vertex]
+        spread = farthest_bases(surface, params.bases)
+        integral, bases = mu(spread.distance, spread.weight), inside[spread.vertex]
     return Geodesics(
-        mu=_spread(integral, kept, len(mesh.vertices), np.nan),
-        area=_spread(surface.area, kept, len(mesh.vertices), 0.0),
+        mu=_scattered(integral, inside, len(mesh.vertices), np.nan),
+        area=_scattered(surface.area, inside, len(mesh.vertices), 0.0),
         bases=bases,
         share=share,
     )
 
 
-def _spread(values: Floats, kept: NDArray[np.int64], count: int, rest: float) -> Floats:
+def _scattered(values: Floats, inside: NDArray[np.int64], count: int, rest: float) -> Floats:
     """Values of the kept vertices among all vertices, `rest` elsewhere."""
     whole = np.full(count, rest)
-    whole[kept] = values
+    whole[inside] = values
     return whole

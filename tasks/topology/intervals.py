@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals, IntervalsParams
@@ -13,13 +13,13 @@ from kinetree.tasks.numerics.topology import intervals as numerics
 
 
 @task()
-def intervals(correlation: Correlation, tips: Mapping[int, Extrema], params: IntervalsParams) -> Intervals:
+def intervals(correlation: Correlation, extrema: Mapping[int, Extrema], params: IntervalsParams) -> Intervals:
     """Cuts the sequence at sharp drops of the correlation and where limbs join or part for good (2014, Sec. 4)."""
-    cues = _cues(tuple(tips.values()), params.step)
+    cues = _cues(tuple(extrema.values()), params.step)
     if params.rule == "fixed":
-        found = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
+        cut = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
     else:
-        found = numerics.intervals(
+        cut = numerics.intervals(
             correlation.histograms,
             {name: cue for name, cue in cues.items() if name in params.cues},
             high=params.high,
@@ -29,26 +29,27 @@ def intervals(correlation: Correlation, tips: Mapping[int, Extrema], params: Int
             correlation="correlation" in params.cues,
         )
     return Intervals(
-        frames=tuple(tips),
-        begin=found.begin,
-        end=found.end,
-        z=found.z,
-        cues=found.cues,
-        strengths=np.stack([found.z / max(params.high, 1e-9), *(_strength(cue) for cue in cues.values())]),
+        frames=tuple(extrema),
+        begin=cut.begin,
+        end=cut.end,
+        z=cut.z,
+        cues=cut.cues,
+        strengths=np.stack([cut.z / max(params.high, 1e-9), *(_strength(cue) for cue in cues.values())]),
         cue_names=(numerics.CORRELATION, *cues),
         threshold=params.threshold if params.rule == "fixed" else params.high,
     )
 
 
-def _strength(cue: numerics.Cue) -> NDArray[np.float64]:
+def _strength(cue: numerics.Cue) -> Floats:
+    """How near a cue comes to cutting at each transition, 1 being enough."""
     return numerics.sharpness(cue.profile) / cue.least
 
 
-def _cues(tips: tuple[Extrema, ...], step: float) -> dict[str, numerics.Cue]:
-    """What stays the same while nothing touches; the first peak reaches over the whole range and tells nothing."""
+def _cues(extrema: tuple[Extrema, ...], step: float) -> dict[str, numerics.Cue]:
+    """What stays the same while nothing touches. The first peak spans the whole range on every frame and is left out."""
     return {
-        "leaves": numerics.Cue(numerics.stacked([t.peaks[1:] for t in tips]), step),
-        "loops": numerics.Cue(numerics.stacked([t.loops for t in tips]), step),
-        "components": numerics.Cue(np.array([[float(t.components)] for t in tips]), 1.0),
-        "euler": numerics.Cue(np.array([[float(t.euler)] for t in tips]), 1.0),
+        "leaves": numerics.Cue(numerics.stacked([t.peaks[1:] for t in extrema]), step),
+        "loops": numerics.Cue(numerics.stacked([t.loops for t in extrema]), step),
+        "components": numerics.Cue(np.array([[float(t.components)] for t in extrema]), 1.0),
+        "euler": numerics.Cue(np.array([[float(t.euler)] for t in extrema]), 1.0),
     }

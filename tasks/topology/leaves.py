@@ -1,4 +1,4 @@
-"""The leaves of the body: tips followed through the sequence."""
+"""The leaves of the body: extrema followed through the sequence."""
 
 from collections.abc import Mapping
 
@@ -9,22 +9,22 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves, LeavesParams
-from kinetree.tasks.numerics.topology.leaves import bridged, follow, follow_paper, gaps, kept
+from kinetree.tasks.numerics.topology.leaves import bridged, fixed_leaves, follow, follow_paper, gaps
 
 
 @task()
-def leaves(tips: Mapping[int, Extrema], intervals: Intervals, params: LeavesParams) -> Leaves:
-    """Follows tips from frame to frame and fixes the leaves of every interval (2014, Sec. 5.1, Eq. 3)."""
-    seen = tuple(tips.values())
+def leaves(extrema: Mapping[int, Extrema], intervals: Intervals, params: LeavesParams) -> Leaves:
+    """Follows extrema from frame to frame and fixes the leaves of every interval (2014, Sec. 5.1, Eq. 3)."""
+    frames = tuple(extrema.values())
     spans = [(int(a), int(b)) for a, b in zip(intervals.begin, intervals.end, strict=True)]
-    rows = _across(seen, params) if params.method == "stems" else _within(seen, spans)
-    positions, _ = bridged(rows, [t.stems for t in seen], params.bridge)
+    rows = _across(frames, params) if params.method == "stems" else _within(frames, spans)
+    positions, _ = bridged(rows, [t.stems for t in frames], params.bridge)
     fixed = np.zeros((len(spans), len(rows)), dtype=np.bool_)
     for number, (begin, end) in enumerate(spans):
-        fixed[number, kept(rows, begin, end, params.share)] = True
+        fixed[number, fixed_leaves(rows, begin, end, params.share)] = True
     lost = np.array([tuple(gap) for gap in gaps(rows)], dtype=np.int64).reshape(-1, 3)
     return Leaves(
-        frames=tuple(tips),
+        frames=tuple(extrema),
         rows=rows,
         positions=positions,
         kept=fixed,
@@ -34,20 +34,20 @@ def leaves(tips: Mapping[int, Extrema], intervals: Intervals, params: LeavesPara
     )
 
 
-def _across(seen: tuple[Extrema, ...], params: LeavesParams) -> NDArray[np.int64]:
+def _across(frames: tuple[Extrema, ...], params: LeavesParams) -> NDArray[np.int64]:
     """Tracks over the whole sequence: a limb that was lost at a contact comes back as itself."""
-    size, centre = np.array([t.size for t in seen]), np.array([t.centre for t in seen])
-    stems, value = [t.stems for t in seen], [t.value for t in seen]
+    size, centre = np.array([t.size for t in frames]), np.array([t.centre for t in frames])
+    stems, value = [t.stems for t in frames], [t.value for t in frames]
     return follow(stems, value, size, centre, gate=params.gate, likeness=params.likeness, margin=params.margin)
 
 
-def _within(seen: tuple[Extrema, ...], spans: list[tuple[int, int]]) -> NDArray[np.int64]:
+def _within(frames: tuple[Extrema, ...], spans: list[tuple[int, int]]) -> NDArray[np.int64]:
     """Tracks of each interval by itself, one below the other."""
     tracks = []
     for begin, end in spans:
-        here = seen[begin : end + 1]
-        found = follow_paper([t.stems[:, -1] for t in here], [t.normals for t in here])
-        rows = np.full((len(found), len(seen)), -1, dtype=np.int64)
-        rows[:, begin : end + 1] = found
+        here = frames[begin : end + 1]
+        tracked = follow_paper([t.stems[:, -1] for t in here], [t.normals for t in here])
+        rows = np.full((len(tracked), len(frames)), -1, dtype=np.int64)
+        rows[:, begin : end + 1] = tracked
         tracks.append(rows)
     return np.concatenate(tracks)

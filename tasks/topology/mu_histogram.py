@@ -11,5 +11,5 @@ def mu_histogram(geodesics: Geodesics, params: MuHistogramParams) -> MuHistogram
     """Summarises the distribution of μ on one frame, so that frames meet as histograms (2014, Sec. 4)."""
     inside = geodesics.area > 0
     mu, area = geodesics.mu[inside], geodesics.area[inside]
-    told = summary(dimensionless(mu, area), area) if params.normalisation == "sequence" else summary(mu)
-    return MuHistogram(normalisation=params.normalisation, low=told.low, high=told.high, mass=told.mass)
+    of_frame = summary(dimensionless(mu, area), area) if params.normalisation == "sequence" else summary(mu)
+    return MuHistogram(normalisation=params.normalisation, low=of_frame.low, high=of_frame.high, mass=of_frame.mass)

@@ -20,8 +20,8 @@ def largest_component(V: Floats, F: Faces) -> tuple[Ints, Ints, float]:
     of_face = piece[F[:, 0]]
     areas = np.bincount(of_face, face_areas(V, F), count)
     largest = int(np.argmax(areas)) if areas.any() else int(of_face[0])
-    kept = np.flatnonzero(piece == largest)
+    inside = np.flatnonzero(piece == largest)
     number = np.full(len(V), -1)
-    number[kept] = np.arange(len(kept))
+    number[inside] = np.arange(len(inside))
     total = float(areas.sum())
-    return kept, number[F[of_face == largest]], float(areas[largest]) / total if total else 1.0
+    return inside, number[F[of_face == largest]], float(areas[largest]) / total if total else 1.0

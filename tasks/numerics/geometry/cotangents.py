@@ -8,8 +8,10 @@ import numpy.typing as npt
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
 
-_LEAST = 0.01  # of an edge's weight: a hundredth of 1/√3, what two equilateral triangles give
-_MOST = 20.0  # of a corner's cotangent: corners below 3° count as if they had 3°
+_LEAST_WEIGHT = 0.01
+"""Least weight of an edge, share of 1/√3, the weight between two equilateral triangles."""
+_LARGEST_COTANGENT = 20.0
+"""Corners below 3° count as if they had 3°."""
 
 
 class Links(NamedTuple):
@@ -44,11 +46,13 @@ def cotangent_links(V: Floats, F: npt.NDArray[np.integer]) -> Links:
         half = _cotangents(V[b] - V[a], V[c] - V[a]) / 2.0
         for one, other in ((b, c), (c, b)):
             weight += np.bincount(np.searchsorted(code, one * len(V) + other), half, len(code))
-    return Links(start, ring, np.maximum(weight, _LEAST / np.sqrt(3.0)))
+    return Links(start, ring, np.maximum(weight, _LEAST_WEIGHT / np.sqrt(3.0)))
 
 
 def _cotangents(e: Floats, f: Floats) -> Floats:
     """(face,) cotangent of the angle between two edges; of nought, if one has no length."""
     along = np.einsum("fx,fx->f", e, f)
     across = np.linalg.norm(np.cross(e, f), axis=1)
-    return np.clip(np.divide(along, across, out=np.zeros_like(along), where=across > 0), -_MOST, _MOST)
+    return np.clip(
+        np.divide(along, across, out=np.zeros_like(along), where=across > 0), -_LARGEST_COTANGENT, _LARGEST_COTANGENT
+    )

@@ -24,5 +24,5 @@ def decimated(V: Floats, F: npt.NDArray[np.integer], count: int) -> tuple[Ints, 
         nearest = cKDTree(V).query(coarse.vertices)[1]
         faces = nearest[np.asarray(coarse.faces, np.int64)]
         faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
-    kept, corner = np.unique(faces, return_inverse=True)
-    return kept, corner.reshape(-1, 3).astype(np.int64)
+    chosen, corner = np.unique(faces, return_inverse=True)
+    return chosen, corner.reshape(-1, 3).astype(np.int64)

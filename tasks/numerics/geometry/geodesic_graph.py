@@ -112,10 +112,10 @@ def _empty_lines(links: np.uint64) -> Lines:
 
 
 @compiled
-def _enlarged(lines: Lines, kept: np.uint64, links: np.uint64) -> Lines:
+def _enlarged(lines: Lines, count: np.uint64, links: np.uint64) -> Lines:
     """Memory for more lines that holds the first ones."""
     larger = _empty_lines(links)
-    for k in range(kept):
+    for k in range(count):
         larger[0][k], larger[1][k], larger[2][k], larger[3][k] = lines[0][k], lines[1][k], lines[2][k], lines[3][k]
     return larger
 
@@ -162,7 +162,7 @@ def _ordered(begin: Indices, both: Lines, total: Floats, free: npt.NDArray[np.ui
         for i in range(size):
             j = key[i] & _LOW
             own_lines[0][i], own_lines[1][i], own_lines[2][i], own_lines[3][i] = target[j], length[j], out[j], back[j]
-        # links kept of one vertex never overwrite those of the next, which are not read yet
+        # links count of one vertex never overwrite those of the next, which are not read yet
         for i in range(size):
             if not _is_redundant(np.uint64(i), size, total[v], not free[v], own_lines[1], own_lines[2]):
                 target[k], length[k], out[k], back[k] = own_lines[0][i], own_lines[1][i], own_lines[2][i], own_lines[3][i]

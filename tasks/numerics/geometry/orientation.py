@@ -6,8 +6,10 @@ from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.normals import area_vectors
 
-_FLAT = 0.01  # volume over area^1.5 (a sphere has 0.094): an open patch that encloses less has no outside to turn to
-_PRESSED = 1e-9  # the same for a closed patch
+_FLAT_OPEN = 0.01
+"""Volume over area^1.5 (a sphere has 0.094) below which an open patch is flat and has no outside to turn to."""
+_FLAT_CLOSED = 1e-9
+"""The same for a closed patch, where only rounding error is left of the volume."""
 
 
 def oriented(X: Floats, F: Faces) -> tuple[Flags, Ints]:
@@ -32,7 +34,7 @@ def oriented(X: Floats, F: Faces) -> tuple[Flags, Ints]:
     volume = np.bincount(patch, weights=sign * height) / 3
     majority = np.bincount(patch, weights=sign * area)
     # a closed patch pressed flat has a volume of rounding error, whose sign a second cleaning might not find again
-    encloses = np.abs(volume) > np.where(np.bincount(patch, weights=is_open) > 0, _FLAT, _PRESSED) * A**1.5
+    encloses = np.abs(volume) > np.where(np.bincount(patch, weights=is_open) > 0, _FLAT_OPEN, _FLAT_CLOSED) * A**1.5
     turned = np.where(encloses, volume, majority)[patch] * sign < 0
     # nothing to go by (a patch without area or volume): the first face of the patch decides
     turned |= (np.where(encloses, volume, majority)[patch] == 0) & flip

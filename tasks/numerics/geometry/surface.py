@@ -164,7 +164,7 @@ def _angles(length: Floats) -> Floats:
 @compiled
 def _rings(start: Ints, corner: Ints, twin: Ints) -> tuple[Ints, npt.NDArray[np.uint8], Ints]:
     """Fans of faces around every vertex, in order: where each ring starts, whether an entry ends a face, its edge."""
-    seen = np.zeros(len(twin), np.uint8)
+    done = np.zeros(len(twin), np.uint8)
     ring_start = np.zeros(len(start), np.int64)
     kind = np.zeros(2 * len(twin), np.uint8)
     edge = np.zeros(2 * len(twin), np.int64)
@@ -174,12 +174,12 @@ def _rings(start: Ints, corner: Ints, twin: Ints) -> tuple[Ints, npt.NDArray[np.
         for closed in range(2):
             for q in range(start[v], start[v + 1]):
                 h = corner[q]
-                if seen[h] or (closed == 0 and twin[h] < NON_MANIFOLD):
+                if done[h] or (closed == 0 and twin[h] < NON_MANIFOLD):
                     continue
                 edge[k] = h
                 k += 1
-                while h < NON_MANIFOLD and not seen[h]:
-                    seen[h] = 1
+                while h < NON_MANIFOLD and not done[h]:
+                    done[h] = 1
                     kind[k] = 1
                     edge[k] = h
                     k += 1

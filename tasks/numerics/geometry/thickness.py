@@ -5,8 +5,10 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 
-_TURN = 0.1  # what a turn of the normal counts against distance: enough that a neighbour is never the other side
+_NORMAL_WEIGHT = 0.1
+"""What a difference of normals counts against distance, share of the size: enough that a neighbour is never the other side."""
 _CANDIDATES = 4
+"""Nearest points with opposite normals that are tried."""
 
 
 def opposite(V: Floats, N: Floats, size: float, vertex: Ints) -> tuple[Ints, Floats]:
@@ -19,12 +21,12 @@ def opposite(V: Floats, N: Floats, size: float, vertex: Ints) -> tuple[Ints, Flo
               and where the body is thicker than a fifth of its size: then nearer points are found, on the same side
     """
     count = min(_CANDIDATES, len(V))
-    tree = cKDTree(np.hstack([V, _TURN * size * N]))
-    found = tree.query(np.hstack([V[vertex], -_TURN * size * N[vertex]]), k=count)[1].reshape(len(vertex), count)
-    way = V[found] - V[vertex, None]
+    tree = cKDTree(np.hstack([V, _NORMAL_WEIGHT * size * N]))
+    other_side = tree.query(np.hstack([V[vertex], -_NORMAL_WEIGHT * size * N[vertex]]), k=count)[1].reshape(len(vertex), count)
+    way = V[other_side] - V[vertex, None]
     length = np.linalg.norm(way, axis=2)
     inwards = np.einsum("vkx,vx->vk", way, N[vertex]) < -0.5 * length
-    return found, np.where(inwards, length, np.inf)
+    return other_side, np.where(inwards, length, np.inf)
 
 
 def thickness(V: Floats, N: Floats, size: float) -> Floats:

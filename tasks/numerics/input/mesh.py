@@ -5,6 +5,7 @@ and faces turned inside out. Thresholds are relative to the mesh's own size, so 
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -17,11 +18,22 @@ from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.normals import area_vectors, face_areas
 from kinetree.tasks.numerics.geometry.orientation import half_edges, lexicographic, oriented, winding
 
-_NEEDLE = 1e-6  # height over longest edge: below it a face's normal is rounding error
-_INSIDE = 0.9  # winding number: 1 inside a closed surface, hardly less behind small holes, about 0.5 in a bowl
-_SMALLEST = 1e-100  # diagonal whose cube, and that of its inverse, is still a number
-_FAR = 1e150  # box diagonals: what lies beyond is in no face, and its square must be a number
-_PROBES = 32  # vertices of a shell that must all be inside; the box, tested first, catches most that stick out
+_SMALLEST_DIAGONAL = 1e-100
+"""Mesh unit; of a smaller diagonal the cube, or that of its inverse, is no number."""
+_FARTHEST = 1e150
+"""Box diagonals; what lies farther is in no face, and its square must be a number."""
+
+
+class MeshSettings(NamedTuple):
+    """What counts as rounding, and as lying inside another component."""
+
+    needle: float = 1e-6
+    """Height over longest edge below which a face's normal is rounding error; such faces are counted and stay."""
+    inside: float = 0.9
+    """Winding number from which a point is inside: 1 in a closed surface, hardly less behind small holes, about 0.5 in a bowl.
+    Not varied so far."""
+    probes: int = 32
+    """Vertices of a component that must all be inside; the bounding box is tried first and excludes most. Not varied so far."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +87,15 @@ class Cleaned:
     volume: float
 
 
-def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 0.05, name: str = "mesh") -> Cleaned:
+def clean(
+    V: Floats,
+    F: Faces,
+    *,
+    merge: float = 1e-7,
+    component_share: float = 0.05,
+    name: str = "mesh",
+    settings: MeshSettings | None = None,
+) -> Cleaned:
     """Weld, drop what is no surface, orient outwards and keep the body; cleaning twice changes nothing more.
 
     Components are what shared edges connect. Kept are the largest, and those of at least `component_share` of the area
@@ -92,15 +112,16 @@ def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 
     name            : what messages call the mesh
     raises          : MeshError if no face or no area is left
     """
+    chosen = settings or MeshSettings()
     if not len(F):
         raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
     corners = V[F.ravel()]
     diagonal = float(np.hypot.reduce(corners.max(axis=0) / 2 - corners.min(axis=0) / 2)) * 2
-    if not _SMALLEST < diagonal < 1 / _SMALLEST:
+    if not _SMALLEST_DIAGONAL < diagonal < 1 / _SMALLEST_DIAGONAL:
         raise MeshError(f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged")
     # the box of the faces alone: one stray vertex far away must not widen what counts as close
     with np.errstate(over="ignore"):
-        X = np.clip((V - corners.min(axis=0)) / diagonal, -_FAR, _FAR)
+        X = np.clip((V - corners.min(axis=0)) / diagonal, -_FARTHEST, _FARTHEST)
     first = welded(X, merge)
     G = first[F]
     whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
@@ -113,7 +134,7 @@ def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 
     turned, component = oriented(X, G)
     G = np.where(turned[:, None], G[:, [0, 2, 1]], G)
     shares = np.bincount(component, weights=area) / area.sum()
-    inside, keep_component = _body(X, G, component, shares, component_share)
+    inside, keep_component = _body(X, G, component, shares, component_share, chosen)
     keep = keep_component[component]
     V_new, F_new, vertex_map = _compacted(V, G[keep], first)
     edges = _edge_counts(F_new, len(V_new))
@@ -129,7 +150,7 @@ def clean(V: Floats, F: Faces, *, merge: float = 1e-7, component_share: float = 
         degenerate=len(F) - len(whole),
         duplicate=len(whole) - folded - len(origin),
         folded=folded,
-        needles=int(_needles(X, G[keep], area[keep])),
+        needles=int(_needles(X, G[keep], area[keep], chosen.needle)),
         flipped=int(turned[keep].sum()),
         shares=shares,
         kept=keep_component,
@@ -170,7 +191,7 @@ def welded(X: Floats, tolerance: float) -> Faces:
     return first[cluster]
 
 
-def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float) -> tuple[Flags, Flags]:
+def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float, settings: MeshSettings) -> tuple[Flags, Flags]:
     """(component,) large enough but wholly inside a larger one · (component,) to be kept."""
     large = shares >= min(least, float(shares.max()))
     inside = np.zeros(len(shares), dtype=bool)
@@ -178,11 +199,11 @@ def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float) ->
     parts = {c: F[component == c] for c in ranked} if len(ranked) > 1 else {}
     for i, c in enumerate(ranked):
         own = np.unique(parts[c]) if parts else np.empty(0, dtype=np.int32)
-        probes = X[own[np.linspace(0, len(own) - 1, min(_PROBES, len(own))).astype(int)]]
+        probes = X[own[np.linspace(0, len(own) - 1, min(settings.probes, len(own))).astype(int)]]
         for other in ranked[:i]:
             box = X[parts[other].ravel()]
             within = (X[own] > box.min(axis=0)).all() and (X[own] < box.max(axis=0)).all()
-            inside[c] |= within and bool((winding(probes, X, parts[other]) > _INSIDE).all())
+            inside[c] |= within and bool((winding(probes, X, parts[other]) > settings.inside).all())
     return inside, large & ~inside
 
 
@@ -233,8 +254,8 @@ def _volume(X: Floats, F: Faces) -> float:
 
 
 @compiled
-def _needles(X: Floats, F: Faces, area: Floats) -> int:
-    """How many faces are lower than a millionth of their longest edge."""
+def _needles(X: Floats, F: Faces, area: Floats, height: float) -> int:
+    """How many faces are lower than this share of their longest edge."""
     count = 0
     for f in range(len(F)):
         longest = 0.0
@@ -242,5 +263,5 @@ def _needles(X: Floats, F: Faces, area: Floats) -> int:
             a, b = F[f, k], F[f, (k + 1) % 3]
             squared = (X[b, 0] - X[a, 0]) ** 2 + (X[b, 1] - X[a, 1]) ** 2 + (X[b, 2] - X[a, 2]) ** 2
             longest = max(longest, squared)
-        count += 2 * area[f] <= _NEEDLE * longest
+        count += 2 * area[f] <= height * longest
     return count

@@ -20,7 +20,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked, suffixes
 
-_READ = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
+_ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
 
 
 def natural_order(name: str) -> tuple[tuple[str | int, ...], str]:
@@ -41,15 +41,15 @@ def mesh_files(where: Path | str) -> list[Path]:
     """
     path = Path(where).expanduser()
     if path.is_dir():
-        found = [p for p in path.iterdir() if p.is_file() and not p.name.startswith(".")]
+        files = [p for p in path.iterdir() if p.is_file() and not p.name.startswith(".")]
         pattern = ""
     elif glob.has_magic(str(path)):
         # Path.glob takes no absolute pattern
-        found = [Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file()]  # noqa: PTH207
+        files = [Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file()]  # noqa: PTH207
         pattern = "matches of "
     else:
         raise SourceError(_not_a_folder(path))
-    kinds = Counter(p.suffix.lower() for p in found)
+    kinds = Counter(p.suffix.lower() for p in files)
     meshes = {kind: n for kind, n in sorted(kinds.items()) if kind in suffixes()}
     if not meshes:
         others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
@@ -60,7 +60,7 @@ def mesh_files(where: Path | str) -> list[Path]:
         likely = max(meshes, key=lambda kind: meshes[kind])
         example = (path / f"*{likely}") if path.is_dir() else path.with_suffix(likely)
         raise SourceError(f"{pattern}{path}: meshes of several formats ({counts}); choose by a pattern such as {example}")
-    return sorted((p for p in found if p.suffix.lower() in meshes), key=lambda p: [natural_order(q) for q in p.parts])
+    return sorted((p for p in files if p.suffix.lower() in meshes), key=lambda p: [natural_order(q) for q in p.parts])
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Frames:
         fps, unit       : (), may be missing
         raises          : SourceError if an array is missing, or of a shape, type or order that cannot be
         """
-        if missing := [key for key in _READ[:4] if key not in arrays]:
+        if missing := [key for key in _ARRAYS[:4] if key not in arrays]:
             raise SourceError(f"{name}: no array {', '.join(missing)}; there are {', '.join(sorted(arrays)) or 'none'}")
         for key, kind, what in (("vertices", "f", "floating"), ("faces", "iu", "whole")):
             array = arrays[key]
@@ -99,7 +99,7 @@ class Frames:
         frames = len(vertex_offsets) - 1
         if len(face_offsets) not in (2, frames + 1):
             raise SourceError(
-                f"{name}: vertex_offsets tell of {frames} frames, face_offsets of {len(face_offsets) - 1}; "
+                f"{name}: vertex_offsets are of {frames} frames, face_offsets of {len(face_offsets) - 1}; "
                 "they must agree, or face_offsets hold one pair for all frames"
             )
         if len(face_offsets) == 2 and len(set(np.diff(vertex_offsets))) > 1:
@@ -137,7 +137,7 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     try:
         # opened here, because numpy leaves a file open that turns out to be no archive
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            arrays = {key: archive[key] for key in _READ if key in archive.files}
+            arrays = {key: archive[key] for key in _ARRAYS if key in archive.files}
     except Exception as error:
         raise SourceError(
             f"{path}: cannot be read as .npz ({type(error).__name__}: {error}); an archive of plain arrays is needed"
@@ -150,8 +150,8 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
 def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:
     """The offsets `key` into the array `of`, each frame holding at least one element."""
     if arrays[key].dtype.kind not in "iu" or len(arrays[key].shape) != 1 or arrays[key].shape[0] < 2:
-        found = f"{arrays[key].dtype} {tuple(arrays[key].shape)}"
-        raise SourceError(f"{name}: {key} is {found}; whole numbers (frame + 1,) are needed")
+        layout = f"{arrays[key].dtype} {tuple(arrays[key].shape)}"
+        raise SourceError(f"{name}: {key} is {layout}; whole numbers (frame + 1,) are needed")
     offsets = np.asarray(arrays[key][...]).astype(np.int64)
     if (np.diff(offsets) <= 0).any():
         t = int(np.flatnonzero(np.diff(offsets) <= 0)[0])
@@ -163,6 +163,7 @@ def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:
 
 
 def _rate(arrays: Mapping[str, Any], name: str) -> float | None:
+    """Frames a second as the file states them."""
     if "fps" not in arrays:
         return None
     fps = np.asarray(arrays["fps"][...])
@@ -172,6 +173,7 @@ def _rate(arrays: Mapping[str, Any], name: str) -> float | None:
 
 
 def _unit(arrays: Mapping[str, Any]) -> str | None:
+    """Unit of length as the file states it."""
     unit = np.asarray(arrays["unit"][...]).reshape(-1) if "unit" in arrays else np.empty(0)
     word = unit[0] if len(unit) else ""
     text = (word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)).strip()

@@ -1,7 +1,7 @@
 """Readable names for the joints of a tree, the same on every run and under small changes of the body.
 
 `root`; `spine_1`, `spine_2` … for joints beyond which the body branches; `limb_a_1`, `limb_a_2` … along a limb, which does not
-branch; `…_end` for ends of bones. Limbs are lettered from the root outwards in an order of lengths and places,
+branch; `…_end` for end effectors. Limbs are lettered from the root outwards in an order of lengths and places,
 decided at the widest gap of any of them, then again within both halves: so two limbs change letters only if the largest
 difference between them goes.
 """

@@ -1,14 +1,14 @@
-"""How alike the distributions of μ are in two frames: histograms and their correlation (2014, §4, Eq. 2).
+"""How alike the distributions of μ are in two frames: histograms and their correlation (2014, Sec. 4, Eq. 2).
 
 Two normalisations. "frame" is the paper's letter: every frame's μ over its own minimum to maximum, one count a vertex;
 it says nothing about the size of a change and follows the sampling. "sequence", the default: x = μ / A^{3/2}, weighted by
 area, over the range of the whole sequence, smoothed. μ is an area times a length (mesh unit³), so that x has no unit and
 does not change with scale; μ / A is the mean distance, and x that distance in units of √A.
 
-Frames meet as summaries, never as vertices: a summary is a histogram of 2,000 fine bins over the frame's own range.
+Frames are compared by summaries, never by vertices: a summary is a histogram of 2,000 bins over the frame's own range.
 """
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -17,8 +17,13 @@ from kinetree.tasks.numerics.arrays import Floats
 
 Normalisation = Literal["sequence", "frame"]
 
-# A surface whose x varies by less than this share of its largest value has no limbs: a finer histogram shows the mesh.
-_LEAST_RANGE = 0.2
+
+class CorrelationSettings(NamedTuple):
+    """How the bins of a sequence are laid out."""
+
+    least_range: float = 0.2
+    """Range that the bins span at least, share of the largest x: a surface on which x varies by less has no limbs, and narrower
+    bins would show its triangles. Not varied so far."""
 
 
 def histograms(
@@ -28,6 +33,7 @@ def histograms(
     normalisation: Normalisation = "sequence",
     bins: int = 100,
     smoothing: float = 2.0,
+    settings: CorrelationSettings | None = None,
 ) -> Floats:
     """Histogram of every frame from its summary; each sums to 1.
 
@@ -41,8 +47,9 @@ def histograms(
     """
     if normalisation == "frame":
         return np.stack([_rebinned(np.linspace(a, b, bins + 1), a, b, m) for a, b, m in zip(low, high, mass, strict=True)])
+    least = (settings or CorrelationSettings()).least_range
     first, last = float(low.min()), float(high.max())
-    missing = max(0.0, _LEAST_RANGE * max(abs(first), abs(last)) - (last - first)) or (0.0 if last > first else 1.0)
+    missing = max(0.0, least * max(abs(first), abs(last)) - (last - first)) or (0.0 if last > first else 1.0)
     edges = np.linspace(first - missing / 2, last + missing / 2, bins + 1)
     H = np.stack([_rebinned(edges, a, b, m) for a, b, m in zip(low, high, mass, strict=True)])
     return gaussian_filter1d(H, smoothing, axis=1, mode="reflect") if smoothing > 0 else H

@@ -1,7 +1,7 @@
-"""Cutting a sequence where the body's topology changes: drops of the correlation, and cues beside it (2014, §4).
+"""Cutting a sequence where the body's topology changes: drops of the correlation, and cues beside it (2014, Sec. 4).
 
-The paper cuts at sharp drops of C(t) and leaves the threshold open; `fixed_intervals` takes one. `intervals` finds it in
-the series itself and adds cues: quantities that motion hardly changes as long as nothing touches. Each is judged alone, a
+The paper cuts at sharp drops of C(t) and gives no threshold; `fixed_intervals` takes one. `intervals` derives it from the
+series itself and adds cues: quantities that motion hardly changes as long as nothing touches. Each cue is judged alone, a
 change counts only if it lasts, and the result says which cues made which cut.
 """
 
@@ -15,18 +15,26 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.topology.correlation import correlations
 
 CORRELATION = "correlation"
-# 1 − C below this is what two reconstructions of a body at rest differ by.
-_STILL = 1e-3
-# A smaller spread of log(1 − C) comes from a clip in which too little moves to measure one.
-_LEAST_SPREAD = 0.5
-# Frames on either side of a transition whose median a step is measured between: one odd frame does not move it.
-_WINDOW = 3
+
+
+class IntervalsSettings(NamedTuple):
+    """How a lasting change is told from noise."""
+
+    least_change: float = 1e-3
+    """1 − C below this counts as this much: two reconstructions of a body at rest differ by it."""
+    least_spread: float = 0.5
+    """Spread of log(1 − C) below which it counts as this much: in a clip almost at rest too little moves to measure one.
+    Not varied so far."""
+    window: int = 3
+    """Frames on either side of a transition whose median a step is measured between, so that one odd frame does not count."""
+    lasting: float = 0.5
+    """Share of a drop by which the frames before and behind it must still differ; a frame that returns is noise."""
 
 
 class Cue(NamedTuple):
     """What stays the same while nothing touches.
 
-    profile : (frame, rank) the quantity, such as the persistences of the leaves, highest first, padded with zeros
+    profile : (frame, rank) the quantity, such as the persistences of the extrema, highest first, padded with zeros
     least   : a step of any rank by this much counts, see `steps`
     """
 
@@ -70,6 +78,7 @@ def intervals(
     drop: float = 0.02,
     minimum: int = 3,
     correlation: bool = True,
+    settings: IntervalsSettings | None = None,
 ) -> Intervals:
     """Cut where the correlation drops for good or a cue steps for good.
 
@@ -81,30 +90,31 @@ def intervals(
     correlation : False cuts by the cues alone
     returns     : Intervals covering every frame; one if there is one frame or nothing changes
     """
-    z = z_scores(correlations(H))
-    found: dict[int, list[str]] = {}
+    chosen = settings or IntervalsSettings()
+    z = z_scores(correlations(H), chosen)
+    causes: dict[int, list[str]] = {}
     if correlation:
-        for t in np.flatnonzero(drops(H, z, high, low, drop)):
-            found.setdefault(int(t), []).append(CORRELATION)
+        for t in np.flatnonzero(drops(H, z, high, low, drop, chosen)):
+            causes.setdefault(int(t), []).append(CORRELATION)
     for name, cue in cues.items():
-        for t in np.flatnonzero(steps(cue.profile, cue.least)):
-            found.setdefault(int(t), []).append(name)
-    return _partition(len(H), z, found, minimum)
+        for t in np.flatnonzero(steps(cue.profile, cue.least, chosen)):
+            causes.setdefault(int(t), []).append(name)
+    return _partition(len(H), z, causes, minimum)
 
 
 def fixed_intervals(C: Floats, threshold: float, minimum: int = 1) -> Intervals:
-    """Cut wherever C(t) < threshold: the paper's rule (2014, §4).
+    """Cut wherever C(t) < threshold: the paper's rule (2014, Sec. 4).
 
     C         : (transition,) correlation of successive histograms
     threshold : −1 … 1; the paper gives no number
     minimum   : as in `intervals`
     returns   : Intervals of len(C) + 1 frames
     """
-    found = {int(t): [CORRELATION] for t in np.flatnonzero(threshold > C)}
-    return _partition(len(C) + 1, z_scores(C), found, minimum)
+    causes = {int(t): [CORRELATION] for t in np.flatnonzero(threshold > C)}
+    return _partition(len(C) + 1, z_scores(C), causes, minimum)
 
 
-def z_scores(C: Floats) -> Floats:
+def z_scores(C: Floats, settings: IntervalsSettings | None = None) -> Floats:
     """How far each transition stands out: (log(1 − C) − median) / (1.4826 · median absolute deviation).
 
     Both 1 − C and the spread have a floor, so that equal frames and clips almost at rest have scores, near 0.
@@ -112,23 +122,27 @@ def z_scores(C: Floats) -> Floats:
     C       : (transition,) correlation of successive histograms
     returns : (transition,)
     """
+    chosen = settings or IntervalsSettings()
     if not len(C):
         return np.zeros(0)
-    change = np.log(np.maximum(1.0 - C, _STILL))
+    change = np.log(np.maximum(1.0 - C, chosen.least_change))
     middle = np.median(change)
-    return np.asarray((change - middle) / max(1.4826 * float(np.median(np.abs(change - middle))), _LEAST_SPREAD))
+    spread = 1.4826 * float(np.median(np.abs(change - middle)))
+    return np.asarray((change - middle) / max(spread, chosen.least_spread))
 
 
-def drops(H: Floats, z: Floats, high: float, low: float, drop: float) -> Flags:
+def drops(H: Floats, z: Floats, high: float, low: float, drop: float, settings: IntervalsSettings | None = None) -> Flags:
     """Transitions at which the histogram changes and stays changed, one for each run of z above `low`.
 
     A run counts if z > high and 1 − C > drop at its largest step, and if the frames before it and those behind it, next
     or next but one, all differ by at least half of that step: a frame that returns is noise.
 
-    H       : (frame, bin)
-    z       : (transition,) see `z_scores`
-    returns : (transition,) True at the largest step of each run that counts
+    H         : (frame, bin)
+    z         : (transition,) see `z_scores`
+    high, low, drop : as in `intervals`
+    returns   : (transition,) True at the largest step of each run that counts
     """
+    lasting = (settings or IntervalsSettings()).lasting
     cuts = np.zeros(len(z), dtype=np.bool_)
     change = 1.0 - correlations(H)
     for a, b in _runs(z > low):
@@ -136,25 +150,27 @@ def drops(H: Floats, z: Floats, high: float, low: float, drop: float) -> Flags:
         if z[top] > high and change[top] > drop:
             before, behind = H[max(a - 1, 0) : a + 1], H[b : b + 2]
             stays = min(1.0 - correlations(np.stack([x, y]))[0] for x in before for y in behind)
-            cuts[top] = stays >= 0.5 * change[top]
+            cuts[top] = stays >= lasting * change[top]
     return cuts
 
 
-def steps(profile: Floats, least: float) -> Flags:
-    """Transitions at which a profile steps and does not return, one for each run of transitions that it is felt at.
+def steps(profile: Floats, least: float, settings: IntervalsSettings | None = None) -> Flags:
+    """Transitions at which a profile steps and does not return, one for each run of transitions that shows the step  (ours).
 
-    What lasts is the difference between the medians of the three frames on either side, what is sharp the difference
-    between the two frames next to it; their mean must reach `least`. Motion is not sharp, noise does not last.
+    A lasting change shows in the medians of a few frames on either side, a sharp one between the two frames next to the
+    transition; the mean of both must reach `least`. Motion is not sharp, noise does not last.
 
     profile : (frame, rank); values sorted within a frame need no matching, since sorting never widens a difference
+    least   : in the profile's unit
     returns : (transition,) True at the sharpest transition of each run
     """
+    window = (settings or IntervalsSettings()).window
     cuts = np.zeros(max(len(profile) - 1, 0), dtype=np.bool_)
     sharp = sharpness(profile)
     lasting = np.zeros(len(cuts))
     for t in range(len(cuts)):
-        before = np.median(profile[max(t + 1 - _WINDOW, 0) : t + 1], axis=0)
-        lasting[t] = np.abs(np.median(profile[t + 1 : t + 1 + _WINDOW], axis=0) - before).max(initial=0.0)
+        before = np.median(profile[max(t + 1 - window, 0) : t + 1], axis=0)
+        lasting[t] = np.abs(np.median(profile[t + 1 : t + 1 + window], axis=0) - before).max(initial=0.0)
     for a, b in _runs(lasting >= least):
         top = a + int(np.argmax(sharp[a:b]))
         cuts[top] = 0.5 * (sharp[top] + lasting[top]) >= least
@@ -175,10 +191,10 @@ def _runs(flags: Flags) -> Ints:
     return np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]))).reshape(-1, 2).astype(np.int64)
 
 
-def _partition(frames: int, z: Floats, found: Mapping[int, list[str]], minimum: int) -> Intervals:
+def _partition(frames: int, z: Floats, causes: Mapping[int, list[str]], minimum: int) -> Intervals:
     """Cuts nearer than `minimum` to each other are one: where most cues agree, then at the largest z, then the first."""
     groups: list[list[int]] = []
-    for t in sorted(t for t in found if minimum <= t + 1 <= frames - minimum):
+    for t in sorted(t for t in causes if minimum <= t + 1 <= frames - minimum):
         if groups and t - groups[-1][0] < minimum:
             groups[-1].append(t)
         else:
@@ -187,9 +203,9 @@ def _partition(frames: int, z: Floats, found: Mapping[int, list[str]], minimum: 
     cues: list[tuple[str, ...]] = []
     for group in groups:
         behind = cuts[-1] if cuts else -1
-        cut = max((t for t in group if t - behind >= minimum), key=lambda t: (len(found[t]), z[t], -t), default=None)
+        cut = max((t for t in group if t - behind >= minimum), key=lambda t: (len(causes[t]), z[t], -t), default=None)
         if cut is not None:
             cuts.append(cut)
-            cues.append(tuple(dict.fromkeys(name for t in group for name in found[t])))
+            cues.append(tuple(dict.fromkeys(name for t in group for name in causes[t])))
     ends = np.array([*cuts, frames - 1], dtype=np.int64)
     return Intervals(np.concatenate([[0], ends[:-1] + 1]).astype(np.int64), ends, z, tuple(cues))

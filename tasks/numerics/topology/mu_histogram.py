@@ -33,7 +33,7 @@ def dimensionless(mu: Floats, area: Floats) -> Floats:
 
 
 def summary(x: Floats, weight: Floats | None = None, fine: int = FINE_BINS) -> Summary:
-    """What a gather over frames needs to know of one of them.
+    """The distribution of x on one frame, all that a comparison of frames needs of it.
 
     x      : (vertex,) finite, at least one
     weight : (vertex,) at least 0, not all 0; None counts every vertex once (the paper)

@@ -41,13 +41,13 @@ def superlevel_peaks(f: Floats, F: npt.NDArray[np.integer], least: float = 0.0) 
     order = np.argsort(-f, kind="stable").astype(np.int64)
     peak, saddle, into, low = _merges(order, *neighbours(F, len(f)))
     persistence = f[peak] - f[np.where(saddle >= 0, saddle, low)]
-    kept = np.flatnonzero((persistence >= least) & (persistence > 0.0))
-    kept = kept[np.lexsort((peak[kept], -persistence[kept]))]
+    high = np.flatnonzero((persistence >= least) & (persistence > 0.0))
+    high = high[np.lexsort((peak[high], -persistence[high]))]
     row = np.full(len(f), -1, dtype=np.int64)
-    row[peak[kept]] = np.arange(len(kept))
-    # an older peak always persists longer than the one that ends in it, so it was kept too
-    older = np.where(into[kept] >= 0, row[into[kept]], -1)
-    return Peaks(peak[kept], saddle[kept], older, persistence[kept])
+    row[peak[high]] = np.arange(len(high))
+    # an older peak always persists longer than the one that ends in it, so it was high too
+    older = np.where(into[high] >= 0, row[into[high]], -1)
+    return Peaks(peak[high], saddle[high], older, persistence[high])
 
 
 def loop_counts(f: Floats, F: npt.NDArray[np.integer], levels: int = 200) -> Ints:
@@ -108,18 +108,18 @@ def region_above(f: Floats, level: float, seed: int, start: Ints, ring: Ints) ->
     start, ring : see `neighbours`
     returns     : (region vertex,) at least the seed
     """
-    seen = np.zeros(len(f), np.bool_)
+    reached = np.zeros(len(f), np.bool_)
     region = np.empty(len(f), np.int64)
     region[0] = seed
-    seen[seed] = True
+    reached[seed] = True
     done, count = 0, 1
     while done < count:
         v = region[done]
         done += 1
         for q in range(start[v], start[v + 1]):
             u = ring[q]
-            if not seen[u] and f[u] > level:
-                seen[u] = True
+            if not reached[u] and f[u] > level:
+                reached[u] = True
                 region[count] = u
                 count += 1
     return region[:count].copy()

@@ -1,4 +1,4 @@
-"""Which way is up, by where the ends of limbs come to stand (ours)."""
+"""Which way is up, by where leaves come to stand (ours)."""
 
 from typing import Literal, NamedTuple
 
@@ -8,10 +8,21 @@ from kinetree.tasks.numerics.arrays import Flags, Floats
 
 DIRECTIONS: tuple[Literal["x", "y", "z", "-x", "-y", "-z"], ...] = ("x", "y", "z", "-x", "-y", "-z")
 """Directions that may be up."""
-USUAL = np.array([0.4, 1.0, 1.0, 0.4, 0.7, 0.6])
-"""How far conventions expect each: files have y or z up, images y down."""
-GROUND, LOWEST = 0.06, 0.08
-"""A tip is on the ground, or with the lowest of its frame, within this share of the size."""
+
+
+class UpDirectionSettings(NamedTuple):
+    """What makes a direction look like up. Where chosen: not recorded; not varied so far."""
+
+    expected: tuple[float, ...] = (0.4, 1.0, 1.0, 0.4, 0.7, 0.6)
+    """How far conventions expect each of `DIRECTIONS`: files have y or z up, images y down."""
+    ground: float = 0.06
+    """A leaf stands on the ground within this share of the size."""
+    with_lowest: float = 0.08
+    """A leaf is with the lowest of its frame within this share of the size."""
+    lowest: float = 0.1
+    """Quantile, over frames, of the lowest leaf that is taken for the ground."""
+    opposite: float = 0.3
+    """Share of the opposite's score taken from a direction's: the sides of a body are alike, its feet and head are not."""
 
 
 class Direction(NamedTuple):
@@ -21,15 +32,16 @@ class Direction(NamedTuple):
     confidence: float
 
 
-def up_direction(X: Floats) -> Direction:
-    """The direction against which most tips come to one level, below which none goes, along an axis on which they spread.
+def up_direction(X: Floats, settings: UpDirectionSettings | None = None) -> Direction:
+    """The direction for which most leaves stand on one level, the ground, along an axis on which leaves spread  (ours).
 
-    The level is that of the lowest tips over all frames, so that a hand at rest far below another counts for nothing.
-    What also holds of the opposite direction speaks against both: the sides of a body are alike, its feet and head are not.
+    The ground is the level of the lowest leaves over all frames, so that a hand at rest far above it counts for nothing.
+    What also holds of the opposite direction speaks against both.
 
-    X       : (leaf, frame, xyz) tips, mesh unit; NaN where one is not seen
-    returns : y with confidence 0 where fewer than two tips are seen together
+    X       : (leaf, frame, xyz) mesh unit; NaN where one is not seen
+    returns : y with confidence 0 where fewer than two leaves are seen together
     """
+    chosen = settings or UpDirectionSettings()
     seen = np.isfinite(X[:, :, 0])
     X, seen = X[:, seen.sum(axis=0) > 1], seen[:, seen.sum(axis=0) > 1]
     if not X.size:
@@ -39,15 +51,16 @@ def up_direction(X: Floats) -> Direction:
     if size == 0.0:
         return Direction(1, 0.0)
     spread = np.median(reach, axis=0) / size
-    stand = np.array([_standing(sign * X[:, :, a] / size, seen) * spread[a] for sign in (1.0, -1.0) for a in range(3)])
-    score = USUAL * (stand - 0.3 * np.roll(stand, 3))
+    heights = [sign * X[:, :, a] / size for sign in (1.0, -1.0) for a in range(3)]
+    stand = np.array([_standing(height, seen, chosen) for height in heights]) * np.tile(spread, 2)
+    score = np.array(chosen.expected) * (stand - chosen.opposite * np.roll(stand, 3))
     best, second = np.argsort(-score, kind="stable")[:2]
     return Direction(int(best), float(np.clip(1.0 - score[second] / score[best], 0.0, 1.0)) if score[best] > 0.0 else 0.0)
 
 
-def _standing(height: Floats, seen: Flags) -> float:
-    """Share of the tips on the ground, and of those with the lowest of their frame."""
+def _standing(height: Floats, seen: Flags, settings: UpDirectionSettings) -> float:
+    """Share of the leaves (leaf, frame) on the ground, plus that of those with the lowest of their frame."""
     lowest = np.nanmin(height, axis=0)
-    on_ground = height - np.quantile(lowest, 0.1) < GROUND
-    with_lowest = height - lowest < LOWEST
+    on_ground = height - np.quantile(lowest, settings.lowest) < settings.ground
+    with_lowest = height - lowest < settings.with_lowest
     return float(on_ground[seen].mean() + with_lowest[seen].mean())

@@ -49,7 +49,7 @@ def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=BEHIND)
     axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
     axes.set_axis_off()
-    axes.set_title("Joints (orange), ends of bones (blue): length of the bone to the parent, range of turning", fontsize=9)
+    axes.set_title("Joints (orange), end effectors (blue): length of the bone to the parent, range of turning", fontsize=9)
     return figure
 
 
@@ -83,7 +83,7 @@ def part_colours(found: Skeleton) -> Floats:
 
 
 def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
-    """Bones and joints over a body, in the view's own axes; the root is a square, ends of bones are small."""
+    """Bones and joints over a body, in the view's own axes; the root is a square, end effectors are small."""
     for j, parent in enumerate(found.parents):
         if parent >= 0:
             axes.plot(*X[[parent, j], :2].T, color="black", lw=1.4, zorder=3)

@@ -167,7 +167,7 @@ def test_file_is_unpacked_once_until_it_changes(tmp_path):
         ({"vertex_offsets": np.array([0, 9, 5, 14])}, "vertex_offsets must increase, but 5 follows 9 after frame 1"),
         ({"vertex_offsets": np.array([0, 5, 9, 15])}, "run from 0 to 15, but there are 14 vertices"),
         ({"face_offsets": np.array([-1, 4, 7, 9])}, "face_offsets run from -1 to 9, but there are 9 faces"),
-        ({"face_offsets": np.array([0, 4, 9])}, "vertex_offsets tell of 3 frames, face_offsets of 2; they must agree"),
+        ({"face_offsets": np.array([0, 4, 9])}, "vertex_offsets are of 3 frames, face_offsets of 2; they must agree"),
         ({"face_offsets": np.array([0, 9])}, "one set of faces for all frames, but frames differ"),
         ({"fps": np.array(0.0)}, "fps is 0.0; one positive number"),
         ({"fps": np.array("fast")}, "fps is fast; one positive number"),

@@ -13,7 +13,9 @@ from kinetree.tasks.numerics.structure.articulated_frame import (
     add_equations,
     chained,
     joints,
+    joints_of_parts,
     limbs,
+    parts_of_joints,
     relative_rotations,
     surface,
 )
@@ -64,8 +66,38 @@ def test_normal_equations_are_those_of_small_turns(plane: float, point: float) -
     assert np.abs(H - plane * across @ across.T - point * np.einsum("kvx,mvx->km", J, J)).max() < 1e-3
 
 
-def test_doubted_parts_that_are_joined_are_one_limb() -> None:
+def test_flagged_parts_that_are_joined_are_one_limb() -> None:
     parents = np.array([-1, 0, 1, 2, 0, 4])
     assert limbs(parents, np.array([False, True, True, False, False, True])).tolist() == [-1, 0, 0, -1, -1, 1]
     assert limbs(parents, np.ones(6, bool)).tolist() == [0] * 6
     assert rotation((0.0, 0.0, 1.0), 0.0) == pytest.approx(np.eye(3))
+
+
+PARENTS, KINDS = (-1, 0, 1, 0), ("root", "joint", "leaf", "leaf")
+
+
+def test_leaves_turn_with_their_parents_parts() -> None:
+    moving, part = parts_of_joints(PARENTS, KINDS)
+    assert moving.tolist() == [0, 1]
+    assert part.tolist() == [0, 1, 1, 0]
+
+
+def test_leaves_of_a_pose_are_as_far_from_their_parents_as_at_rest() -> None:
+    rest = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 2.0], [0.0, 0.0, 5.0], [0.0, -1.0, 0.0]])
+    R = np.stack([np.eye(3), rotation((1.0, 0.0, 0.0), np.pi / 2)])
+    X = np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 2.0]])
+    found = joints_of_parts(rest, PARENTS, KINDS, parts_of_joints(PARENTS, KINDS)[1], R, X)
+    assert found == pytest.approx(np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 2.0], [1.0, -3.0, 2.0], [1.0, -1.0, 0.0]]))
+
+
+def test_body_of_a_skeleton_with_leaves_is_that_of_its_parts() -> None:
+    known = chain((-2.0, 1.0), swings(4, 3))
+    bound, weight = np.zeros((len(known.V), 4), np.int64), np.zeros((len(known.V), 4))
+    bound[:, 0], weight[:, 0] = known.label, 1.0
+    plain = SkinnedBody.of(known.V, known.F, bound, weight, known.joints, known.parents)
+    moving = np.array([0, 2, 3])
+    rest, parents = np.zeros((5, 3)), np.array([-1, 0, 0, 2, 3])
+    rest[moving] = known.joints
+    found = SkinnedBody.of_joints(known.V, known.F, moving[bound], weight, rest, parents, moving)
+    for one, other in zip(found, plain, strict=True):
+        np.testing.assert_array_equal(one, other)

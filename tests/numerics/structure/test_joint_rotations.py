@@ -5,7 +5,7 @@ import pytest
 from limbs import rotation, tube
 
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.structure.joint_rotations import in_between, mean_rotation, swing, turning_range
+from kinetree.tasks.numerics.structure.joint_rotations import in_between, joint_degrees, mean_rotation, swing, turning_range
 
 WAVE = np.sin(2 * np.pi * np.arange(40) / 40)
 
@@ -57,3 +57,12 @@ def test_twist_of_a_round_limb_is_no_way_where_only_its_surface_was_seen() -> No
 def test_two_frames_are_enough_to_have_turned() -> None:
     assert turning_range(about((0.0, 0.0, 1.0), np.array([0.0, 0.5]))) == pytest.approx(np.rad2deg(0.5))
     assert turning_range(np.eye(3)[None]) == pytest.approx(0)
+
+
+def test_joints_turn_against_their_parents_and_leaves_do_not() -> None:
+    parent = about((0.0, 1.0, 0.0), WAVE)
+    child = parent @ about((0.0, 0.0, 1.0), np.deg2rad(30) * WAVE)
+    R = np.stack([parent, child, child], axis=1)
+    degrees = joint_degrees(R, np.array([-1, 0, 1]), np.array([False, True, False]))
+    assert degrees == pytest.approx([0.0, 60.0, 0.0], abs=2)
+    assert degrees[1] == pytest.approx(turning_range(parent.transpose(0, 2, 1) @ child))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinetree.tasks.numerics.topology.leaves import Gap, bridged, follow, follow_paper, gaps, kept
+from kinetree.tasks.numerics.topology.leaves import Gap, bridged, fixed_leaves, follow, follow_paper, gaps
 
 ROOTS = np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0], [0.0, 0.3, 0.5]])
 
@@ -107,10 +107,10 @@ def test_a_leaf_that_appears_later_is_a_track_from_then_on():
 
 def test_the_fixed_set_of_an_interval_are_the_tracks_seen_often_enough():
     tracks = followed(without(walk(), 0, range(8, 15)))
-    assert kept(tracks, 0, 7).tolist() == [0, 1, 2]
-    assert kept(tracks, 8, 14).tolist() == [1, 2]
-    assert kept(tracks, 0, 23).tolist() == [0, 1, 2]
-    assert kept(tracks, 0, 23, share=1.0).tolist() == [1, 2]
+    assert fixed_leaves(tracks, 0, 7).tolist() == [0, 1, 2]
+    assert fixed_leaves(tracks, 8, 14).tolist() == [1, 2]
+    assert fixed_leaves(tracks, 0, 23).tolist() == [0, 1, 2]
+    assert fixed_leaves(tracks, 0, 23, share=1.0).tolist() == [1, 2]
 
 
 def test_short_gaps_are_bridged_on_a_straight_line_and_long_ones_are_not():

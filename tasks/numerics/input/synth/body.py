@@ -104,8 +104,8 @@ class Body:
         for touch in touches:
             R = touching(figure, flesh, touch, R, shift)
         X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
-        kept = (rate, vertices, seed, touches, losses, float(noise), holes, float(hole_size), connectivity)
-        return cls(figure, flesh, *kept, R, X, G)
+        options = (rate, vertices, seed, touches, losses, float(noise), holes, float(hole_size), connectivity)
+        return cls(figure, flesh, *options, R, X, G)
 
     def frame(self, t: int) -> tuple[Floats, Ints]:
         """Mesh of frame t: (vertex, xyz) in the figure's unit, (face, corner) counter-clockwise seen from outside."""

@@ -80,7 +80,7 @@ def extent(cones: Cones) -> tuple[Floats, Floats]:
 
 
 @compiled
-def _limb(cones, b, x, y, z, seen):  # type: ignore[no-untyped-def]
+def _limb(cones, b, x, y, z, of_limb):  # type: ignore[no-untyped-def]
     """Value of limb b and its unit gradient into seen[b]."""
     ax, ay, az = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
     sx, sy, sz = cones.side[b, 0], cones.side[b, 1], cones.side[b, 2]
@@ -94,23 +94,23 @@ def _limb(cones, b, x, y, z, seen):  # type: ignore[no-untyped-def]
     s = t * (cones.table.shape[1] - 1)
     i = min(int(s), cones.table.shape[1] - 2)
     r = cones.table[b, i] + (s - i) * (cones.table[b, i + 1] - cones.table[b, i])
-    seen[b, 0] = (length - r) * cones.flat[b]
+    of_limb[b, 0] = (length - r) * cones.flat[b]
     if squeeze > 0.0:
         along = squeeze * (x * sx + y * sy + z * sz)
         x, y, z = x + along * sx, y + along * sy, z + along * sz
         length = np.sqrt(x * x + y * y + z * z) + 1e-300
-    seen[b, 1], seen[b, 2], seen[b, 3] = x / length, y / length, z / length
+    of_limb[b, 1], of_limb[b, 2], of_limb[b, 3] = x / length, y / length, z / length
 
 
 @compiled
-def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
+def _field(cones, near, x, y, z, of_limb, out):  # type: ignore[no-untyped-def]
     """Value and gradient of the blended union of the limbs marked in `near` into out."""
     out[0] = np.inf
     for b in range(len(near)):
         if near[b]:
-            _limb(cones, b, x, y, z, seen)
-            if seen[b, 0] < out[0]:
-                out[:] = seen[b]
+            _limb(cones, b, x, y, z, of_limb)
+            if of_limb[b, 0] < out[0]:
+                out[:] = of_limb[b]
     for g in range(len(cones.reach)):
         count = 0
         d, gx, gy, gz = 0.0, 0.0, 0.0, 0.0
@@ -119,7 +119,7 @@ def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
             if not near[b]:
                 continue
             count += 1
-            e, hx, hy, hz = seen[b, 0], seen[b, 1], seen[b, 2], seen[b, 3]
+            e, hx, hy, hz = of_limb[b, 0], of_limb[b, 1], of_limb[b, 2], of_limb[b, 3]
             if count == 1:
                 d, gx, gy, gz = e, hx, hy, hz
                 continue
@@ -137,9 +137,9 @@ def _field(cones, near, x, y, z, seen, out):  # type: ignore[no-untyped-def]
 @compiled
 def _values(cones, P, near):  # type: ignore[no-untyped-def]
     f, g = np.empty(len(P)), np.empty((len(P), 3))
-    seen, out = np.empty((len(cones.A), 4)), np.empty(4)
+    of_limb, out = np.empty((len(cones.A), 4)), np.empty(4)
     for i in range(len(P)):
-        _field(cones, near[min(i, len(near) - 1)], P[i, 0], P[i, 1], P[i, 2], seen, out)
+        _field(cones, near[min(i, len(near) - 1)], P[i, 0], P[i, 1], P[i, 2], of_limb, out)
         f[i] = out[0]
         g[i] = out[1:]
     return f, g
@@ -147,13 +147,13 @@ def _values(cones, P, near):  # type: ignore[no-untyped-def]
 
 @compiled
 def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
-    d, seen = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
+    d, of_limb = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
     for b in range(len(cones.A)):
         length = np.sqrt((cones.D[b] ** 2).sum())
         for i in range(len(P)):
-            _limb(cones, b, P[i, 0], P[i, 1], P[i, 2], seen)
+            _limb(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
             along = ((P[i] - cones.A[b]) * cones.D[b]).sum() / length
-            d[i, b] = seen[b, 0] + 0.5 * max(0.0, -along, along - length)
+            d[i, b] = of_limb[b, 0] + 0.5 * max(0.0, -along, along - length)
     return d
 
 
@@ -162,7 +162,7 @@ def _grid_values(cones, origin, spacing, shape, band):  # type: ignore[no-untype
     """Blocks whose centre proves them far from the surface are filled with ±band; the others see only near limbs."""
     field = np.empty(shape)
     near = np.ones(len(cones.A), dtype=np.bool_)
-    seen, out = np.empty((len(cones.A), 4)), np.empty(4)
+    of_limb, out = np.empty((len(cones.A), 4)), np.empty(4)
     half = 0.5 * (_BLOCK - 1) * spacing
     sweep = cones.slope * half * np.sqrt(3.0)
     width = cones.reach.max() if len(cones.reach) else 0.0
@@ -179,8 +179,8 @@ def _grid_values(cones, origin, spacing, shape, band):  # type: ignore[no-untype
                 )
                 least = np.inf
                 for b in range(len(near)):
-                    _limb(cones, b, x, y, z, seen)
-                    least = min(least, seen[b, 0])
+                    _limb(cones, b, x, y, z, of_limb)
+                    least = min(least, of_limb[b, 0])
                 if least > sweep + 0.25 * width + band:
                     field[i0:i1, j0:j1, k0:k1] = band
                     continue
@@ -188,11 +188,11 @@ def _grid_values(cones, origin, spacing, shape, band):  # type: ignore[no-untype
                     field[i0:i1, j0:j1, k0:k1] = -band
                     continue
                 for b in range(len(near)):
-                    near[b] = seen[b, 0] <= least + 2.0 * sweep + width
+                    near[b] = of_limb[b, 0] <= least + 2.0 * sweep + width
                 for i in range(i0, i1):
                     for j in range(j0, j1):
                         for k in range(k0, k1):
                             x, y, z = origin[0] + i * spacing, origin[1] + j * spacing, origin[2] + k * spacing
-                            _field(cones, near, x, y, z, seen, out)
+                            _field(cones, near, x, y, z, of_limb, out)
                             field[i, j, k] = min(max(out[0], -band), band)
     return field

@@ -54,9 +54,9 @@ def largest_component(V: Floats, F: Ints) -> tuple[Floats, Ints]:
     count, component = connected_components(links, directed=False)
     a, b, c = (V[F[:, k]] - V[0] for k in range(3))
     volume = np.bincount(component[F[:, 0]], np.einsum("fi,fi->f", a, np.cross(b, c)), minlength=count)
-    kept = component == np.argmax(volume)
-    renamed = np.cumsum(kept, dtype=np.int64) - 1
-    return V[kept], renamed[F[kept[F[:, 0]]]]
+    largest = component == np.argmax(volume)
+    renamed = np.cumsum(largest, dtype=np.int64) - 1
+    return V[largest], renamed[F[largest[F[:, 0]]]]
 
 
 def spacing_for(cones: Cones, vertices: int) -> float:
