@@ -35,10 +35,11 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph, deformation_graph
 from kinetree.tasks.numerics.registration.frame_confidence import residuals, trusted
+from kinetree.tasks.numerics.registration.recovery import recovery
 from kinetree.tasks.numerics.registration.reference import profile, reference
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
 from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
-from kinetree.tasks.numerics.registration.tracking import Tracked, repaired, tracked
+from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
 from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.leaves import follow
@@ -119,7 +120,10 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationG
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
     begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]
-    found = repaired(body, chain(body, targets, start), targets, start)
+    chained = chain(body, targets, start)
+    shares = np.array([frame.uncovered for frame in chained])
+    again = recovery(body, shares, lambda t: chained[t].pose, targets.__getitem__, start).recovered
+    found = [again.get(t, frame) for t, frame in enumerate(chained)]
     first = (time.process_time() - begun) / len(meshes)
     kept = sorted({start, *range(0, len(meshes), every)})
     poses = [found[t].pose for t in kept]
@@ -127,8 +131,8 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationG
     limb = piece = np.full(len(body.node), -1)
     for number, settings in enumerate(PASSES):
         s = freed(body, learned(body, poses), limb)
-        s = loosened(body, s, piece) if number == len(PASSES) - 1 else s
-        poses = [fit(body, pose, targets[t], settings, s).pose for t, pose in zip(kept, poses, strict=True)]
+        s = loosened(body, s, piece) if settings.is_loosened else s
+        poses = [fit(body, pose, targets[t], settings.fit, s).pose for t, pose in zip(kept, poses, strict=True)]
         if not number:
             piece = rigid_clusters(body, poses)
             poses, limb = twisted(body, piece, poses, [targets[t] for t in kept], kept.index(start))

@@ -13,8 +13,8 @@ from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.roll import choices
 from kinetree.tasks.numerics.registration.roll_candidates import limbs, roll_candidates, untwisted
-from kinetree.tasks.numerics.registration.roll_path import choices
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

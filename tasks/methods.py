@@ -8,12 +8,13 @@ from kinetree.pipeline.graph import Graph
 from kinetree.tasks.input import INPUT
 from kinetree.tasks.paper_2014 import PAPER_2014
 from kinetree.tasks.registration import REGISTRATION
+from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.results import FIGURES, FIGURES_2014, RESULTS
 from kinetree.tasks.structure import STRUCTURE
 from kinetree.tasks.topology import TOPOLOGY
 
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
-    "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, *FIGURES_2014, *RESULTS)),
+    "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, frame_confidence, *FIGURES_2014, *RESULTS)),
 }
 """The graph of each method, checked when this module is imported."""

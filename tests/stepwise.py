@@ -26,14 +26,11 @@ from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.registration.projection import projection
 from kinetree.tasks.registration.recovery import recovery
 from kinetree.tasks.registration.reference import reference
-from kinetree.tasks.registration.refit import first_refit, second_refit, third_refit
-from kinetree.tasks.registration.rigid_clusters import rigid_clusters
+from kinetree.tasks.registration.refit import refit
+from kinetree.tasks.registration.roll import roll
 from kinetree.tasks.registration.roll_candidates import roll_candidates
-from kinetree.tasks.registration.roll_correction import roll_correction
-from kinetree.tasks.registration.roll_path import roll_path
-from kinetree.tasks.registration.stiffness import first_stiffness, second_stiffness, third_stiffness
+from kinetree.tasks.registration.stiffness import stiffness
 from kinetree.tasks.registration.tracking import tracking
-from kinetree.tasks.registration.tracking_failures import tracking_failures
 from kinetree.tasks.topology.extrema import extrema
 from kinetree.tasks.topology.geodesics import geodesics
 from kinetree.tasks.topology.leaves import leaves
@@ -95,30 +92,40 @@ def referred(meshes: dict[int, Mesh]) -> Any:
 
 
 def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
-    """Every artifact of Step II, by the name of its task; per frame as a mapping."""
+    """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
-    made.template = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
-    both = {"mesh": meshes, "template": made.template}
-    made.tracking = along(tracking, made.reference, list(meshes), **both)
-    made.suspects = tracking_failures(made.tracking, made.reference)
-    made.repair = along(recovery, made.suspects, list(meshes), tracking=made.tracking, suspects=made.suspects, **both)
-    body = made.template
-    made.first_stiffness = first_stiffness(body, tuple(made.repair.values()))
-    made.first_refit = {t: first_refit(meshes[t], body, pose, made.first_stiffness) for t, pose in made.repair.items()}
-    made.pieces = rigid_clusters(body, tuple(made.first_refit.values()))
-    made.turns = {t: roll_candidates(meshes[t], body, pose, made.pieces) for t, pose in made.first_refit.items()}
-    made.twist = roll_path(made.turns, body, made.pieces, made.reference)
-    last = {t: roll_correction(body, made.first_refit[t], made.pieces, made.turns[t], made.twist) for t in meshes}
-    made.untwisting = last
-    made.second_stiffness = second_stiffness(body, tuple(last.values()), made.twist)
-    made.second_refit = {t: second_refit(meshes[t], body, pose, made.second_stiffness) for t, pose in last.items()}
-    made.third_stiffness = third_stiffness(body, tuple(made.second_refit.values()), made.twist, made.pieces)
-    last = {t: third_refit(meshes[t], body, pose, made.third_stiffness) for t, pose in made.second_refit.items()}
-    made.third_refit = last
-    made.alignment = {t: alignment(m, made.reference, made.template, last[t], made.suspects) for t, m in meshes.items()}
+    graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
+    made.tracking = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph)
+    made.recovery = recovery(graph, made.tracking, meshes)
+    made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
+    for number in graph.members("pass", ()):
+        one_pass(made, number)
+    final = {t: tuple(refit[t] for refit in made.refit) for t in meshes}
+    made.alignment = {t: alignment(m, made.reference, graph, made.recovery, final[t]) for t, m in meshes.items()}
     made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
-    made.trust = frame_confidence(made.alignment, made.reference)
+    made.frame_confidence = frame_confidence(made.alignment, meshes)
     return made
+
+
+def one_pass(made: SimpleNamespace, number: int) -> None:
+    """Appends what a pass leaves, made from the passes before it."""
+    graph, index = made.deformation_graph, (number,)
+    before = made.refit[-1] if made.refit else {}
+    earlier = (made.stiffness or [None])[-1], (made.roll or [None])[-1]
+    stiff = stiffness(graph, made.tracking, made.recovery, tuple(before.values()), earlier[0], index)
+    tried = {t: roll_candidates(m, graph, stiff, before.get(t), (number, t)) for t, m in made.mesh.items()}
+    chosen = roll(graph, stiff, tried, tuple(before.values()), earlier[1], index)
+    made.stiffness.append(stiff)
+    made.roll_candidates.append(tried)
+    made.roll.append(chosen)
+    made.refit.append({t: refitted(made, number, t, before.get(t)) for t in made.mesh})
+
+
+def refitted(made: SimpleNamespace, number: int, frame: int, before: Any) -> Any:
+    """One frame in one pass, from its pose of the pass before."""
+    told = made.stiffness[number], made.roll_candidates[number][frame], made.roll[number]
+    here = made.mesh[frame], made.deformation_graph, made.tracking[frame], made.recovery
+    return refit(*here, *told, before, (number, frame))
 
 
 @cache
@@ -128,9 +135,9 @@ def walk() -> SimpleNamespace:
 
 
 def lost(limb: int) -> dict[int, RollCandidates]:
-    """The turns of `walk` as frames would tell them if one limb fitted a quarter of a turn further, but in the reference."""
+    """Candidates of `walk` as frames would have them if one limb fitted a quarter of a turn further, but in the reference."""
     made, out = walk(), {}
-    for t, told in made.turns.items():
+    for t, told in made.roll_candidates[1].items():
         angle = np.tile(2 * np.pi * np.arange(told.angle.shape[1]) / told.angle.shape[1], (len(told.angle), 1))
         misfit = np.full_like(angle, 0.2 + 0.001 * t)
         misfit[:, 0] -= 0.05

@@ -23,3 +23,5 @@ class Alignment(Artifact):
     """Median residual, length: what is missing in a frame does not make the rest worse."""
     doubted: float = 0.0
     """Share of the vertices whose trust is below a half."""
+    given: bool = False
+    """Whether the frame's own vertices are those of the reference (fixed connectivity), so that nothing was estimated."""

@@ -1,10 +1,11 @@
 """The reference mesh as a deformation graph: what every frame is fitted with (for 2014, Sec. 5.2)."""
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
 from kinetree.schemas.dims import BLOCK, CORNER, END, FACE, INFLUENCE, NEIGHBOUR, NODE, PAIRING, SAMPLE, TIE, VERTEX, XYZ
 
 
@@ -24,8 +25,19 @@ class DeformationGraphParams(Params):
 
 
 class DeformationGraph(Artifact):
-    """The rest shape and its deformation graph; empty for fixed connectivity, where there is nothing to fit."""
+    """The rest shape and its graph, and over which frames and how many passes it is fitted.
 
+    With fixed connectivity there is nothing to fit: the graph is empty and has no passes.
+    """
+
+    opens: ClassVar[tuple[str, ...]] = ("pass", "pass/frame")
+    orders: ClassVar[str] = "pass"
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    frame: int
+    """Source frame number of the reference, which every fit leaves as it is."""
+    passes: int
+    """How many times all frames are fitted again with a learned stiffness."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
     """Position of every vertex at rest."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
@@ -54,3 +66,11 @@ class DeformationGraph(Artifact):
     """The block of every pair of nodes a vertex follows."""
     block_of_tie: Annotated[Ints, Array("int32", TIE)]
     """The block of every tie."""
+
+    def members(self, space: str, index: Index) -> Sequence[int]:
+        """The passes, numbered from 0, and the frames of each."""
+        return range(self.passes) if space == "pass" else self.frames
+
+    def previous(self, member: int) -> int | None:
+        """The pass before; None for the first."""
+        return member - 1 if member else None

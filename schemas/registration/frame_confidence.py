@@ -18,4 +18,4 @@ class FrameConfidence(Artifact):
     doubted: Annotated[Floats, Array("float64", FRAME)]
     """Share of the body's vertices that are hardly to be believed in each frame."""
     trusted: Annotated[Bools, Array("bool", FRAME)]
-    """False where a frame is explained clearly worse than the others; its vertices are weighed down."""
+    """False where a frame is explained clearly worse than the others. Only what people are told depends on it."""

@@ -1,12 +1,34 @@
-"""A suspect frame tried again from its other side (ours)."""
+"""Frames in which tracking failed, and the poses that replace theirs (ours)."""
 
-from kinetree.schemas.registration.pose import Pose
+from typing import Annotated
+
+import numpy as np
+
+from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints
+from kinetree.schemas.dims import FRAME, NODE, RECOVERED, ROW, XYZ
 
 
-class Recovery(Pose):
-    """The tracked pose, or a better one where the body had lost a limb."""
+class Recovery(Artifact):
+    """Frames that leave clearly more uncovered than the others, tracked again from the frame beyond them."""
 
-    uncovered: float
-    """Share of the frame's surface that the body does not explain."""
-    repaired: bool
-    """Whether another pose than the tracked one was taken."""
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    uncovered: Annotated[Floats, Array("float64", FRAME)]
+    """Share of each frame's surface that the tracked body does not explain."""
+    failed: Annotated[Bools, Array("bool", FRAME)]
+    """Frames in which tracking failed: they leave clearly more uncovered than the others."""
+    usual: float
+    """Smallest share that any frame but the reference leaves uncovered: holes of the capture, which no pose covers."""
+    recovered: Annotated[Ints, Array("int32", RECOVERED)]
+    """Positions of the frames that have another pose now, which covers more."""
+    uncovered_after: Annotated[Floats, Array("float64", RECOVERED)]
+    """Share of each recovered frame that its new pose leaves uncovered."""
+    rotation: Annotated[Floats, Array("float64", RECOVERED, NODE, ROW, XYZ)]
+    """Rotation of every node in each recovered frame."""
+    translation: Annotated[Floats, Array("float64", RECOVERED, NODE, XYZ, unit="length")]
+    """Position of every node in each recovered frame."""
+
+    def row(self, frame: int) -> int | None:
+        """The row of a source frame among the recovered ones; None for a frame whose tracked pose stays."""
+        at = np.flatnonzero(self.recovered == self.frames.index(frame))
+        return int(at[0]) if len(at) else None

@@ -30,7 +30,7 @@ class Reference(Artifact):
     score: Annotated[Floats, Array("float64", FRAME)]
     """How fit each frame is as the reference, at most 1, higher is better."""
     before: Annotated[Ints, Array("int32", FRAME)]
-    """Position of the frame from which each frame is reached, −1 for the reference."""
+    """Position of the frame from which each frame is reached, −1 for the reference, and for all with fixed connectivity."""
 
     def previous(self, member: int) -> int | None:
         """The frame from which this one is reached; None for the reference."""

@@ -1,15 +1,7 @@
-"""Frames fitted again, each by itself, with a learned stiffness (ours)."""
+"""Every frame fitted again, by itself, with a learned stiffness, pass after pass (ours)."""
 
 from kinetree.schemas.registration.pose import Pose
 
 
-class FirstRefit(Pose):
-    """With what the tracked poses taught."""
-
-
-class SecondRefit(Pose):
-    """With what the first refit taught, from limbs that have their twist."""
-
-
-class ThirdRefit(Pose):
-    """With what the second refit taught: the final pose."""
+class Refit(Pose):
+    """The pose of one frame after one pass; that of the last pass is final."""

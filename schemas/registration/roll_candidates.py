@@ -1,4 +1,4 @@
-"""Limbs tried in other turns about their own axis, in one frame (ours)."""
+"""Limbs fitted as rigid bodies from several rolls about their own axis, in one frame and pass (ours)."""
 
 from typing import Annotated
 
@@ -7,12 +7,12 @@ from kinetree.schemas.dims import LIMB, ROW, TURN, XYZ
 
 
 class RollCandidates(Artifact):
-    """What every limb fits as a rigid body from several turns about its axis; the first begins where it is."""
+    """The fit of every limb from each start; the first start is where the limb is. No limbs in passes without a search."""
 
     angle: Annotated[Floats, Array("float64", LIMB, TURN, unit="radian")]
-    """How far the limb turned about its axis from where it was."""
+    """Roll of the limb about its axis from where it was."""
     misfit: Annotated[Floats, Array("float64", LIMB, TURN)]
-    """0 where all of the limb lies on the frame's surface, 1 where nothing of it does."""
+    """0 if all of the limb lies on the frame's surface, 1 if nothing of it does."""
     rotation: Annotated[Floats, Array("float64", LIMB, TURN, ROW, XYZ)]
     """Of the limb, from the reference to this frame."""
     place: Annotated[Floats, Array("float64", LIMB, TURN, XYZ, unit="length")]

@@ -1,25 +1,16 @@
-"""How stiff every tie of the deformation graph is: what never bends is bone, what bends in some frame is a joint (ours)."""
+"""How stiff every edge of the deformation graph is, learned from the poses of all frames in the pass before (ours)."""
 
 from typing import Annotated
 
-from kinetree.schemas.array import Array, Artifact, Floats
-from kinetree.schemas.dims import TIE
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.dims import NODE, TIE
 
 
 class Stiffness(Artifact):
-    """Learned from the poses of all frames."""
+    """What never bends is bone, what bends in some frame is a joint."""
 
     stiffness: Annotated[Floats, Array("float64", TIE)]
-    """1 for a tie that never bends, near 0 for one that does."""
-
-
-class FirstStiffness(Stiffness):
-    """Learned from the tracked and repaired poses."""
-
-
-class SecondStiffness(Stiffness):
-    """Learned from the first refit with twists brought back."""
-
-
-class ThirdStiffness(Stiffness):
-    """Learned from the second refit."""
+    """1 for an edge that never bends, near 0 for one that does."""
+    cluster: Annotated[Ints, Array("int32", NODE)]
+    """Rigid cluster of every node, numbered by its first node: nodes that one rigid motion carries in every frame; −1 for all
+    nodes in passes before clusters are sought."""

@@ -10,6 +10,8 @@ from kinetree.schemas.registration.pose import Pose
 class Tracking(Pose):
     """A frame of the chain outwards from the reference, with what the next one needs to go on."""
 
+    steps: int
+    """Frames between the reference and this one, in the order in which frames are reached; 0 for the reference."""
     uncovered: float
     """Share of the frame's surface that the body does not explain."""
     usual: float

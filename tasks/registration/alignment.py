@@ -1,4 +1,4 @@
-"""The reference mesh in one frame, and how far it is to be believed there."""
+"""The reference mesh in one frame, with a confidence of every vertex."""
 
 import numpy as np
 
@@ -6,9 +6,9 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.reference import Reference
-from kinetree.schemas.registration.refit import ThirdRefit
-from kinetree.schemas.registration.tracking_failures import TrackingFailures
+from kinetree.schemas.registration.refit import Refit
 from kinetree.tasks.numerics.registration.deformation import shape
 from kinetree.tasks.numerics.registration.frame_confidence import stretches
 from kinetree.tasks.numerics.registration.vertex_confidence import vertex_confidence
@@ -17,14 +17,14 @@ from kinetree.tasks.registration.pose import graph, pose, target
 
 @task(over="frame")
 def alignment(
-    mesh: Mesh, reference: Reference, template: DeformationGraph, refit: ThirdRefit, suspects: TrackingFailures
+    mesh: Mesh, reference: Reference, deformation_graph: DeformationGraph, recovery: Recovery, refit: tuple[Refit, ...]
 ) -> Alignment:
-    """Puts every vertex of the reference where it is in this frame, and says how far to believe that (2014, Sec. 5.3)."""
-    if reference.fixed:
+    """Bends the reference onto this frame by its pose of the last pass, with a confidence of every vertex (2014, Sec. 5.3)."""
+    if not refit:
         return _given(mesh, reference)
-    body = graph(template)
-    x, n = shape(body, pose(refit))
-    found = vertex_confidence(body.V, x, n, body.F, target(mesh, template), suspects.usual)
+    body = graph(deformation_graph)
+    x, n = shape(body, pose(refit[-1]))
+    found = vertex_confidence(body.V, x, n, body.F, target(mesh, deformation_graph), recovery.usual)
     return Alignment(
         vertices=x,
         residual=found.residual,
@@ -45,4 +45,5 @@ def _given(mesh: Mesh, reference: Reference) -> Alignment:
         stretch=stretches(rest, x, reference.faces.astype(np.int64)),
         trust=np.ones(len(x)),
         uncovered=0.0,
+        given=True,
     )

@@ -6,18 +6,22 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
 from kinetree.schemas.registration.reference import Reference
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
+from kinetree.tasks.numerics.registration.stiffness import PASSES
 
 
 @task()
 def deformation_graph(reference: Reference, params: DeformationGraphParams) -> DeformationGraph:
     """Covers the reference mesh with nodes, binds its vertices to them and ties neighbours (ours, for 2014, Sec. 5.2)."""
-    if reference.fixed:
-        return _empty(reference.size)
+    if reference.fixed:  # every vertex is followed by the input itself: nothing to fit, no passes
+        return _empty(reference)
     # with a node on every vertex nothing lies between nodes, and nothing would tie them
     nodes = max(min(params.nodes, len(reference.vertices) // 2), 1)
     settings = numerics.DeformationGraphSettings(nodes, params.finest, params.thick, params.strut, params.samples)
     made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), settings)
     return DeformationGraph(
+        frames=reference.frames,
+        frame=reference.frame,
+        passes=len(PASSES),
         vertices=made.V,
         faces=made.F,
         normals=made.N,
@@ -35,10 +39,13 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
     )
 
 
-def _empty(size: float) -> DeformationGraph:
-    """Where every frame has the reference's connectivity there is nothing to fit."""
+def _empty(reference: Reference) -> DeformationGraph:
+    """A graph without nodes and passes."""
     whole, real = np.int32, np.float64
     return DeformationGraph(
+        frames=reference.frames,
+        frame=reference.frame,
+        passes=0,
         vertices=np.empty((0, 3), real),
         faces=np.empty((0, 3), whole),
         normals=np.empty((0, 3), real),
@@ -47,7 +54,7 @@ def _empty(size: float) -> DeformationGraph:
         weight=np.empty((0, 4), real),
         ties=np.empty((0, 2), whole),
         samples=np.empty(0, whole),
-        size=size,
+        size=reference.size,
         degree=np.empty(0, whole),
         ring=np.empty(0, whole),
         blocks=np.empty((0, 2), whole),

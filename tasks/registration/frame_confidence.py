@@ -1,20 +1,21 @@
-"""Which frames of an alignment are to be believed."""
+"""Which frames the alignment explains."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
-from kinetree.schemas.registration.reference import Reference
 from kinetree.tasks.numerics.registration.frame_confidence import trusted
 
 
 @task()
-def frame_confidence(alignment: Mapping[int, Alignment], reference: Reference) -> FrameConfidence:
-    """Compares what the frames say of themselves and marks those that stand out (ours)."""
-    residual = np.array([a.distance for a in alignment.values()]) / reference.size
+def frame_confidence(alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh]) -> FrameConfidence:
+    """Compares residuals and uncovered shares of all frames and marks the frames that stand out (ours)."""
+    size = float(np.sqrt(np.median([m.cleaning.area for m in mesh.values()])))
+    residual = np.array([a.distance for a in alignment.values()]) / size
     uncovered = np.array([a.uncovered for a in alignment.values()])
     return FrameConfidence(
         frames=tuple(alignment),

@@ -1,14 +1,20 @@
-"""Stored poses, templates and meshes as the numerics take them.
+"""Stored poses, deformation graphs and meshes as the numerics take them.
 
 Arrays of their own, writable, so that compiled code meets one kind of array.
 """
 
 import numpy as np
 
+from kinetree.schemas.array import Ints
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.pose import Pose
-from kinetree.tasks.numerics.registration import deformation
+from kinetree.schemas.registration.recovery import Recovery
+from kinetree.schemas.registration.refit import Refit
+from kinetree.schemas.registration.roll_candidates import RollCandidates
+from kinetree.schemas.registration.stiffness import Stiffness
+from kinetree.schemas.registration.tracking import Tracking
+from kinetree.tasks.numerics.registration import deformation, roll_candidates
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
 
@@ -16,6 +22,29 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 def pose(stored: Pose) -> deformation.Pose:
     """A stored pose."""
     return deformation.Pose(np.array(stored.rotation), np.array(stored.translation))
+
+
+def tracked_pose(tracking: Tracking, recovery: Recovery, frame: int) -> deformation.Pose:
+    """The pose of a frame before the first pass: recovered where tracking failed, else tracked."""
+    row = recovery.row(frame)
+    if row is None:
+        return pose(tracking)
+    return deformation.Pose(np.array(recovery.rotation[row]), np.array(recovery.translation[row]))
+
+
+def rolled_pose(
+    graph: numerics.DeformationGraph,
+    refit: Refit,
+    candidates: RollCandidates,
+    stiffness: Stiffness,
+    candidate: Ints,
+) -> deformation.Pose:
+    """The pose of the pass before, with every limb in the candidate (limb,) chosen for it; −1 leaves it as it was."""
+    before = pose(refit)
+    if not (candidate >= 0).any():
+        return before
+    fits = roll_candidates.RollCandidates(candidates.angle, candidates.misfit, candidates.rotation, candidates.place)
+    return roll_candidates.untwisted(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
 
 
 def target(mesh: Mesh, template: DeformationGraph) -> Target:

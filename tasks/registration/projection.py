@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 def projection(mesh: Mesh, reference: Reference, alignment: Alignment) -> Projection:
     """Finds for every vertex of the user's file the nearest point of the aligned reference mesh (ours)."""
     faces = reference.faces.astype(np.int64)
-    if reference.fixed:
+    if alignment.given:
         found = _same(len(mesh.vertices), faces)
     else:
         found = numerics.projected(np.array(mesh.vertices), np.array(alignment.vertices), faces)

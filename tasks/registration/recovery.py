@@ -1,30 +1,42 @@
-"""Lost limbs found again: a suspect frame tried again from its other side."""
+"""Lost limbs found again: frames in which tracking failed, tracked again from the frame beyond them."""
+
+from collections.abc import Mapping
+
+import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.tracking import Tracking
-from kinetree.schemas.registration.tracking_failures import TrackingFailures
-from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
+from kinetree.tasks.numerics.registration import recovery as numerics
 from kinetree.tasks.registration.pose import graph, pose, target
 
 
-@task(over="frame", along=TrackingFailures)
+@task()
 def recovery(
-    mesh: Mesh, template: DeformationGraph, tracking: Tracking, suspects: TrackingFailures, previous: Recovery | None
+    deformation_graph: DeformationGraph, tracking: Mapping[int, Tracking], mesh: Mapping[int, Mesh]
 ) -> Recovery:
-    """Fits a suspect frame again from the pose beyond it and keeps what covers more of the frame (ours)."""
-    found = Tracked(pose(tracking), tracking.uncovered, tracking.attempt)
-    repaired = False
-    if previous is not None and previous.uncovered < tracking.uncovered:
-        again = tracked(graph(template), None, pose(previous), target(mesh, template), usual=suspects.usual)
-        repaired = again.uncovered < tracking.uncovered
-        found = again if repaired else found
+    """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
+    frames = tuple(tracking)
+    uncovered = np.array([t.uncovered for t in tracking.values()])
+    outcome = numerics.recovery(
+        graph(deformation_graph),
+        uncovered,
+        lambda at: pose(tracking[frames[at]]),
+        lambda at: target(mesh[frames[at]], deformation_graph),
+        frames.index(deformation_graph.frame),
+    )
+    recovered = sorted(outcome.recovered)
+    poses = [outcome.recovered[at].pose for at in recovered]
+    nodes = len(deformation_graph.nodes)
     return Recovery(
-        steps=tracking.steps,
-        rotation=found.pose.rotation,
-        translation=found.pose.translation,
-        uncovered=found.uncovered,
-        repaired=repaired,
+        frames=frames,
+        uncovered=uncovered,
+        failed=outcome.failed,
+        usual=outcome.usual,
+        recovered=np.array(recovered, np.int32),
+        uncovered_after=np.array([outcome.recovered[at].uncovered for at in recovered]),
+        rotation=np.array([p.rotation for p in poses]).reshape(len(recovered), nodes, 3, 3),
+        translation=np.array([p.translation for p in poses]).reshape(len(recovered), nodes, 3),
     )

@@ -45,7 +45,7 @@ def reference(
         faces=mine.faces,
         size=float(np.sqrt(area[chosen.frame])),
         score=chosen.score,
-        before=outwards(len(frames), chosen.frame),
+        before=np.full(len(frames), -1) if connectivity.fixed else outwards(len(frames), chosen.frame),
     )
 
 

@@ -11,28 +11,28 @@ from kinetree.tasks.registration.pose import graph, pose, target
 
 
 @task(over="frame", along=Reference)
-def tracking(mesh: Mesh, template: DeformationGraph, previous: Tracking | None) -> Tracking:
+def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
-    body = graph(template)
-    if previous is None or not len(body.node):
+    body = graph(deformation_graph)
+    if previous is None:
         rest = at_rest(body)
-        return _told(Tracked(rest, 0.0, 0), rest, 0 if previous is None else previous.steps + 1, 0.0)
+        return _tracking(Tracked(rest, 0.0, 0), rest, 0, 0.0)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    found = tracked(body, earlier, last, target(mesh, template), usual=previous.usual)
+    fitted = tracked(body, earlier, last, target(mesh, deformation_graph), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
-    usual = found.uncovered if previous.steps == 0 else min(previous.usual, found.uncovered)
-    return _told(found, last, previous.steps + 1, usual)
+    usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
+    return _tracking(fitted, last, previous.steps + 1, usual)
 
 
-def _told(found: Tracked, earlier: Pose, steps: int, usual: float) -> Tracking:
+def _tracking(fitted: Tracked, earlier: Pose, steps: int, usual: float) -> Tracking:
     return Tracking(
         steps=steps,
-        rotation=found.pose.rotation,
-        translation=found.pose.translation,
-        uncovered=found.uncovered,
+        rotation=fitted.pose.rotation,
+        translation=fitted.pose.translation,
+        uncovered=fitted.uncovered,
         usual=usual,
-        attempt=found.attempt,
+        attempt=fitted.attempt,
         earlier_rotation=earlier.rotation,
         earlier_translation=earlier.translation,
     )

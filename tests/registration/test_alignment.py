@@ -38,7 +38,7 @@ def test_limb_that_is_not_in_the_frame_is_doubted_and_the_rest_is_believed() -> 
 def test_frame_that_is_another_pose_entirely_is_not_believed() -> None:
     made = walk()
     strange = made.mesh[4].model_copy(update={"vertices": made.mesh[4].vertices + 0.3 * made.reference.size})
-    here = alignment(strange, made.reference, made.template, made.third_refit[4], made.suspects)
+    here = alignment(strange, made.reference, made.deformation_graph, made.recovery, (made.refit[-1][4],))
     assert here.uncovered > 0.3
     assert here.trust.max() < 0.1
 

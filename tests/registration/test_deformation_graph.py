@@ -16,7 +16,7 @@ def test_stored_graph_is_the_graph_bit_for_bit() -> None:
     made = numerics.deformation_graph(
         np.array(reference.vertices), np.array(reference.faces), numerics.DeformationGraphSettings(nodes=200)
     )
-    back = graph(walk().template)
+    back = graph(walk().deformation_graph)
     for field in fields(made):
         mine, theirs = getattr(made, field.name), getattr(back, field.name)
         assert np.array_equal(mine, theirs), field.name
@@ -26,8 +26,8 @@ def test_stored_graph_is_the_graph_bit_for_bit() -> None:
 def test_parameters_reach_the_graph() -> None:
     other = deformation_graph(walk().reference, DeformationGraphParams(nodes=200, samples=2, strut=0.0))
     assert len(other.nodes) == 200
-    assert len(other.samples) <= 400 < len(walk().template.samples)
-    assert len(other.ties) < len(walk().template.ties)
+    assert len(other.samples) <= 400 < len(walk().deformation_graph.samples)
+    assert len(other.ties) < len(walk().deformation_graph.ties)
     assert len(deformation_graph(walk().reference, DeformationGraphParams(nodes=50)).nodes) == 50
 
 
@@ -36,6 +36,7 @@ def test_fixed_connectivity_needs_no_graph() -> None:
     empty = deformation_graph(reference, DeformationGraphParams())
     assert all(array.size == 0 for array in empty.arrays().values())
     assert empty.size == reference.size
+    assert empty.passes == 0
 
 
 def test_mesh_of_few_vertices_has_a_node_on_every_second_and_they_are_tied() -> None:

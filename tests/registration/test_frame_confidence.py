@@ -11,13 +11,13 @@ from kinetree.tasks.registration.frame_confidence import frame_confidence
 
 
 def told(uncovered: list[float], doubted: list[float] | None = None, first: int = 10) -> FrameConfidence:
-    reference: Any = SimpleNamespace(size=2.0)
     shares = doubted or [0.0] * len(uncovered)
     frames: Any = {
         first + t: SimpleNamespace(uncovered=u, doubted=d, distance=0.01)
         for t, (u, d) in enumerate(zip(uncovered, shares, strict=True))
     }
-    return frame_confidence(frames, reference)
+    mesh: Any = {frame: SimpleNamespace(cleaning=SimpleNamespace(area=4.0)) for frame in frames}
+    return frame_confidence(frames, mesh)
 
 
 def test_even_alignment_is_trusted_and_says_nothing() -> None:
@@ -40,5 +40,5 @@ def test_limb_that_is_not_seen_is_told_where_the_frame_is_trusted() -> None:
 
 
 def test_aligned_walk_is_trusted() -> None:
-    assert walk().trust.trusted.all()
-    assert views.remarks(walk().trust) == ()
+    assert walk().frame_confidence.trusted.all()
+    assert views.remarks(walk().frame_confidence) == ()

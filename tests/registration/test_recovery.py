@@ -1,12 +1,11 @@
-"""Contract of repair: what was tracked well passes through, what was lost comes back from the other side."""
+"""Contract of recovery: what was tracked well stays, what was lost comes back from the frame beyond."""
 
 import numpy as np
 from stepwise import walk
 
-from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration.deformation import shape
-from kinetree.tasks.registration.pose import graph, pose
+from kinetree.tasks.registration.pose import graph, tracked_pose
 from kinetree.tasks.registration.recovery import recovery
 
 
@@ -15,37 +14,38 @@ def lost(tracked: Tracking, shift: float, uncovered: float) -> Tracking:
     return tracked.model_copy(update={"translation": moved, "uncovered": uncovered})
 
 
-def test_frame_that_is_no_suspect_keeps_its_pose_bit_for_bit() -> None:
+def test_frame_in_which_tracking_did_not_fail_keeps_its_pose_bit_for_bit() -> None:
     made = walk()
+    assert not made.recovery.failed.any()
+    assert not len(made.recovery.recovered)
     for t, here in made.tracking.items():
-        assert not made.suspects.suspect[t]
-        assert not made.repair[t].repaired
-        assert np.array_equal(made.repair[t].rotation, here.rotation)
-        assert np.array_equal(made.repair[t].translation, here.translation)
-        assert (made.repair[t].steps, made.repair[t].uncovered) == (here.steps, here.uncovered)
+        pose = tracked_pose(here, made.recovery, t)
+        assert np.array_equal(pose.rotation, here.rotation)
+        assert np.array_equal(pose.translation, here.translation)
 
 
 def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     made = walk()
-    body, gone = graph(made.template), lost(made.tracking[3], 0.5 * made.reference.size, 0.9)
-    found = recovery(made.mesh[3], made.template, gone, made.suspects, made.repair[4])
-    assert found.repaired
-    assert found.uncovered < 0.02
-    error = shape(body, pose(found))[0] - shape(body, pose(made.tracking[3]))[0]
-    assert np.linalg.norm(error, axis=1).mean() < 0.01 * made.reference.size
+    body = graph(made.deformation_graph)
+    tracked = {**made.tracking, 3: lost(made.tracking[3], 0.5 * made.reference.size, 0.9)}
+    found = recovery(made.deformation_graph, tracked, made.mesh)
+    assert found.recovered.tolist() == [3]
+    assert found.failed.tolist() == [False, False, False, True, False]
+    assert found.uncovered[3] == 0.9
+    assert found.uncovered_after[0] < 0.02
+    again, true = tracked_pose(tracked[3], found, 3), tracked_pose(made.tracking[3], made.recovery, 3)
+    assert np.linalg.norm(shape(body, again)[0] - shape(body, true)[0], axis=1).mean() < 0.01 * made.reference.size
 
 
 def test_lost_frame_beyond_is_no_help() -> None:
     made = walk()
-    gone = lost(made.tracking[3], 0.5 * made.reference.size, 0.5)
-    worse: Recovery = made.repair[4].model_copy(update={"uncovered": 0.9})
-    kept = recovery(made.mesh[3], made.template, gone, made.suspects, worse)
-    assert not kept.repaired
-    assert np.array_equal(kept.translation, gone.translation)
+    gone, worse = (lost(made.tracking[t], 0.5 * made.reference.size, share) for t, share in ((3, 0.5), (4, 0.9)))
+    found = recovery(made.deformation_graph, {**made.tracking, 3: gone, 4: worse}, made.mesh)
+    assert not len(found.recovered)
+    assert found.failed[[3, 4]].all()
 
 
-def test_second_try_that_covers_less_is_not_taken() -> None:
+def test_usual_share_is_the_smallest_but_for_the_reference() -> None:
     made = walk()
-    better = made.tracking[3].model_copy(update={"uncovered": 1e-9})
-    told: Recovery = made.repair[4].model_copy(update={"uncovered": 0.0})
-    assert not recovery(made.mesh[3], made.template, better, made.suspects, told).repaired
+    others = [t.uncovered for frame, t in made.tracking.items() if frame != made.reference.frame]
+    assert made.recovery.usual == min(others)

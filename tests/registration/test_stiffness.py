@@ -1,35 +1,37 @@
-"""Contract of the three stiffnesses: learned from all frames, in whatever order, and nothing for fixed connectivity."""
+"""Contract of stiffness: learned in every pass from all frames, in whatever order; rigid clusters cover all nodes."""
 
 import numpy as np
 from stepwise import walk
 
-from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
-from kinetree.tasks.registration.deformation_graph import deformation_graph
-from kinetree.tasks.registration.stiffness import first_stiffness, second_stiffness, third_stiffness
+from kinetree.tasks.registration.stiffness import stiffness
 
 
-def test_stiffness_is_above_nothing_and_at_most_one_and_some_ties_bend() -> None:
-    for name in ("first_stiffness", "second_stiffness", "third_stiffness"):
-        s = getattr(walk(), name).stiffness
-        assert len(s) == len(walk().template.ties)
-        assert ((s > 0) & (s <= 1)).all()
-        assert s.min() < 0.5 < s.max()
+def test_stiffness_is_above_nothing_and_at_most_one_and_some_edges_bend() -> None:
+    made = walk()
+    assert len(made.stiffness) == made.deformation_graph.passes
+    for learned in made.stiffness:
+        assert len(learned.stiffness) == len(made.deformation_graph.ties)
+        assert ((learned.stiffness > 0) & (learned.stiffness <= 1)).all()
+        assert learned.stiffness.min() < 0.5 < learned.stiffness.max()
 
 
 def test_order_of_frames_does_not_matter() -> None:
     made = walk()
-    mixed = tuple(made.repair[t] for t in (3, 0, 4, 1, 2))
-    assert np.array_equal(first_stiffness(made.template, mixed).stiffness, made.first_stiffness.stiffness)
+    mixed = tuple(made.refit[0][t] for t in (3, 0, 4, 1, 2))
+    again = stiffness(made.deformation_graph, made.tracking, made.recovery, mixed, made.stiffness[0], (1,))
+    assert again == made.stiffness[1]
 
 
 def test_body_that_never_moves_is_stiff_everywhere() -> None:
     made = walk()
-    rest = made.repair[made.reference.frame]
-    assert np.allclose(first_stiffness(made.template, (rest, rest)).stiffness, 1.0)
+    rest = made.refit[0][made.reference.frame]
+    still = stiffness(made.deformation_graph, made.tracking, made.recovery, (rest, rest), None, (0,))
+    assert np.allclose(still.stiffness, 1.0)
 
 
-def test_fixed_connectivity_has_nothing_to_learn() -> None:
-    made = walk()
-    empty = deformation_graph(made.reference.model_copy(update={"fixed": True}), DeformationGraphParams())
-    assert len(second_stiffness(empty, tuple(made.untwisting.values()), made.twist).stiffness) == 0
-    assert len(third_stiffness(empty, (), made.twist, made.pieces).stiffness) == 0
+def test_a_walking_body_has_several_rigid_clusters_and_every_node_is_in_one() -> None:
+    none, sought, remembered = (learned.cluster for learned in walk().stiffness)
+    assert (none == -1).all()
+    assert 3 <= sought.max() + 1 < len(sought) / 3
+    assert set(sought.tolist()) == set(range(int(sought.max()) + 1))
+    assert np.array_equal(remembered, sought)

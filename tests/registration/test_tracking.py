@@ -13,7 +13,7 @@ def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbou
     made = walk()
     rest = made.tracking[made.reference.frame]
     assert (rest.steps, rest.uncovered, rest.attempt) == (0, 0.0, 0)
-    assert np.array_equal(rest.translation, made.template.vertices[made.template.nodes])
+    assert np.array_equal(rest.translation, made.deformation_graph.vertices[made.deformation_graph.nodes])
     for t, here in made.tracking.items():
         assert here.steps == abs(t - made.reference.frame)
         if here.steps > 0:
@@ -24,7 +24,7 @@ def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbou
 
 def test_body_lies_on_every_frame() -> None:
     made = walk()
-    body = graph(made.template)
+    body = graph(made.deformation_graph)
     for t, mesh in made.mesh.items():
         x, _ = shape(body, pose(made.tracking[t]))
         assert residuals(x, np.array(mesh.vertices), mesh.faces).mean() < 0.01 * made.reference.size
@@ -47,6 +47,6 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
     strange = last - 1
     turned = np.array(meshes[strange].vertices) @ np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
     meshes[strange] = meshes[strange].model_copy(update={"vertices": turned + 0.3 * made.reference.size})
-    again = along(tracking, made.reference, list(meshes), mesh=meshes, template=made.template)
+    again = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=made.deformation_graph)
     assert again[strange].uncovered > 0.1
     assert again[last].uncovered < 0.1

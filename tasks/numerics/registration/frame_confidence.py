@@ -6,7 +6,8 @@ import numpy.typing as npt
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.registration.tracking import LOST, suspects
+from kinetree.tasks.numerics.registration.recovery import failures
+from kinetree.tasks.numerics.registration.tracking import LOST
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -41,9 +42,9 @@ def trusted(uncovered: Floats, residual: Floats) -> Flags:
 
     uncovered : (frame,) share of each frame that the body does not explain
     residual  : (frame,) mean residual, any unit
-    returns   : (frame,) False for frames that later steps should weigh down
+    returns   : (frame,) False for frames that stand out
     """
-    return ~suspects(uncovered) & (residual <= _FAR * np.median(residual)) & (uncovered <= 10 * LOST)
+    return ~failures(uncovered) & (residual <= _FAR * np.median(residual)) & (uncovered <= 10 * LOST)
 
 
 @compiled

@@ -5,6 +5,7 @@ shown how much it bends, and the next pass holds on to bones and lets joints go.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,12 +21,35 @@ YIELD = 0.03  # relative bending at which a tie counts half
 LOOSE = 0.1  # of its stiffness a tie between two pieces keeps in the last pass
 FREED = 0.15  # of its stiffness a tie keeps that leads to a limb which had lost a twist
 
-# the passes after the first start from the pose they had, so they search near and once; the first of them still roughly,
-# the second so finely that a section which is not quite round holds its turn
+
+class Pass(NamedTuple):
+    """What one pass over all frames does.
+
+    fit         : settings of the fit
+    clusters    : whether rigid clusters of nodes are sought; those of the pass before stay where not
+    roll        : whether lost roll of limbs is sought before the pass
+    is_loosened : whether rigid clusters may turn against each other more freely than was learned
+    """
+
+    fit: FitSettings
+    clusters: bool = False
+    roll: bool = False
+    is_loosened: bool = False
+
+
+# every pass starts from the pose of the pass before, so it searches near and once; the first still roughly, the second so
+# finely that a section which is not quite round holds its roll
 PASSES = (
-    FitSettings(4, (0.24, 0.12), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1),
-    FitSettings(4, (0.16, 0.08), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
-    FitSettings(4, (0.06, 0.03), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+    Pass(FitSettings(4, (0.24, 0.12), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1)),
+    Pass(
+        FitSettings(4, (0.16, 0.08), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+        clusters=True,
+        roll=True,
+    ),
+    Pass(
+        FitSettings(4, (0.06, 0.03), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+        is_loosened=True,
+    ),
 )
 
 

@@ -4,7 +4,6 @@ A paw that moves further than the distance to the next paw is matched to the wro
 that. The share of the frame that no point of the body explains tells such a frame from a good one by a factor of ten.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -93,41 +92,6 @@ def predicted(before: Pose, last: Pose) -> Pose:
     """Every node turned and shifted once more as from `before` to `last`."""
     turn = last.rotation @ before.rotation.transpose(0, 2, 1)
     return Pose(turn @ last.rotation, 2.0 * last.translation - before.translation)
-
-
-def suspects(share: Floats) -> npt.NDArray[np.bool_]:
-    """Frames to track again: u > max(median + 4 MAD, median + LOST).
-
-    share   : (frame,) uncovered
-    returns : (frame,)
-    """
-    median = float(np.median(share))
-    return share > max(median + 4.0 * float(np.median(np.abs(share - median))), median + LOST)
-
-
-def repaired(template: DeformationGraph, found: Sequence[Tracked], targets: Sequence[Target], reference: int) -> list[Tracked]:
-    """Suspect frames tracked again from their neighbours on either side, each kept only if it covers more.
-
-    found     : (frame,) of the chains outwards from the reference
-    targets   : (frame,)
-    reference : the frame that is never suspect
-    returns   : (frame,)
-    """
-    out = list(found)
-    flagged = suspects(np.array([frame.uncovered for frame in found]))
-    flagged[reference] = False
-    usual = min((frame.uncovered for t, frame in enumerate(found) if t != reference), default=0.0)
-    for step in (-1, 1):
-        order = range(len(out)) if step == 1 else range(len(out) - 1, -1, -1)
-        for t in order:
-            near, far = t - step, t - 2 * step
-            if not flagged[t] or not 0 <= near < len(out) or out[near].uncovered >= out[t].uncovered:
-                continue
-            before = out[far].pose if 0 <= far < len(out) else None
-            again = tracked(template, before, out[near].pose, targets[t], usual=usual)
-            out[t] = min(out[t], again, key=lambda frame: frame.uncovered)
-            flagged[t] = out[t].uncovered > usual + LOST
-    return out
 
 
 def _taken(template: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracked:

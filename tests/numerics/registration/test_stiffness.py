@@ -64,7 +64,7 @@ def test_a_refit_with_learned_stiffness_is_no_worse_and_keeps_the_turning(body, 
     targets, poses = sequence
     s = learned(body, poses)
     for angle, target, pose in zip(ANGLES, targets, poses, strict=True):
-        again = fit(body, pose, target, PASSES[-1], s).pose
+        again = fit(body, pose, target, PASSES[-1].fit, s).pose
         true = bent(body.V, angle)
         before, after = (np.linalg.norm(shape(body, p)[0] - true, axis=1).mean() for p in (pose, again))
         assert after < 1.05 * before

@@ -1,4 +1,4 @@
-"""Laws of finding and repairing frames in which a limb was lost, on tubes."""
+"""Laws of tracking one frame from its neighbour, on tubes."""
 
 import numpy as np
 import pytest
@@ -10,12 +10,9 @@ from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, 
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.tracking import (
     LOST,
-    Tracked,
     attempts,
     predicted,
-    repaired,
     strayed,
-    suspects,
     tracked,
 )
 
@@ -91,31 +88,6 @@ def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
     found = predicted(steady[0], steady[1])
     np.testing.assert_allclose(found.rotation, steady[2].rotation, atol=1e-12)
     np.testing.assert_allclose(predicted(steady[0], steady[0]).translation, steady[0].translation)
-
-
-def test_suspects_stand_out_from_the_sequence():
-    share = np.array([0.001, 0.002, 0.001, 0.03, 0.002, 0.001])
-    np.testing.assert_array_equal(suspects(share), share > 0.02)
-    assert not suspects(np.full(9, 0.02)).any()
-    assert not suspects(np.array([0.0, 0.0, LOST / 2])).any()
-
-
-def test_a_lost_frame_is_found_again_from_the_other_side(body, targets):
-    good, last = [], at_rest(body)
-    for target in targets:
-        good.append(tracked(body, None, last, target))
-        last = good[-1].pose
-    lost = Tracked(rigid(body, rotation((1, 0, 0), np.pi / 2), np.zeros(3)), 0.3, 0)
-    mended = repaired(body, [*good[:3], lost, good[4]], targets, reference=0)
-    assert mended[3].uncovered <= LOST
-    true = bent(body.V, ANGLES[3])
-    assert np.linalg.norm(shape(body, mended[3].pose)[0] - true, axis=1).mean() < 0.01 * LENGTH
-
-
-def test_good_frames_and_the_reference_are_left_alone(body, targets):
-    found = [Tracked(at_rest(body), share, 0) for share in (0.5, 0.001, 0.001, 0.001, 0.001)]
-    mended = repaired(body, found, targets, reference=0)
-    assert all(a is b for a, b in zip(mended, found, strict=True))
 
 
 def test_later_attempts_reach_further_and_try_longer():

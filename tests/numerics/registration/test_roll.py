@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kinetree.tasks.numerics.registration.roll_path import choices
+from kinetree.tasks.numerics.registration.roll import choices
 
 FRAMES, TURNS, REFERENCE = 20, 12, 4
 

@@ -1,0 +1,24 @@
+"""Which limbs had lost their roll in tracking, and the stiffness with which frames are fitted in this pass (ours)."""
+
+from typing import Annotated
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.dims import FRAME, LIMB, NODE, TIE
+
+
+class Roll(Artifact):
+    """The candidate that each limb takes in every frame, chosen over the whole sequence."""
+
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    candidate: Annotated[Ints, Array("int32", FRAME, LIMB)]
+    """The candidate of every limb in each frame, −1 where it stays as it was; no limbs in passes without a search."""
+    limb: Annotated[Ints, Array("int32", NODE)]
+    """Number of the limb of every node where that limb rolled in this pass or an earlier one, else −1."""
+    stiffness: Annotated[Floats, Array("float64", TIE)]
+    """Stiffness of every edge for the fits of this pass: learned from poses with roll corrected, loose where limbs rolled."""
+
+    def row(self, frame: int) -> Ints:
+        """(limb,) the candidates chosen in a source frame."""
+        row: Ints = self.candidate[self.frames.index(frame)]
+        return row

@@ -1,0 +1,86 @@
+"""Frames in which tracking failed, tracked again from the frame beyond them, inwards to the reference (ours).
+
+A chain of frames that lost a limb does not find it by going on; entered from its other end, it often does.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import Pose
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
+
+
+class RecoverySettings(NamedTuple):
+    """Which frames stand out by what they leave uncovered."""
+
+    deviations: float = 4.0
+    """Median absolute deviations above the median of the sequence. Chosen on the recorded wolf."""
+    margin: float = 0.004
+    """Share of a frame above the median, where the deviations are smaller. Chosen on the recorded wolf."""
+
+
+class Recovery(NamedTuple):
+    """Which frames failed and which have a better pose.
+
+    failed    : (frame,) frames that leave more uncovered than the others
+    usual     : smallest share that any frame but the reference leaves uncovered; 1 where there is no other frame
+    recovered : by position, the new poses of frames that they cover better
+    """
+
+    failed: Flags
+    usual: float
+    recovered: dict[int, Tracked]
+
+
+def recovery(
+    graph: DeformationGraph,
+    uncovered: Floats,
+    pose: Callable[[int], Pose],
+    target: Callable[[int], Target],
+    reference: int,
+    settings: RecoverySettings | None = None,
+) -> Recovery:
+    """Track failed frames again, each from the frame beyond it, the outermost first, and keep what covers more (ours).
+
+    graph     : of the reference mesh
+    uncovered : (frame,) share of each frame that the tracked body leaves uncovered
+    pose      : gives the tracked pose at a position; called only for frames beyond failed ones
+    target    : gives the frame at a position; called only for failed ones
+    reference : position of the reference frame, which never fails
+    returns   : Recovery
+    """
+    others = np.arange(len(uncovered)) != reference
+    failed = failures(uncovered, settings) & others
+    usual = float(uncovered[others].min(initial=1.0))
+    recovered: dict[int, Tracked] = {}
+    for at, beyond in _inwards(failed, reference):
+        there = recovered.get(beyond)
+        if (there.uncovered if there else uncovered[beyond]) >= uncovered[at]:
+            continue
+        again = tracked(graph, None, there.pose if there else pose(beyond), target(at), usual=usual)
+        if again.uncovered < uncovered[at]:
+            recovered[at] = again
+    return Recovery(failed, usual, recovered)
+
+
+def failures(uncovered: Floats, settings: RecoverySettings | None = None) -> Flags:
+    """Frames that stand out: u > median + max(4 MAD, margin) (ours).
+
+    uncovered : (frame,) share of each frame that the body leaves uncovered
+    returns   : (frame,)
+    """
+    settings = settings or RecoverySettings()
+    median = float(np.median(uncovered))
+    deviation = float(np.median(np.abs(uncovered - median)))
+    return uncovered > max(median + settings.deviations * deviation, median + settings.margin)
+
+
+def _inwards(failed: Flags, reference: int) -> Iterator[tuple[int, int]]:
+    """(failed frame, frame beyond it) from both ends of the sequence towards the reference."""
+    yield from ((at, at - 1) for at in range(1, reference) if failed[at])
+    yield from ((at, at + 1) for at in range(len(failed) - 2, reference, -1) if failed[at])

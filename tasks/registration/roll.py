@@ -1,0 +1,61 @@
+"""The roll of limbs over the whole sequence, and the stiffness that follows from it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinetree.pipeline.task import Previous, task
+from kinetree.schemas.array import Floats, Index, Ints
+from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.refit import Refit
+from kinetree.schemas.registration.roll import Roll
+from kinetree.schemas.registration.roll_candidates import RollCandidates
+from kinetree.schemas.registration.stiffness import Stiffness
+from kinetree.tasks.numerics.arrays import Ints as Longs
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
+from kinetree.tasks.numerics.registration.roll import choices
+from kinetree.tasks.numerics.registration.roll_candidates import limbs
+from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
+from kinetree.tasks.registration.pose import graph, rolled_pose
+
+
+@task(over="pass", along=DeformationGraph)
+def roll(
+    deformation_graph: DeformationGraph,
+    stiffness: Stiffness,
+    candidates: Mapping[int, RollCandidates],
+    refit: Previous[tuple[Refit, ...]],
+    previous: Roll | None,
+    index: Index,
+) -> Roll:
+    """Chooses for every limb the path through its candidates that fits clearly better than where it was tracked (ours)."""
+    nodes, frames = graph(deformation_graph), tuple(candidates)
+    cluster = stiffness.cluster.astype(np.int64)
+    angle, misfit = (np.stack([getattr(c, name) for c in candidates.values()]) for name in ("angle", "misfit"))
+    chosen = choices(angle, misfit, frames.index(deformation_graph.frame)).astype(np.int32)
+    limb = np.array(previous.limb) if previous is not None else np.full(len(nodes.node), -1, np.int32)
+    corrected = np.array(stiffness.stiffness)
+    if (chosen >= 0).any():
+        limb = _rolled_limbs(nodes, cluster, chosen)
+        pairs = zip(refit, candidates.values(), chosen, strict=True)
+        corrected = learned(nodes, [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs])
+    return Roll(
+        frames=frames,
+        candidate=chosen,
+        limb=limb,
+        stiffness=_held(nodes, corrected, limb, cluster, is_loosened=PASSES[index[0]].is_loosened),
+    )
+
+
+def _rolled_limbs(nodes: Nodes, cluster: Longs, chosen: Ints) -> Ints:
+    """(node,) number of the limb of every node where that limb rolls in some frame, else −1."""
+    limb = np.full(len(nodes.node), -1, np.int32)
+    for number, one in enumerate(limbs(nodes, cluster)):
+        limb[one.node] = number if (chosen[:, number] >= 0).any() else -1
+    return limb
+
+
+def _held(nodes: Nodes, stiffness: Floats, limb: Ints, cluster: Longs, *, is_loosened: bool) -> Floats:
+    """Stiffness with rolled limbs rigid and loose at their ends, and looser between rigid clusters where asked for."""
+    freed_limbs = freed(nodes, stiffness, limb.astype(np.int64))
+    return loosened(nodes, freed_limbs, cluster) if is_loosened else freed_limbs
