@@ -11,8 +11,8 @@ every vertex by a smooth random displacement of that share of the height, correl
 alignment's error. --noise moves every coordinate of every vertex by a normal deviate of that share of the height (2014,
 Fig. 21: 1 mm of 1,500) and prints how far joints have come, in % of the height, and how many are new or gone.
 
-Stages: `hung`, all parts in a tree; `pruned`, after those that are none were dropped; `fitted`, the finished skeleton with
-bones of one length. --peer gives Dem Bones (py-dem-bones) that many bones and hangs them in the same tree with the same
+Stages: `tree`, all parts in a tree; `pruned`, after those that are none were dropped; `fitted`, the finished skeleton with
+bones of one length. --peer gives Dem Bones (py-dem-bones) that many bones and joins them in the same tree with the same
 joints. Found are joints within 5 % of the height, assigned as `kinetree evaluate` does; errors in % of the height.
 Seconds are the processor's, after a first run that compiles.
 """
@@ -36,7 +36,7 @@ from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 from kinetree.tasks.numerics.results.evaluation.matching import joint_errors, matching
 from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
-from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.topology.extrema import extrema
@@ -145,7 +145,7 @@ def score(case: Case, X: Floats) -> Score:
     return Score(int(hit.sum()), int(scored.sum()), float(error), len(found.spurious), missed)
 
 
-def carried(held: Carried, tree: PartTree) -> Floats:
+def carried(held: MovingParts, tree: PartTree) -> Floats:
     """(frame, joint, xyz) the joints of a tree as the parts above them carry them."""
     order, rows = tree.tree.order, tree.tree.border[1:]
     above = order[tree.tree.parents[1:]]
@@ -159,18 +159,18 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     tips = kept[extrema(mu(bases.distance, bases.weight), faces).vertex]
     area = Surface.of(case.V, case.F).area
     begun = time.process_time()
-    trust = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
-    found = rigid_parts(case.V, case.F, case.x, trust, leaves=tips)
+    confidence = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
+    found = rigid_parts(case.V, case.F, case.x, confidence, leaves=tips)
     parted = time.process_time()
-    made = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, trust)
+    skeleton, _ = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, confidence)
     done = time.process_time()
-    body, held = Surfaces(case.V, case.F, case.x, area), Carried(found.label, found.R, found.t, found.residual)
-    kept_parts = pruned(body, held, tips)
-    turning = np.array([kind == "joint" for kind in made.kinds])
+    body, held = MovingSurface(case.V, case.F, case.x, area), MovingParts(found.label, found.R, found.t, found.residual)
+    left = pruned(body, held, tips)
+    turning = np.array([kind == "joint" for kind in skeleton.kinds])
     joints = {
-        "hung": carried(held, part_tree(body, held)),
-        "pruned": carried(kept_parts.parts, kept_parts.part_tree),
-        "fitted": made.positions[:, turning],
+        "tree": carried(held, part_tree(body, held)),
+        "pruned": carried(left.parts, left.part_tree),
+        "fitted": skeleton.positions[:, turning],
     }
     return joints, (parted - begun) / len(case.x), (done - parted) / len(case.x)
 
@@ -185,8 +185,8 @@ def peer(case: Case, bones: int) -> tuple[Floats, float]:
     label = np.asarray(solved.weights).argmax(axis=0)
     used, label = np.unique(label, return_inverse=True)
     moved = np.asarray(solved.transforms)[:, used]
-    held = Carried(label.astype(np.int64), moved[..., :3, :3].copy(), moved[..., :3, 3].copy(), np.zeros(moved.shape[:2]))
-    body = Surfaces(case.V, case.F, case.x, Surface.of(case.V, case.F).area)
+    held = MovingParts(label.astype(np.int64), moved[..., :3, :3].copy(), moved[..., :3, 3].copy(), np.zeros(moved.shape[:2]))
+    body = MovingSurface(case.V, case.F, case.x, Surface.of(case.V, case.F).area)
     return carried(held, part_tree(body, held)), seconds
 
 

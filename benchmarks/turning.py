@@ -56,7 +56,7 @@ class Truth:
         part, W, joints = _parts([str(n) for n in body["weight_names"]], W, told["joints"])
         return cls(x, part, np.where(W.max(axis=1) > CLEAR, W.argmax(axis=1), -1), joints, float(told["height"]))
 
-    def roll_candidates(self, y: Floats, reference: int) -> list[Turn]:
+    def turns(self, y: Floats, reference: int) -> list[Turn]:
         """Each scored joint's turning in y (frame, vertex, xyz) against the truth."""
         mine, true = self._rotations(y, reference), self._rotations(self.x, reference)
         out = []

@@ -47,8 +47,8 @@ def scans(tmp_path_factory):
 def computed(scans, tmp_path_factory):
     """The store of a run that is done, of which every test has a copy."""
     folder = tmp_path_factory.mktemp("computed")
-    told = {"source": {"input": str(scans)}, "output": str(folder), "compute": {"executor": "sync"}}
-    assert Pipeline.of(told, methods={"mesoscopic": GRAPH}).run()["status"] == "done"
+    result = {"source": {"input": str(scans)}, "output": str(folder), "compute": {"executor": "sync"}}
+    assert Pipeline.of(result, methods={"mesoscopic": GRAPH}).run()["status"] == "done"
     return folder / "store"
 
 
@@ -62,9 +62,9 @@ def configured(scans, computed, tmp_path, monkeypatch):
 @pytest.fixture
 def out(configured, tmp_path):
     """The folder of a run that is done."""
-    told = Pipeline.of(configured).run()
-    assert told["status"] == "done", told
-    assert sorted(told["files"]) == LEFT
+    result = Pipeline.of(configured).run()
+    assert result["status"] == "done", result
+    assert sorted(result["files"]) == LEFT
     return tmp_path / "out"
 
 
@@ -72,8 +72,8 @@ def names(folder):
     return sorted(p.name for p in folder.iterdir())
 
 
-def ran(told):
-    return {task for task, row in told["tasks"].items() if row["ran"]}
+def ran(result):
+    return {task for task, row in result["tasks"].items() if row["ran"]}
 
 
 def test_run_leaves_what_people_take_away_and_says_so(out):
@@ -84,8 +84,8 @@ def test_run_leaves_what_people_take_away_and_says_so(out):
 
 def test_second_run_computes_nothing_and_touches_no_file(out, configured):
     before = {name: (out / name).stat().st_mtime_ns for name in LEFT}
-    told = Pipeline.of(configured).run()
-    assert ran(told) == set()
+    result = Pipeline.of(configured).run()
+    assert ran(result) == set()
     assert {name: (out / name).stat().st_mtime_ns for name in LEFT} == before
 
 
@@ -102,8 +102,8 @@ def test_file_that_was_deleted_or_altered_is_left_again_without_computing(out, c
 
 def test_option_of_an_export_runs_that_export_alone(out, configured):
     before = {name: (out / name).read_bytes() for name in LEFT[1:]}
-    told = Pipeline.of(configured, sets=["glb.up=z"]).run()
-    assert ran(told) == {"glb"}
+    result = Pipeline.of(configured, sets=["glb.up=z"]).run()
+    assert ran(result) == {"glb"}
     changed = {name for name in before if (out / name).read_bytes() != before[name]}
     assert changed == {"skeleton.glb"}
 
@@ -118,9 +118,9 @@ def test_exports_on_request_are_in_the_graph_and_run_when_they_are_named(out, co
 
 
 def test_failed_skeleton_leaves_no_file(configured, tmp_path):
-    told = Pipeline.of({**configured, "skeleton": {"fails": True}}).run()
-    assert told["status"] == "failed"
-    assert told["files"] == []
+    result = Pipeline.of({**configured, "skeleton": {"fails": True}}).run()
+    assert result["status"] == "failed"
+    assert result["files"] == []
     assert names(tmp_path / "out") == ["config.yaml", "run.json", "store"]
 
 
@@ -143,29 +143,29 @@ def test_labels_come_back_to_the_vertices_of_every_file(out):
     body = spider()
     label, begin, end = (group[name][...] for name in ("label", "begin", "end"))
     for frame in range(12):
-        mine = label[begin[frame] : end[frame]]
-        np.testing.assert_array_equal(mine[1:], body.label[order(frame)][1:])
-        assert mine[0] == -1
+        labels = label[begin[frame] : end[frame]]
+        np.testing.assert_array_equal(labels[1:], body.label[order(frame)][1:])
+        assert labels[0] == -1
     assert group["aligned"].shape == (12, len(body.vertices), 3)
     assert group["label"].metadata.dimension_names == ("input_vertex",)
 
 
 def test_skeleton_that_moved_the_body_explains_it(configured, out):
-    told = Pipeline.of(configured).artifact("segmentation")
-    assert told.error < 1e-6
-    assert "distance between the skinned mesh and the aligned meshes" in views.remarks(told)[0]
+    result = Pipeline.of(configured).artifact("segmentation")
+    assert result.error < 1e-6
+    assert "distance between the skinned mesh and the aligned meshes" in views.remarks(result)[0]
 
 
 def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):
     export(str(out), "ply", tmp_path / "coloured")
     assert names(tmp_path / "coloured") == [f"frame_{t:04d}.ply" for t in range(12)]
-    found = trimesh.load(tmp_path / "coloured" / "frame_0003.ply", process=False)
+    exported = trimesh.load(tmp_path / "coloured" / "frame_0003.ply", process=False)
     given = trimesh.load(scans / "0003.ply", process=False)
-    np.testing.assert_allclose(found.vertices, given.vertices, atol=1e-6)
-    np.testing.assert_array_equal(found.faces, given.faces)
-    part = found.metadata["_ply_raw"]["vertex"]["data"]["part"]
+    np.testing.assert_allclose(exported.vertices, given.vertices, atol=1e-6)
+    np.testing.assert_array_equal(exported.faces, given.faces)
+    part = exported.metadata["_ply_raw"]["vertex"]["data"]["part"]
     np.testing.assert_array_equal(part[1:], spider().label[order(3)][1:])
-    colour = found.visual.vertex_colors
+    colour = exported.visual.vertex_colors
     assert (colour[part == -1, :3] == 255).all()
     assert len(np.unique(colour[part >= 0], axis=0)) == len(set(part.tolist()) - {-1})
 

@@ -1,18 +1,18 @@
-"""The articulated body as the aligned vertices show it, and the frames that ask for a fit to their surface (2014, Sec. 6.3)."""
+"""The articulated body as the aligned vertices show it, how its tree came about, and its uncertain frames (2014, Sec. 6.3)."""
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Bools, Index, Params
-from kinetree.schemas.dims import FRAME
+from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
+from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, XYZ
 from kinetree.schemas.structure.skeleton import Skeleton
 
-TOGETHER = 6
-"""Frames in doubt that are fitted together at most."""
+MOST_TOGETHER = 6
+"""Uncertain frames that are refined by one task, at most."""
 
 
 class KinematicTreeParams(Params):
@@ -21,23 +21,54 @@ class KinematicTreeParams(Params):
     degrees: float = Field(default=6.0, ge=0, le=180)
     """A joint turns by at least this many degrees between some two frames, or its parts are one."""
     ratio: float = Field(default=0.8, ge=0)
-    """How far turning moves a joint's smaller part, against how far the joint drifts; below it the part slides, like cloth."""
+    """Displacement that turning gives a joint's smaller part, in drifts of the joint; below it the part slides, like cloth."""
 
 
 class KinematicTree(Skeleton):
-    """A skeleton whose poses come from aligned vertices alone; each run of frames in doubt opens a member of "doubt"."""
+    """A skeleton whose poses come from aligned vertices alone; each run of uncertain frames opens a member of "doubt".
+
+    Parts are numbered as in RigidParts.
+    """
 
     opens: ClassVar[tuple[str, ...]] = ("doubt", "doubt/frame")
-    doubted: Annotated[Bools, Array("bool", FRAME)]
-    """Frames in which some part is believed so little that the surface is asked."""
+    uncertain: Annotated[Bools, Array("bool", FRAME)]
+    """Frames in which some part has so little confidence that the body is fitted to the surface."""
+    pair: Annotated[Ints, Array("int32", PAIR, END)]
+    """Parts that meet, before any was dropped."""
+    centre: Annotated[Floats, Array("float64", PAIR, XYZ, unit="length")]
+    """The point of the reference mesh that the two turn about best."""
+    border_drift: Annotated[Floats, Array("float64", PAIR, unit="length")]
+    """Root mean square distance between that point as one part and as the other carries it."""
+    border_degrees: Annotated[Floats, Array("float64", PAIR, unit="°", finite=False)]
+    """Range of their turning against each other; NaN for borders that the spanning tree of all parts does not have."""
+    joint_of_part: Annotated[Ints, Array("int32", PART)]
+    """Joint about which each part turns, −1 for parts that were dropped."""
+    dropped: tuple[tuple[int, Literal["flesh", "still", "sliding", "unevident"]], ...]
+    """Parts that were dropped, in that order, and why: flesh around a joint, turns too little, drifts more than it turns,
+    or the frames show no joint."""
+    free_length: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Mean length of each joint's bone as the parts alone carry its ends, before lengths are held; 0 for the root."""
+    free_deviation: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Standard deviation of that length over the frames; held lengths have none."""
+
+    @property
+    def length_variation(self) -> Floats:
+        """(joint,) deviation of the length before it is held, % of its mean; 0 for the root."""
+        variation: Floats = 100.0 * self.free_deviation / (self.free_length + (self.free_length == 0.0))
+        return variation
+
+    @property
+    def in_tree(self) -> Bools:
+        """(pair,) whether the spanning tree of all parts has each border as a joint."""
+        return np.asarray(np.isfinite(self.border_degrees))
 
     def runs(self) -> tuple[tuple[int, ...], ...]:
-        """Source frames in doubt, neighbours together, a few at a time."""
-        at = np.flatnonzero(self.doubted)
+        """Uncertain source frames, neighbours together, a few at a time."""
+        at = np.flatnonzero(self.uncertain)
         ends = [0, *(i + 1 for i, (a, b) in enumerate(pairwise(at)) if b > a + 1), len(at)]
-        rows = [at[k : min(k + TOGETHER, b)] for a, b in pairwise(ends) for k in range(a, b, TOGETHER)]
+        rows = [at[k : min(k + MOST_TOGETHER, b)] for a, b in pairwise(ends) for k in range(a, b, MOST_TOGETHER)]
         return tuple(tuple(self.frames[t] for t in run) for run in rows)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
-        """The runs of frames in doubt, numbered from 0, and the source frames of one."""
+        """The runs of uncertain frames, numbered from 0, or the source frames of one."""
         return range(len(self.runs())) if space == "doubt" else self.runs()[index[0]]

@@ -1,4 +1,4 @@
-"""What a run is for: one tree of joints, their positions in every frame, and the surface that follows them (2014, Sec. 6.3)."""
+"""The result of a run: a tree of joints, their positions in every frame, and the surface that follows them (2014, Sec. 6.3)."""
 
 from typing import Annotated, Literal
 
@@ -17,9 +17,9 @@ class Skeleton(Artifact):
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     fps: float | None
-    """Frames a second; None where nobody knows."""
+    """Frames a second; None where it is not known."""
     unit: str | None
-    """Unit of all lengths; None where nobody knows."""
+    """Unit of all lengths; None where it is not known."""
     names: tuple[str, ...]
     """Name of every joint, readable, unique and the same on every run; parents come before children."""
     parents: tuple[int, ...]
@@ -31,15 +31,15 @@ class Skeleton(Artifact):
     rotation: Annotated[Floats, Array("float64", FRAME, JOINT, ROW, XYZ)]
     """From the reference pose to each frame, of the part that turns about the joint; a leaf has its parent's."""
     confidence: Annotated[Floats, Array("float64", FRAME, JOINT)]
-    """How far a joint's position in a frame is to be believed, 0 to 1."""
+    """How certain a joint's position in a frame is, 0 to 1."""
     rest: Annotated[Floats, Array("float64", JOINT, XYZ, unit="length")]
     """Position of every joint in the reference mesh."""
     degrees: Annotated[Floats, Array("float64", JOINT, unit="°")]
     """Range of the turning of each joint against its parent over the sequence; 0 for root and leaves."""
     drift: Annotated[Floats, Array("float64", JOINT, unit="length")]
-    """Root mean square distance between the joint as its two parts carry it: what its place is uncertain by."""
+    """Root mean square distance between the joint as one of its parts and as the other carries it."""
     support: Annotated[Ints, Array("int32", JOINT)]
-    """Frames in which the joint's parts were seen and trusted."""
+    """Frames in which most of the surface of the joint's parts was seen and certain."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
     """The reference mesh."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]

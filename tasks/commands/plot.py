@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 WHAT = (
-    "alignment", "angles", "cones", "confidence", "correlation", "errors", "lengths", "merging", "mu", "skeleton",
-    "structure", "tree",
+    "alignment", "angles", "cones", "confidence", "correlation", "elimination", "errors", "lengths", "merging", "mu",
+    "skeleton", "structure", "tree",
 )  # fmt: skip
 """What can be drawn; `kinetree.tasks.results.plots` draws it."""
 

@@ -1,4 +1,4 @@
-"""The evidence for the joints of the 2014 paper, drawn for the report."""
+"""The joints of the 2014 paper and how they were found, drawn for the report."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.results.page.chapters import Drawn, Written, evidence_of
+from kinetree.tasks.results.page.chapters import CaptionedFigure, FigureChapter, rendered_chapters
 from kinetree.tasks.results.plots.mesoscopic import cones, lengths, merging, structure
 from kinetree.tasks.views.paper_2014 import cone_consistency_remarks, integration_remarks
 
@@ -44,7 +44,7 @@ def paper_figures(
 
     frames, up = [interval_references[cylinders.interval].frame], up_direction.axis
     annulus_figures = [
-        Drawn(
+        CaptionedFigure(
             cones(fetch, frames, up),
             "The annuli of every cone, black beyond it; last, the areas they become: white is not rigid.",
             vector=False,
@@ -52,20 +52,22 @@ def paper_figures(
     ]
     if len(cone_consistency.annulus):
         caption = "Merge-error of each annulus with the cluster before it (Eq. 12), and the choice of the threshold."
-        annulus_figures.append(Drawn(merging(fetch, frames, up), caption))
+        annulus_figures.append(CaptionedFigure(merging(fetch, frames, up), caption))
     bone_figures = [
-        Drawn(
+        CaptionedFigure(
             structure(fetch, frames, up),
             "Bones between non-rigid areas, and the tree without redundant bones.",
             vector=False,
         ),
-        Drawn(lengths(fetch, frames, up), "Variation of the lengths of bones before they are fixed; afterwards there is none."),
+        CaptionedFigure(
+            lengths(fetch, frames, up), "Variation of the lengths of bones before they are fixed; afterwards there is none."
+        ),
     ]
     words = (*cone_consistency_remarks(cone_consistency), *integration_remarks(integration))
-    return evidence_of(
+    return rendered_chapters(
         [
-            Written("cones", "Cones and annuli", annulus_figures, words),
-            Written("bones", "Bones and redundant ones", bone_figures),
+            FigureChapter("cones", "Cones and annuli", annulus_figures, words),
+            FigureChapter("bones", "Bones and redundant ones", bone_figures),
         ],
         np.full(len(skeleton.names), np.nan),
     )

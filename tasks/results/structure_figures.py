@@ -1,32 +1,44 @@
-"""What the joints were found by, drawn for the report."""
+"""How the joints were found, drawn for the report."""
 
 from typing import Any
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.schemas.structure.traces import Traces
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.results.page.chapters import Drawn, Written, evidence_of
-from kinetree.tasks.results.plots.traces import cones, lengths, merging, structure
+from kinetree.tasks.results.page.chapters import CaptionedFigure, FigureChapter, rendered_chapters
+from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 
 
 @task()
-def structure_figures(skeleton: Skeleton, traces: Traces, up_direction: UpDirection) -> StructureFigures:
-    """Draws cones, merge errors, the graph of parts and bones' lengths (2014, Figs. 7, 11 and 15)."""
-    told = {"skeleton": skeleton, "traces": traces}
+def structure_figures(
+    skeleton: Skeleton, rigid_parts: RigidParts, kinematic_tree: KinematicTree, up_direction: UpDirection
+) -> StructureFigures:
+    """Draws cones, merge errors, elimination, the graph of parts and bones' lengths (2014, Figs. 7, 11 and 15)."""
+    artifacts = {"skeleton": skeleton, "rigid_parts": rigid_parts, "kinematic_tree": kinematic_tree}
 
     def fetch(name: str) -> Any:
-        return told[name]
+        return artifacts[name]
 
     up = up_direction.axis
-    drawn = [
-        Drawn(cones(fetch, [], up), "Cones around the leaves and their annuli; pale where cones overlap.", vector=False),
-        Drawn(
-            merging(fetch, [], up),
-            "What merging annuli across each border would cost, and the first cut; coloured: parts left, white: shared annuli.",
+    figures = [
+        CaptionedFigure(
+            cones(fetch, [], up),
+            "Cones around the leaves and their annuli; pale where cones overlap, which is cut as the trunk is.",
+            vector=False,
         ),
-        Drawn(structure(fetch, [], up), "The graph of parts before, and the tree that was left.", vector=False),
-        Drawn(lengths(fetch, [], up), "By what bones' lengths varied before they were held; afterwards by nothing."),
+        CaptionedFigure(
+            merging(fetch, [], up),
+            "Cost of merging the annuli on both sides of each border, and the first cut; colours: parts of the final joints.",
+        ),
+        CaptionedFigure(
+            elimination(fetch, [], up),
+            "The first cut, the parts that remain of it, and what the removal of each other part cost.",
+            vector=False,
+        ),
+        CaptionedFigure(structure(fetch, [], up), "The graph of parts before pruning, and the tree after it.", vector=False),
+        CaptionedFigure(lengths(fetch, [], up), "Variation of bone lengths before they are fixed; afterwards there is none."),
     ]
-    return evidence_of([Written("evidence", "What joints were found by", drawn)], traces.variation)
+    return rendered_chapters([FigureChapter("derivation", "How joints were found", figures)], kinematic_tree.length_variation)

@@ -4,12 +4,10 @@ from kinetree.tasks.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.rigid_parts import rigid_parts
 from kinetree.tasks.structure.skeleton import skeleton
-from kinetree.tasks.structure.traces import traces
 
 STRUCTURE = (
     rigid_parts,
     kinematic_tree,
     pose_refinement,
     skeleton,
-    traces,
 )

@@ -13,55 +13,54 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTr
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.structure import kinematic_tree as structure
-from kinetree.tasks.numerics.structure.joint_evidence import Seen
-from kinetree.tasks.numerics.structure.pose_refinement import doubtful
-from kinetree.tasks.structure.rigid_parts import tips_of, trust_of
+from kinetree.tasks.numerics.structure import kinematic_tree as numerics
+from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
+from kinetree.tasks.numerics.structure.given_correspondence import is_given, limited_confidence
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
+from kinetree.tasks.numerics.structure.pruning import PruningSettings
 
 
 @task()
 def kinematic_tree(
     reference: Reference,
-    parts: RigidParts,
+    rigid_parts: RigidParts,
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
     leaves: Leaves,
     sequence: Sequence,
     params: KinematicTreeParams,
 ) -> KinematicTree:
-    """Joins the rigid parts into one tree, places its joints and poses it in every frame that is seen (2014, Sec. 6.3)."""
-    aligned = list(alignment.values())
+    """Joins the rigid parts into one tree, places its joints and poses it in every frame (2014, Sec. 6.3)."""
+    frames, aligned, at = tuple(alignment), list(alignment.values()), leaves.frames.index(reference.frame)
+    evidence = FrameEvidence(
+        np.stack([a.trust for a in aligned]),
+        np.stack([a.residual for a in aligned]),
+        lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),
+    )
+    given = is_given(evidence.confidence, evidence.residual)
     V, F = reference.vertices, reference.faces
-    found = structure.kinematic_tree(
+    tree, derivation = numerics.kinematic_tree(
         V,
         np.asarray(F, dtype=np.int64),
         np.stack([a.vertices for a in aligned]),
         Surface.of(V, F).area,
-        np.asarray(parts.label, dtype=np.int64),
-        parts.rotation,
-        parts.translation,
-        parts.residual,
-        tips_of(leaves, reference),
-        trust_of(aligned),
-        None if reference.fixed else _seen(aligned, mesh, tuple(alignment)),
-        degrees=params.degrees,
-        ratio=params.ratio,
+        np.asarray(rigid_parts.label, dtype=np.int64),
+        rigid_parts.rotation,
+        rigid_parts.translation,
+        rigid_parts.residual,
+        leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
+        limited_confidence(evidence.confidence),
+        None if given else evidence,
+        numerics.KinematicTreeSettings(PruningSettings(params.degrees, params.ratio)),
     )
     return KinematicTree(
-        frames=tuple(alignment),
+        frames=frames,
         fps=sequence.fps,
         unit=sequence.unit,
         vertices=V,
         faces=F,
-        doubted=np.zeros(len(aligned), np.bool_) if reference.fixed else doubtful(found.confidence),
-        **{**found._asdict(), "parents": tuple(found.parents.tolist())},
-    )
-
-
-def _seen(aligned: list[Alignment], mesh: Mapping[int, Mesh], frames: tuple[int, ...]) -> Seen:
-    """What the frames know; their meshes are read where they are asked."""
-    return Seen(
-        np.stack([a.trust for a in aligned]),
-        np.stack([a.residual for a in aligned]),
-        lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),
+        uncertain=np.zeros(len(frames), np.bool_) if given else needs_refinement(tree.confidence),
+        **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
+        **{**derivation._asdict(), "dropped": tuple((d.part, d.reason) for d in derivation.dropped)},
     )

@@ -1,39 +1,30 @@
-"""The articulated body with its poses as they are left: those of the aligned vertices, or of the fit where it was better."""
+"""The articulated body with its final poses: of the aligned vertices, or of the fit to the surface where it was better."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.pose_refinement import PoseRefinement
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.structure.joint_rotations import turning_range
+from kinetree.tasks.numerics.structure.joint_rotations import joint_degrees
 
 
 @task()
-def skeleton(articulation: KinematicTree, fit: tuple[PoseRefinement, ...]) -> Skeleton:
-    """Puts the fitted poses in their places; bones have one length in all of them (2014, Sec. 6.3)."""
-    told = {name: getattr(articulation, name) for name in Skeleton.model_fields}
-    if any(run.moved.any() for run in fit):
+def skeleton(kinematic_tree: KinematicTree, pose_refinement: tuple[PoseRefinement, ...]) -> Skeleton:
+    """Puts the refined poses in their frames; bones have one length in all of them (2014, Sec. 6.3)."""
+    fields = {name: getattr(kinematic_tree, name) for name in Skeleton.model_fields}
+    if any(run.moved.any() for run in pose_refinement):
         for name in ("positions", "rotation", "confidence"):
-            told[name] = _placed(told[name], articulation.frames, fit, name)
-        told["degrees"] = _degrees(articulation, told["rotation"])
-    return Skeleton(**told)
+            fields[name] = _replaced(fields[name], kinematic_tree.frames, pose_refinement, name)
+        turns = np.array([kind == "joint" for kind in kinematic_tree.kinds])
+        fields["degrees"] = joint_degrees(fields["rotation"], np.array(kinematic_tree.parents), turns)
+    return Skeleton(**fields)
 
 
-def _placed(
-    before: NDArray[np.float64], frames: tuple[int, ...], fit: tuple[PoseRefinement, ...], name: str
-) -> NDArray[np.float64]:
+def _replaced(before: Floats, frames: tuple[int, ...], runs: tuple[PoseRefinement, ...], name: str) -> Floats:
+    """One array of all frames with the rows of the refined frames replaced."""
     after = np.array(before)
-    for run in fit:
+    for run in runs:
         after[[frames.index(frame) for frame in run.frames]] = getattr(run, name)
     return after
-
-
-def _degrees(articulation: KinematicTree, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(joint,) range of the turning of each joint against its parent."""
-    told = [
-        turning_range(np.einsum("txy,txz->tyz", rotation[:, p], rotation[:, j])) if kind == "joint" else 0.0
-        for j, (p, kind) in enumerate(zip(articulation.parents, articulation.kinds, strict=True))
-    ]
-    return np.array(told)

@@ -33,8 +33,8 @@ def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> str:
     out = tmp_path_factory.mktemp("run")
-    told = {"output": str(out), "source": {"synth": SYNTH}, "compute": {"executor": "sync"}}
-    pipeline = Pipeline.of(told, methods={"mesoscopic": true_skeleton_graph.GRAPH})
+    config = {"output": str(out), "source": {"synth": SYNTH}, "compute": {"executor": "sync"}}
+    pipeline = Pipeline.of(config, methods={"mesoscopic": true_skeleton_graph.GRAPH})
     assert pipeline.run()["status"] == "done"
     return str(out)
 
@@ -59,11 +59,11 @@ def refused(*words: object) -> Exception:
 
 
 def test_run_of_a_generated_sequence_evaluates_itself(run: str) -> None:
-    told = json.loads((Path(run) / "evaluation.json").read_text())
-    assert told["format"] == "kinetree.evaluation/1"
-    assert told["summary"]["found"] == told["summary"]["scored"] > 8
-    assert len(told["error"]) == 6
-    assert None in told["error"][0]
+    content = json.loads((Path(run) / "evaluation.json").read_text())
+    assert content["format"] == "kinetree.evaluation/1"
+    assert content["summary"]["found"] == content["summary"]["scored"] > 8
+    assert len(content["error"]) == 6
+    assert None in content["error"][0]
 
 
 def test_table_names_every_joint_and_sums_up(run: str, truth: Path) -> None:
@@ -81,18 +81,18 @@ def test_json_is_what_a_run_leaves(run: str) -> None:
 
 
 def test_truth_that_is_named_goes_before_the_runs_own(run: str, truth: Path) -> None:
-    told = json.loads(truth.read_text())
-    told["positions"] = [[[x + 0.03 * told["height"], y, z] for x, y, z in frame] for frame in told["positions"]]
-    truth.write_text(json.dumps(told))
-    found: dict[str, Any] = json.loads(asked(run, truth, "--json").output)
-    assert found["truth"] == "truth.json"
-    assert found["summary"]["percent"] == pytest.approx(3.0)
+    content = json.loads(truth.read_text())
+    content["positions"] = [[[x + 0.03 * content["height"], y, z] for x, y, z in frame] for frame in content["positions"]]
+    truth.write_text(json.dumps(content))
+    result: dict[str, Any] = json.loads(asked(run, truth, "--json").output)
+    assert result["truth"] == "truth.json"
+    assert result["summary"]["percent"] == pytest.approx(3.0)
 
 
 def test_limit_can_be_set(run: str, truth: Path) -> None:
-    told = json.loads(truth.read_text())
-    told["positions"] = [[[x + 0.07 * told["height"], y, z] for x, y, z in frame] for frame in told["positions"]]
-    truth.write_text(json.dumps(told))
+    content = json.loads(truth.read_text())
+    content["positions"] = [[[x + 0.07 * content["height"], y, z] for x, y, z in frame] for frame in content["positions"]]
+    truth.write_text(json.dumps(content))
     assert json.loads(asked(run, truth, "--json").output)["summary"]["found"] == 0
     wider = json.loads(asked(run, truth, "--json", "--set", "evaluation.found=0.1").output)["summary"]
     assert wider["found"] == wider["scored"]
@@ -100,10 +100,10 @@ def test_limit_can_be_set(run: str, truth: Path) -> None:
 
 @pytest.mark.parametrize("ending", [".png", ".svg"])
 def test_errors_are_drawn(run: str, truth: Path, tmp_path: Path, ending: str) -> None:
-    told = json.loads(truth.read_text())
-    told["positions"] = [[[x + 1.5 * t, y, z] for x, y, z in frame] for t, frame in enumerate(told["positions"])]
-    told["positions"] = [[*frame[:7], [9e3, 0, 0], *frame[8:]] for frame in told["positions"]]
-    truth.write_text(json.dumps(told))
+    content = json.loads(truth.read_text())
+    content["positions"] = [[[x + 1.5 * t, y, z] for x, y, z in frame] for t, frame in enumerate(content["positions"])]
+    content["positions"] = [[*frame[:7], [9e3, 0, 0], *frame[8:]] for frame in content["positions"]]
+    truth.write_text(json.dumps(content))
     path = tmp_path / f"errors{ending}"
     result = asked(run, truth, "--plot", path)
     assert result.exit_code == 0, result.exception
@@ -113,12 +113,12 @@ def test_errors_are_drawn(run: str, truth: Path, tmp_path: Path, ending: str) ->
 
 def test_what_is_wrong_with_the_truth_is_an_error_of_input(run: str, truth: Path, tmp_path: Path) -> None:
     assert "No such file" in str(refused(run, tmp_path / "nowhere.json"))
-    told = json.loads(truth.read_text())
-    truth.write_text(json.dumps({**told, "positions": told["positions"][:2]}))
+    content = json.loads(truth.read_text())
+    truth.write_text(json.dumps({**content, "positions": content["positions"][:2]}))
     error = refused(run, truth)
     assert type(error) is InputError
     assert str(error).startswith("truth.json: it has frames 0 to 1, but 4 of the 6 frames of the sequence are missing")
-    truth.write_text(json.dumps({**told, "positions": [[[1e7, 0, 0]] * len(told["joints"])] * 6}))
+    truth.write_text(json.dumps({**content, "positions": [[[1e7, 0, 0]] * len(content["joints"])] * 6}))
     assert "truth of another sequence" in str(refused(run, truth))
 
 
@@ -136,8 +136,8 @@ def test_picture_without_a_format_and_run_that_was_not_made_are_refused(run: str
 def test_folder_of_meshes_has_no_truth_until_one_is_named(tmp_path: Path) -> None:
     write_sequence(SynthParams.model_validate(SYNTH), tmp_path / "walk")
     out = tmp_path / "out"
-    told = {"output": str(out), "source": {"input": str(tmp_path / "walk" / "*.ply")}, "compute": {"executor": "sync"}}
-    assert Pipeline.of(told).run()["status"] == "done"
+    config = {"output": str(out), "source": {"input": str(tmp_path / "walk" / "*.ply")}, "compute": {"executor": "sync"}}
+    assert Pipeline.of(config).run()["status"] == "done"
     assert not (out / "evaluation.json").exists()
     error = refused(out)
     assert isinstance(error, ConfigError)
@@ -145,5 +145,5 @@ def test_folder_of_meshes_has_no_truth_until_one_is_named(tmp_path: Path) -> Non
     summary = json.loads(asked(out, tmp_path / "walk" / "truth.json", "--json").output)["summary"]
     assert summary["found"] == summary["scored"]
     assert summary["parts"] is None
-    assert Pipeline.of(told | {"truth": {"file": str(tmp_path / "walk" / "truth.json")}}).run()["status"] == "done"
+    assert Pipeline.of(config | {"truth": {"file": str(tmp_path / "walk" / "truth.json")}}).run()["status"] == "done"
     assert json.loads((out / "evaluation.json").read_text())["truth"] == "truth.json"

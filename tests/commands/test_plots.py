@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from results.rigged_bodies import spider
+from results.sample_derivation import parts_of, tree_of
 from results.sample_report import artifacts, judged, unjudged
-from traced import traces_of
 
 from kinetree.errors import ConfigError
 from kinetree.tasks.commands import plot
@@ -20,12 +20,13 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 @pytest.fixture(scope="module")
 def fetch() -> Any:
-    told = artifacts() | {"evaluation": judged(spider()), "traces": traces_of(spider())}
-    return lambda name, frame=None: told[name] if frame is None else told[name][frame]
+    derived = {"rigid_parts": parts_of(spider()), "kinematic_tree": tree_of(spider())}
+    stored = artifacts() | {"evaluation": judged(spider())} | derived
+    return lambda name, frame=None: stored[name] if frame is None else stored[name][frame]
 
 
 def test_help_of_the_command_names_every_picture() -> None:
-    assert all(sorted(pictures) == sorted(plot.WHAT) for pictures in PLOTS_OF_METHOD.values())
+    assert sorted({name for plots in PLOTS_OF_METHOD.values() for name in plots}) == sorted(plot.WHAT)
 
 
 @pytest.mark.parametrize("what", sorted(PLOTS))

@@ -60,3 +60,9 @@ def test_one_interval_has_no_cut() -> None:
     assert len(cuts.cut) == 0
     assert cuts.maps() == ([], [])
     assert views.remarks(cuts) == ()
+
+
+def test_reference_with_handles_is_remarked() -> None:
+    _, cuts = corresponding({t: frame(t) for t in range(3)}, 2)
+    (remark,) = views.remarks(cuts.model_copy(update={"genus": (2,)}))
+    assert remark.startswith("the surface of interval 0 has 2 handles, ")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from sheets import CORNERS, TRACKED, frame, reference_of
 
 
@@ -48,3 +49,10 @@ def test_fixed_connectivity_is_decided_here() -> None:
     frames = {t: frame(t, anew=False) for t in range(3)}
     assert reference_of(frames, 0, 2, connectivity=TRACKED).tracked
     assert not reference_of(frames, 0, 2).tracked
+
+
+def test_genus_is_that_of_a_closed_surface_and_nought_for_an_open_one() -> None:
+    reference = reference_of({t: frame(t) for t in range(3)}, 0, 2)
+    ring = trimesh.creation.torus(3.0, 1.0)
+    assert reference.genus == 0
+    assert reference.model_copy(update={"vertices": ring.vertices, "faces": ring.faces}).genus == 1

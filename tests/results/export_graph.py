@@ -49,9 +49,9 @@ def projection(source: Source) -> Projection:
     turned = order(int(Path(source.path).stem))
     faces = spider().faces
     first = {int(v): (f, c) for f, row in reversed(list(enumerate(faces))) for c, v in enumerate(row)}
-    found = np.array([first[int(v)] for v in turned])
-    share = np.eye(3)[found[:, 1]]
-    face = found[:, 0].astype(np.int32)
+    indices = np.array([first[int(v)] for v in turned])
+    share = np.eye(3)[indices[:, 1]]
+    face = indices[:, 0].astype(np.int32)
     face[0], share[0] = -1, 0.0
     return Projection(face=face, share=share, distance=np.zeros(len(face)))
 

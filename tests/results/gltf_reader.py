@@ -29,10 +29,12 @@ class Glb:
 
     def array(self, accessor: int) -> npt.NDArray[Any]:
         """The numbers of one accessor, one row an element."""
-        told = self.json["accessors"][accessor]
-        view = self.json["bufferViews"][told["bufferView"]]
-        width = WIDTHS[told["type"]]
-        flat = np.frombuffer(self.buffer, DTYPES[told["componentType"]], told["count"] * width, view["byteOffset"])
+        description = self.json["accessors"][accessor]
+        view = self.json["bufferViews"][description["bufferView"]]
+        width = WIDTHS[description["type"]]
+        flat = np.frombuffer(
+            self.buffer, DTYPES[description["componentType"]], description["count"] * width, view["byteOffset"]
+        )
         return flat.reshape(-1, width) if width > 1 else flat
 
     def attribute(self, name: str) -> npt.NDArray[Any]:

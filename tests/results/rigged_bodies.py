@@ -59,7 +59,7 @@ def skeleton_of(body: Body, **changes: object) -> Skeleton:
     weight /= weight.sum(axis=1, keepdims=True)
     degrees = np.where(leaf | (parents < 0), 0.0, turning_angles(body.R))
     kinds = ["root" if p < 0 else "leaf" if end else "joint" for p, end in zip(parents, leaf, strict=True)]
-    told = {
+    fields = {
         "frames": tuple(range(len(body.X))),
         "fps": body.fps,
         "unit": figure.unit,
@@ -79,7 +79,7 @@ def skeleton_of(body: Body, **changes: object) -> Skeleton:
         "influence": influence.astype(np.int32),
         "weight": weight,
     }
-    return Skeleton.model_validate({**told, **changes})
+    return Skeleton.model_validate({**fields, **changes})
 
 
 def skinned(skeleton: Skeleton) -> Floats:

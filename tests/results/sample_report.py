@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from results.rigged_bodies import skinned, spider
-from traced import traces_of
+from results.sample_derivation import parts_of, tree_of
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
@@ -29,9 +29,9 @@ UP = UpDirection(up="y", confidence=1.0)
 
 def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
     """The spider playing."""
-    told = artifacts(skeleton, anew=anew)
+    arguments = artifacts(skeleton, anew=anew)
     names = ("skeleton", "alignment", "projection", "mesh", "leaves", "intervals")
-    return scene(*(told[name] for name in names), limits or Limits())
+    return scene(*(arguments[name] for name in names), limits or Limits())
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
-        "structure_figures": structure_figures(skeleton, traces_of(skeleton), UP),
+        "structure_figures": structure_figures(skeleton, parts_of(skeleton), tree_of(skeleton), UP),
         "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
@@ -120,8 +120,10 @@ def followed(skeleton: Skeleton) -> Leaves:
     positions[0, len(skeleton.frames) // 2 :] = np.nan
     none = np.zeros(0, np.int32)
     rows = np.zeros(positions.shape[:2], np.int32)
-    kept = np.ones((2, len(tips)), np.bool_)
-    return Leaves(frames=skeleton.frames, rows=rows, positions=positions, kept=kept, lost=none, lost_begin=none, lost_end=none)
+    counts = np.ones((2, len(tips)), np.bool_)
+    return Leaves(
+        frames=skeleton.frames, rows=rows, positions=positions, kept=counts, lost=none, lost_begin=none, lost_end=none
+    )
 
 
 def halves(frames: tuple[int, ...]) -> Intervals:
@@ -136,5 +138,5 @@ def halves(frames: tuple[int, ...]) -> Intervals:
 def page(title: str = "a walk", **more: object) -> str:
     """The whole page, what ran not yet told."""
     body = table(("joint", "turns"), [("arm", 50.5)])
-    told = {"facts": [("frames", "12")], "warnings": [], "scene": playing(), "sections": [Section("s", "Joints", body)]}
-    return document(Page(title=title, **{**told, **more}))  # type: ignore[arg-type]
+    arguments = {"facts": [("frames", "12")], "warnings": [], "scene": playing(), "sections": [Section("s", "Joints", body)]}
+    return document(Page(title=title, **{**arguments, **more}))  # type: ignore[arg-type]

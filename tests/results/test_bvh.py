@@ -30,9 +30,9 @@ def read(skeleton, folder):
 
 
 def test_parser_finds_every_joint_where_the_skeleton_has_it_in_every_frame(body, tmp_path):
-    found = read(body, tmp_path)
-    at = found.node_positions()
-    known = {node.name: number for number, node in enumerate(found.nodes)}
+    result = read(body, tmp_path)
+    at = result.node_positions()
+    known = {node.name: number for number, node in enumerate(result.nodes)}
     known["hand"] = known["EndSitearm"]
     for joint, name in enumerate(body.names):
         np.testing.assert_allclose(at[:, known[name]], body.positions[:, joint], atol=1e-5)
@@ -44,26 +44,26 @@ def test_parser_finds_the_pace(body, tmp_path):
 
 
 def test_offsets_are_the_bones_of_the_reference_pose_and_the_root_has_none(body):
-    told = [tuple(map(float, line.split()[1:])) for line in text(body).splitlines() if "OFFSET" in line]
+    offsets = [tuple(map(float, line.split()[1:])) for line in text(body).splitlines() if "OFFSET" in line]
     bones = {tuple(np.round(body.rest[j] - body.rest[p], 6)) for j, p in enumerate(body.parents) if p >= 0}
-    assert told[0] == (0.0, 0.0, 0.0)
-    assert set(told[1:]) - {(0.0, 0.0, 0.0)} == bones
+    assert offsets[0] == (0.0, 0.0, 0.0)
+    assert set(offsets[1:]) - {(0.0, 0.0, 0.0)} == bones
 
 
 def test_only_child_that_is_a_leaf_is_an_end_site_and_others_are_joints(body):
-    told = text(body)
-    assert "hand" not in told
-    assert {name for name in LEAVES if f"JOINT {name}" in told} == LEAVES
-    assert told.count("End Site") == 4
+    content = text(body)
+    assert "hand" not in content
+    assert {name for name in LEAVES if f"JOINT {name}" in content} == LEAVES
+    assert content.count("End Site") == 4
 
 
 def test_names_are_single_words_still_unique(tmp_path):
     names = ("root\nJOINT x", "a b", "a\tb", "<script>", "é", "7", "")
     lines = text(spider(names=names)).splitlines()
-    found = [line.split(maxsplit=1)[1] for line in lines if line.split()[0] in ("ROOT", "JOINT")]
-    assert len(set(found)) == len(found) == 6
-    assert all(word.isascii() and word.isidentifier() for word in found)
-    assert read(spider(names=names), tmp_path).joint_count == len(found)
+    joints = [line.split(maxsplit=1)[1] for line in lines if line.split()[0] in ("ROOT", "JOINT")]
+    assert len(set(joints)) == len(joints) == 6
+    assert all(word.isascii() and word.isidentifier() for word in joints)
+    assert read(spider(names=names), tmp_path).joint_count == len(joints)
 
 
 def test_frames_left_out_are_put_in_between(body):
@@ -73,8 +73,8 @@ def test_frames_left_out_are_put_in_between(body):
     assert "Frame Time: 0.2" in lines
     rows = np.array([list(map(float, line.split())) for line in lines[lines.index("Frame Time: 0.2") + 1 :]])
     np.testing.assert_allclose(rows[11:14, :3], np.linspace(rows[10, :3], rows[13, :3], 4)[1:], atol=1e-6)
-    (told,) = views.remarks(bvh(gaps))
-    assert "2 frames were interpolated" in told
+    (remark,) = views.remarks(bvh(gaps))
+    assert "2 frames were interpolated" in remark
     assert views.remarks(bvh(body)) == ()
 
 
@@ -89,6 +89,6 @@ def test_angles_are_those_of_the_turns_even_where_two_axes_are_one():
 def test_angles_go_on_through_half_turns_and_past_the_upright():
     angles = np.stack([np.linspace(0, 700, 60), np.linspace(0, 170, 60), np.linspace(0, -400, 60)], axis=1)[:, None]
     R = Rotation.from_euler("ZXY", angles[:, 0], degrees=True).as_matrix()[:, None]
-    found = continuous(euler_zxy(R))
-    assert np.abs(np.diff(found, axis=0)).max() < 20
-    np.testing.assert_allclose(Rotation.from_euler("ZXY", found[:, 0], degrees=True).as_matrix()[:, None], R, atol=1e-12)
+    angles = continuous(euler_zxy(R))
+    assert np.abs(np.diff(angles, axis=0)).max() < 20
+    np.testing.assert_allclose(Rotation.from_euler("ZXY", angles[:, 0], degrees=True).as_matrix()[:, None], R, atol=1e-12)

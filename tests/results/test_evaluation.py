@@ -52,15 +52,15 @@ def more(name, kind, parent, like, by):
 
 
 def test_without_truth_there_is_nothing_to_say():
-    told = evaluated(true=NOBODY)
-    assert told.summary is None
-    assert told.joints == ()
-    assert views.remarks(told) == ()
+    result = evaluated(true=NOBODY)
+    assert result.summary is None
+    assert result.joints == ()
+    assert views.remarks(result) == ()
 
 
 def test_perfect_skeleton_is_found_whole():
-    told = evaluated()
-    s = told.summary
+    result = evaluated()
+    s = result.summary
     assert s.scored == s.found == s.close == sum(TRUTH.scored) > 8
     assert (s.missing, s.spurious, s.excused, s.tree_edit, s.tree_shape) == (0, 0, 0, 0, 0)
     assert s.tips == s.tips_found > 3
@@ -70,16 +70,16 @@ def test_perfect_skeleton_is_found_whole():
     assert s.chamfer_moving.j2j == pytest.approx(0.0, abs=1e-9)
     assert s.overlap_moving.iou == pytest.approx(100.0)
     assert s.length_variation < 60
-    assert told.height == HEIGHT
-    assert views.remarks(told) == (f"{s.scored} of {s.scored} joints found, mean error 0.00 % of the height",)
+    assert result.height == HEIGHT
+    assert views.remarks(result) == (f"{s.scored} of {s.scored} joints found, mean error 0.00 % of the height",)
 
 
 def test_generated_sequence_brings_its_own_truth_and_its_true_parts():
-    told = evaluated(true=NOBODY, observed=OBSERVED)
-    assert told.truth == "synth"
-    assert told.summary.found == told.summary.scored
-    parts = told.summary.parts
-    assert parts.parts == parts.true_parts == told.summary.scored + 1
+    result = evaluated(true=NOBODY, observed=OBSERVED)
+    assert result.truth == "synth"
+    assert result.summary.found == result.summary.scored
+    parts = result.summary.parts
+    assert parts.parts == parts.true_parts == result.summary.scored + 1
     assert parts.rand > 0.98
     assert parts.adjusted_rand > 0.9
     assert parts.mean_iou > 0.85
@@ -94,32 +94,32 @@ def test_one_part_for_the_whole_body_agrees_with_the_true_parts_by_chance_alone(
 
 
 def test_joint_that_is_off_is_off_by_that_much():
-    told = evaluated(skeleton=moved(FIRST, [0, 0.03 * HEIGHT, 0]))
-    row = next(j for j in told.joints if j.found == PERFECT.names[FIRST])
+    result = evaluated(skeleton=moved(FIRST, [0, 0.03 * HEIGHT, 0]))
+    row = next(j for j in result.joints if j.found == PERFECT.names[FIRST])
     assert row.percent == pytest.approx(3.0)
     assert (row.mean, row.deviation, row.worst) == pytest.approx((0.03 * HEIGHT, 0.0, 0.03 * HEIGHT))
-    s = told.summary
+    s = result.summary
     assert (s.found, s.close) == (s.scored, s.scored - 1)
     assert s.percent == pytest.approx(3.0 / s.scored)
     assert s.jitter == pytest.approx(0.0, abs=1e-6)
 
 
 def test_joint_that_is_too_far_off_is_missing_and_spurious():
-    told = evaluated(skeleton=moved(FIRST, [0.4 * HEIGHT, 0.4 * HEIGHT, 0]))
-    s = told.summary
+    result = evaluated(skeleton=moved(FIRST, [0.4 * HEIGHT, 0.4 * HEIGHT, 0]))
+    s = result.summary
     assert (s.found, s.missing, s.spurious) == (s.scored - 1, 1, 1)
-    assert told.spurious == (PERFECT.names[FIRST],)
-    lost = next(j for j in told.joints if j.name == PERFECT.names[FIRST])
+    assert result.spurious == (PERFECT.names[FIRST],)
+    lost = next(j for j in result.joints if j.name == PERFECT.names[FIRST])
     assert lost.found is None
     assert lost.nearest > 5.0
-    assert f"missing: {lost.name}" in views.remarks(told)
-    assert "1 spurious" in views.remarks(told)[0]
+    assert f"missing: {lost.name}" in views.remarks(result)
+    assert "1 spurious" in views.remarks(result)[0]
 
 
 def test_joint_too_many_is_spurious_and_one_edit_of_the_tree():
-    told = evaluated(skeleton=more("extra", "joint", FIRST, FIRST, [0, 0, 0.3 * HEIGHT]))
-    s = told.summary
-    assert told.spurious == ("extra",)
+    result = evaluated(skeleton=more("extra", "joint", FIRST, FIRST, [0, 0, 0.3 * HEIGHT]))
+    s = result.summary
+    assert result.spurious == ("extra",)
     assert (s.found, s.missing, s.tree_edit, s.tree_shape) == (s.scored, 0, 1, 1)
     assert s.percent == 0.0
     assert s.overlap_moving.recall == pytest.approx(100.0)
@@ -157,13 +157,13 @@ def test_order_of_the_joints_does_not_matter():
         shuffled[field] = value
     shuffled["influence"] = place[PERFECT.influence].astype(np.int32)
     shuffled["label"] = np.where(PERFECT.label < 0, -1, place[PERFECT.label]).astype(np.int32)
-    told = {
+    result = {
         "names": tuple(PERFECT.names[j] for j in order),
         "kinds": tuple(PERFECT.kinds[j] for j in order),
         "parents": tuple(-1 if PERFECT.parents[j] < 0 else int(place[PERFECT.parents[j]]) for j in order),
     }
     here = evaluated(observed=OBSERVED)
-    there = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **shuffled, **told}), observed=OBSERVED)
+    there = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **shuffled, **result}), observed=OBSERVED)
     assert there.joints == here.joints
     assert there.summary.parts == here.summary.parts
     assert there.summary.tree_edit == here.summary.tree_edit
@@ -193,13 +193,13 @@ def test_one_rigid_part_is_evaluated_and_has_found_nothing():
 
 
 def test_frames_are_compared_by_their_numbers():
-    some = {f: getattr(PERFECT, f) for f in type(PERFECT).array_fields()}
+    selected = {f: getattr(PERFECT, f) for f in type(PERFECT).array_fields()}
     for field, spec in type(PERFECT).array_fields().items():
         if spec.dims[0].name == "frame":
-            some[field] = some[field][1::2]
-    told = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **some, "frames": (1, 3, 5)}))
-    assert told.summary.percent == 0.0
-    assert views.remarks(told)[-1] == "3 of the 6 frames of synth are compared; the sequence has no others"
+            selected[field] = selected[field][1::2]
+    result = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **selected, "frames": (1, 3, 5)}))
+    assert result.summary.percent == 0.0
+    assert views.remarks(result)[-1] == "3 of the 6 frames of synth are compared; the sequence has no others"
 
 
 def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
@@ -211,10 +211,10 @@ def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
     path = tmp_path / "walk.bvh"
     path.write_text(bvh(skeleton)[0])
     true = truth.function(params=TruthParams(file=str(path)), files=None)
-    told = evaluated(skeleton=skeleton, true=true)
-    assert told.summary.found == told.summary.scored > 5
-    assert told.summary.percent < 1e-3
-    assert told.summary.spurious == 0
+    result = evaluated(skeleton=skeleton, true=true)
+    assert result.summary.found == result.summary.scored > 5
+    assert result.summary.percent < 1e-3
+    assert result.summary.spurious == 0
 
 
 def test_truth_with_too_few_frames_is_refused():
@@ -249,5 +249,5 @@ def test_truth_at_another_frame_rate_is_refused():
 
 
 def test_height_that_nobody_says_is_the_longest_side_of_the_body():
-    told = evaluated(true=TRUTH.model_copy(update={"height": None}))
-    assert told.height == pytest.approx(np.ptp(PERFECT.vertices, axis=0).max())
+    result = evaluated(true=TRUTH.model_copy(update={"height": None}))
+    assert result.height == pytest.approx(np.ptp(PERFECT.vertices, axis=0).max())

@@ -53,23 +53,23 @@ def body():
 
 
 def test_mesh_read_back_moves_as_the_skeleton_says_in_every_frame(body):
-    found, truth = read(body), skinned(body)
+    file, truth = read(body), skinned(body)
     size = np.linalg.norm(np.ptp(body.vertices, axis=0))
     for t in range(len(body.frames)):
-        assert np.abs(found.skinned(t) - truth[t]).max() < 2e-6 * size
+        assert np.abs(file.skinned(t) - truth[t]).max() < 2e-6 * size
 
 
 def test_joints_read_back_are_where_the_skeleton_has_them(body):
-    found = read(body)
+    file = read(body)
     for t in range(len(body.frames)):
-        np.testing.assert_allclose(found.pose(t)[:, :3, 3], body.positions[t], atol=2e-5)
+        np.testing.assert_allclose(file.pose(t)[:, :3, 3], body.positions[t], atol=2e-5)
 
 
 def test_file_at_rest_is_the_reference_mesh(body):
-    found = read(body)
-    np.testing.assert_allclose(found.skinned(), body.vertices, atol=2e-5)
-    np.testing.assert_allclose(found.pose()[:, :3, 3], body.rest, atol=2e-5)
-    np.testing.assert_array_equal(found.faces, body.faces)
+    file = read(body)
+    np.testing.assert_allclose(file.skinned(), body.vertices, atol=2e-5)
+    np.testing.assert_allclose(file.pose()[:, :3, 3], body.rest, atol=2e-5)
+    np.testing.assert_array_equal(file.faces, body.faces)
 
 
 def test_every_joint_points_along_its_bone_at_rest(body):
@@ -82,17 +82,17 @@ def test_every_joint_points_along_its_bone_at_rest(body):
 
 
 def test_influences_are_at_most_four_and_sum_to_one(body):
-    found = read(body)
-    weight, joint = found.attribute("WEIGHTS_0"), found.attribute("JOINTS_0")
+    file = read(body)
+    weight, joint = file.attribute("WEIGHTS_0"), file.attribute("JOINTS_0")
     assert weight.shape[1] == joint.shape[1] == 4
     np.testing.assert_allclose(weight.sum(axis=1, dtype=np.float64), 1.0, atol=1e-6)
     assert not joint[weight == 0].any()
 
 
 def test_keys_keep_the_time_of_frames_that_were_left_out(body):
-    found = read(spider(frames=(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 20, 30)))
-    np.testing.assert_allclose(found.times, [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.6, 2.6], rtol=1e-6)
-    assert found.json["asset"]["extras"]["frames"][-2:] == [20, 30]
+    file = read(spider(frames=(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 20, 30)))
+    np.testing.assert_allclose(file.times, [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.6, 2.6], rtol=1e-6)
+    assert file.json["asset"]["extras"]["frames"][-2:] == [20, 30]
 
 
 def test_unknown_pace_is_thirty_frames_a_second_and_said_to_be_a_guess():
@@ -114,10 +114,10 @@ def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
 
 
 def test_turns_of_a_joint_take_the_short_way_from_key_to_key(body):
-    found = read(body)
-    for channel in found.json["animations"][0]["channels"]:
+    file = read(body)
+    for channel in file.json["animations"][0]["channels"]:
         if channel["target"]["path"] == "rotation":
-            q = found.array(found.json["animations"][0]["samplers"][channel["sampler"]]["output"])
+            q = file.array(file.json["animations"][0]["samplers"][channel["sampler"]]["output"])
             assert (np.sum(q[1:] * q[:-1], axis=1) >= 0).all()
 
 
@@ -129,8 +129,8 @@ def test_names_are_kept_whatever_they_are():
 @pytest.mark.parametrize(("up", "axis"), [("x", 0), ("y", 1), ("z", 2)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_axis_that_is_said_to_point_up_does_and_nothing_is_mirrored(body, up, axis, sign):
-    found = read(body, up="-" * (sign < 0) + up, scale=0.5)
-    X, Y = body.positions[3], found.pose(3)[:, :3, 3]
+    file = read(body, up="-" * (sign < 0) + up, scale=0.5)
+    X, Y = body.positions[3], file.pose(3)[:, :3, 3]
     np.testing.assert_allclose(Y[:, 1], 0.5 * sign * X[:, axis], atol=2e-5)
     turn = np.linalg.lstsq(X - X[0], Y - Y[0], rcond=None)[0]
     np.testing.assert_allclose(turn @ turn.T, 0.25 * np.eye(3), atol=1e-5)
@@ -138,8 +138,8 @@ def test_axis_that_is_said_to_point_up_does_and_nothing_is_mirrored(body, up, ax
 
 
 def test_parts_are_coloured_and_what_blends_is_white(body):
-    found = read(body)
-    colour = found.attribute("COLOR_0")
+    file = read(body)
+    colour = file.attribute("COLOR_0")
     assert (colour[body.label == -1] == 255).all()
     seen = [colour[body.label == part] for part in set(body.label.tolist()) - {-1}]
     assert all(len(np.unique(rows, axis=0)) == 1 for rows in seen)
@@ -163,15 +163,18 @@ def test_same_skeleton_gives_the_same_bytes(body):
 
 def test_khronos_validator_has_nothing_to_say(body, tmp_path):
     modules = os.pathsep.join([str(ROOT / ".venv" / "node_modules"), os.environ.get("NODE_PATH", "")])
-    told = {**os.environ, "NODE_PATH": modules}
+    environment = {**os.environ, "NODE_PATH": modules}
     node = shutil.which("node")
-    if node is None or subprocess.run([node, "-e", 'require("gltf-validator")'], env=told, capture_output=True).returncode:
+    if (
+        node is None
+        or subprocess.run([node, "-e", 'require("gltf-validator")'], env=environment, capture_output=True).returncode
+    ):
         pytest.skip("npm install gltf-validator brings the Khronos validator")
     (tmp_path / "validate.js").write_text(VALIDATE)
     for number, skeleton in enumerate([body, spider(names=tuple("<&> \n'é"), fps=None)]):
         (tmp_path / f"{number}.glb").write_bytes(written(skeleton, up="z", scale=0.01 if number else 1.0))
         command = [node, str(tmp_path / "validate.js"), str(tmp_path / f"{number}.glb")]
-        done = subprocess.run(command, env=told, capture_output=True, text=True, check=True)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         assert json.loads(done.stdout)["messages"] == []
 
 
@@ -184,7 +187,7 @@ def test_blender_has_bones_where_the_joints_are(body, tmp_path):
     command = [python, str(tmp_path / "blender.py"), str(tmp_path / "body.glb"), "10", str(len(body.frames))]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("HEADS"))[5:])
-    for t, heads in enumerate(found):
+    file = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("HEADS"))[5:])
+    for t, heads in enumerate(file):
         assert set(heads) == set(body.names)
         np.testing.assert_allclose([heads[name] for name in body.names], body.positions[t], atol=1e-3)

@@ -35,10 +35,10 @@ def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
     at = np.array([corner[v] for v in range(n)])
     files = views.files(ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body), (7,))
     assert list(files) == ["parts/frame_0007.ply"]
-    found = trimesh.load(io.BytesIO(files["parts/frame_0007.ply"]), file_type="ply", process=False)
-    np.testing.assert_allclose(found.vertices, skinned(body)[4], atol=1e-5)
-    np.testing.assert_array_equal(found.faces, body.faces)
-    np.testing.assert_array_equal(found.metadata["_ply_raw"]["vertex"]["data"]["part"], body.label)
+    mesh = trimesh.load(io.BytesIO(files["parts/frame_0007.ply"]), file_type="ply", process=False)
+    np.testing.assert_allclose(mesh.vertices, skinned(body)[4], atol=1e-5)
+    np.testing.assert_array_equal(mesh.faces, body.faces)
+    np.testing.assert_array_equal(mesh.metadata["_ply_raw"]["vertex"]["data"]["part"], body.label)
 
 
 def test_frame_that_is_not_the_one_that_was_aligned_is_refused(source):
@@ -54,6 +54,6 @@ def test_label_is_that_of_the_part_with_the_largest_share_of_the_point():
     odd = int(np.argmin([np.sum(row == x) for x in row]))
     share = np.full(3, 0.3)
     share[odd] = 0.4
-    told = input_labels(body, onto([0, flat, flat, -1], [[1, 0, 0], share, np.eye(3)[odd], [0, 0, 0]]))
-    assert told.tolist() == [a, row[(odd + 1) % 3], row[odd], -1]
+    labels = input_labels(body, onto([0, flat, flat, -1], [[1, 0, 0], share, np.eye(3)[odd], [0, 0, 0]]))
+    assert labels.tolist() == [a, row[(odd + 1) % 3], row[odd], -1]
     assert {a, b, c} <= {0, 1}

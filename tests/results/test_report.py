@@ -43,9 +43,9 @@ def plain() -> str:
 
 
 def test_facts_are_at_the_head_of_the_page(plain: str) -> None:
-    told = facts(plain)
-    assert (told["frames"], told["joints"], told["intervals"]) == ("12", "2", "2")
-    assert (told["unit"], told["frames a second"]) == ("mm", "10")
+    content = facts(plain)
+    assert (content["frames"], content["joints"], content["intervals"]) == ("12", "2", "2")
+    assert (content["unit"], content["frames a second"]) == ("mm", "10")
 
 
 def test_every_joint_is_in_the_table(plain: str) -> None:
@@ -56,11 +56,11 @@ def test_every_joint_is_in_the_table(plain: str) -> None:
 
 def test_truth_has_a_chapter_only_where_there_is_one(plain: str) -> None:
     assert "truth" not in headings(plain)
-    told = page(evaluation=judged(spider()))
-    assert "truth" in headings(told)
-    assert "1 of 2 joints found" in told
-    assert "elbow &lt;i&gt;" in told
-    assert "missing" in told
+    content = page(evaluation=judged(spider()))
+    assert "truth" in headings(content)
+    assert "1 of 2 joints found" in content
+    assert "elbow &lt;i&gt;" in content
+    assert "missing" in content
 
 
 def test_page_without_warnings_has_no_box_for_them() -> None:
@@ -69,10 +69,10 @@ def test_page_without_warnings_has_no_box_for_them() -> None:
 
 
 def test_box_of_warnings_names_frames_and_joints() -> None:
-    told = artifacts()
+    content = artifacts()
     doubt = confident(spider().frames, failed=(3, 4), doubted={9: 0.12})
     cleaned = Cleaning(components=2, components_kept=1)
-    removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in told["mesh"].items()}
+    removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in content["mesh"].items()}
     body = spider(support=np.full(len(spider().names), 2))
     sentences = warnings(page(frame_confidence=doubt, mesh=removed, skeleton=body))
     assert "alignment failed in frames 3–4: the aligned body does not fit the mesh there" in sentences
@@ -84,9 +84,9 @@ def test_box_of_warnings_names_frames_and_joints() -> None:
 def test_body_without_joints_says_that_it_is_one_rigid_part() -> None:
     whole = spider()
     kinds = tuple("leaf" if kind == "joint" else kind for kind in whole.kinds)
-    told = page(skeleton=spider(kinds=kinds))
-    assert any("one rigid part" in text for text in warnings(told))
-    assert "0 joints in 12 frames" in told
+    content = page(skeleton=spider(kinds=kinds))
+    assert any("one rigid part" in text for text in warnings(content))
+    assert "0 joints in 12 frames" in content
 
 
 def test_handle_of_the_surface_and_a_skin_far_from_the_meshes_are_warned_of(plain: str) -> None:
@@ -126,15 +126,15 @@ def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
 def test_no_word_from_outside_becomes_markup(field: str) -> None:
     bad = "</script><script>alert(1)</script>\n<img src=x onerror=alert(1)>$\\frac$ & {{run}}"
     if field == "title":
-        told = page(ReportParams(frames=2, views=1, title=bad))
+        content = page(ReportParams(frames=2, views=1, title=bad))
     elif field == "unit":
         sequence = artifacts()["sequence"].model_copy(update={"unit": bad})
-        told = page(skeleton=spider(unit=bad), sequence=sequence)
+        content = page(skeleton=spider(unit=bad), sequence=sequence)
     else:
-        told = page(skeleton=spider(names=(bad, *spider().names[1:])))
-    assert "<script>alert" not in told
-    assert "<img src=x" not in told
-    assert told.count(RUN) == 1, "the record of the run has one place"
+        content = page(skeleton=spider(names=(bad, *spider().names[1:])))
+    assert "<script>alert" not in content
+    assert "<img src=x" not in content
+    assert content.count(RUN) == 1, "the record of the run has one place"
 
 
 def test_page_is_whole_and_asks_for_nothing(plain: str) -> None:

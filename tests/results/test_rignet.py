@@ -15,22 +15,22 @@ def body():
 
 
 def lines(skeleton):
-    told = views.files(rignet(skeleton), ())["rignet/skeleton.txt"].decode().splitlines()
-    return {word: [line.split()[1:] for line in told if line.split()[0] == word] for word in ("joints", "root", "hier", "skin")}
+    rig = views.files(rignet(skeleton), ())["rignet/skeleton.txt"].decode().splitlines()
+    return {word: [line.split()[1:] for line in rig if line.split()[0] == word] for word in ("joints", "root", "hier", "skin")}
 
 
 def test_every_line_is_of_a_known_kind_and_no_joint_is_missing(body):
-    told = lines(body)
-    assert sum(map(len, told.values())) == len(views.files(rignet(body), ())["rignet/skeleton.txt"].decode().splitlines())
-    assert [row[0] for row in told["joints"]] == list(body.names)
-    np.testing.assert_allclose([[float(x) for x in row[1:]] for row in told["joints"]], body.rest)
+    rig = lines(body)
+    assert sum(map(len, rig.values())) == len(views.files(rignet(body), ())["rignet/skeleton.txt"].decode().splitlines())
+    assert [row[0] for row in rig["joints"]] == list(body.names)
+    np.testing.assert_allclose([[float(x) for x in row[1:]] for row in rig["joints"]], body.rest)
 
 
 def test_hierarchy_leads_from_the_root_to_every_joint(body):
-    told = lines(body)
-    assert told["root"] == [["trunk"]]
+    rig = lines(body)
+    assert rig["root"] == [["trunk"]]
     pairs = [(body.names[p], body.names[j]) for j, p in enumerate(body.parents) if p >= 0]
-    assert [tuple(row) for row in told["hier"]] == pairs
+    assert [tuple(row) for row in rig["hier"]] == pairs
 
 
 def test_skin_gives_every_vertex_weights_that_sum_to_one(body):
@@ -45,12 +45,12 @@ def test_skin_gives_every_vertex_weights_that_sum_to_one(body):
 def test_mesh_beside_it_is_the_one_whose_vertices_are_numbered(body, tmp_path):
     path = tmp_path / "skeleton.obj"
     path.write_bytes(views.files(rignet(body), ())["rignet/skeleton.obj"])
-    found = trimesh.load(path, process=False, maintain_order=True)
-    np.testing.assert_allclose(found.vertices, body.vertices, rtol=1e-7, atol=1e-7)
-    np.testing.assert_array_equal(found.faces, body.faces)
+    mesh = trimesh.load(path, process=False, maintain_order=True)
+    np.testing.assert_allclose(mesh.vertices, body.vertices, rtol=1e-7, atol=1e-7)
+    np.testing.assert_array_equal(mesh.faces, body.faces)
 
 
 def test_names_are_single_words_still_unique():
-    told = lines(spider(names=("a b", "a\nb", "a_b", "é", "<script>", "", "7")))
-    assert len({row[0] for row in told["joints"]}) == 7
-    assert all(len(row) == 4 for row in told["joints"])
+    rig = lines(spider(names=("a b", "a\nb", "a_b", "é", "<script>", "", "7")))
+    assert len({row[0] for row in rig["joints"]}) == 7
+    assert all(len(row) == 4 for row in rig["joints"])

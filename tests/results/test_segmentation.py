@@ -26,16 +26,16 @@ def gathered(shift=0.0):
 
 
 def test_every_frame_has_as_many_labels_as_its_file_has_vertices():
-    body, counts, found = gathered()
-    assert found.frame.tolist() == list(body.frames)
+    body, counts, segments = gathered()
+    assert segments.frame.tolist() == list(body.frames)
     for i, frame in enumerate(body.frames):
-        mine = found.label[found.begin[i] : found.end[i]]
-        assert mine.tolist() == [body.label[body.faces[frame, 0]]] * counts[frame]
-    assert found.end[-1] == len(found.label)
+        labels = segments.label[segments.begin[i] : segments.end[i]]
+        assert labels.tolist() == [body.label[body.faces[frame, 0]]] * counts[frame]
+    assert segments.end[-1] == len(segments.label)
 
 
 def test_error_is_the_distance_between_skinned_and_aligned():
-    _, _, found = gathered(shift=0.25)
-    np.testing.assert_allclose([found.error, found.error_95], 0.25, rtol=1e-6)
-    (told,) = views.remarks(found)
-    assert told.endswith("and the aligned meshes: 0.25 mm root mean square, 95 % below 0.25 mm")
+    _, _, segments = gathered(shift=0.25)
+    np.testing.assert_allclose([segments.error, segments.error_95], 0.25, rtol=1e-6)
+    (remark,) = views.remarks(segments)
+    assert remark.endswith("and the aligned meshes: 0.25 mm root mean square, 95 % below 0.25 mm")

@@ -23,33 +23,33 @@ def text(skeleton):
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
-    told = json.loads(text(body))
-    assert list(told) == ["format", "unit", "fps", "frames", "joints", "positions", "bones", "confidence"]
-    assert told["format"] == "kinetree.skeleton/1"
-    assert (told["unit"], told["fps"], told["frames"]) == ("mm", 10.0, list(range(12)))
-    assert told["joints"][0] == {"name": "trunk", "parent": None, "kind": "root"}
-    assert told["joints"][2] == {"name": "hand", "parent": 1, "kind": "leaf"}
-    np.testing.assert_array_equal(told["positions"], body.positions)
-    np.testing.assert_array_equal(told["confidence"], body.confidence)
+    content = json.loads(text(body))
+    assert list(content) == ["format", "unit", "fps", "frames", "joints", "positions", "bones", "confidence"]
+    assert content["format"] == "kinetree.skeleton/1"
+    assert (content["unit"], content["fps"], content["frames"]) == ("mm", 10.0, list(range(12)))
+    assert content["joints"][0] == {"name": "trunk", "parent": None, "kind": "root"}
+    assert content["joints"][2] == {"name": "hand", "parent": 1, "kind": "leaf"}
+    np.testing.assert_array_equal(content["positions"], body.positions)
+    np.testing.assert_array_equal(content["confidence"], body.confidence)
 
 
 def test_bones_are_as_long_as_the_way_between_their_joints_in_every_frame(body):
-    told = json.loads(text(body))
-    X = np.array(told["positions"])
-    assert [bone["child"] for bone in told["bones"]] == [1, 2, 3, 4, 5, 6]
-    for bone in told["bones"]:
+    content = json.loads(text(body))
+    X = np.array(content["positions"])
+    assert [bone["child"] for bone in content["bones"]] == [1, 2, 3, 4, 5, 6]
+    for bone in content["bones"]:
         np.testing.assert_allclose(np.linalg.norm(X[:, bone["child"]] - X[:, bone["parent"]], axis=1), bone["length"])
 
 
 def test_file_follows_the_published_schema_and_a_wrong_one_does_not(body):
     jsonschema = pytest.importorskip("jsonschema", reason="pip install jsonschema brings the validator")
-    told = json.loads(text(spider(fps=None, unit=None)))
+    content = json.loads(text(spider(fps=None, unit=None)))
     jsonschema.Draft202012Validator.check_schema(schema())
-    jsonschema.validate(told, schema())
+    jsonschema.validate(content, schema())
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**told, "joints": [{"name": "a", "parent": None, "kind": "wing"}]}, schema())
+        jsonschema.validate({**content, "joints": [{"name": "a", "parent": None, "kind": "wing"}]}, schema())
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**told, "more": 1}, schema())
+        jsonschema.validate({**content, "more": 1}, schema())
 
 
 def test_model_reads_what_was_written(body):
@@ -60,6 +60,6 @@ def test_model_reads_what_was_written(body):
 
 def test_names_are_kept_whatever_they_are_and_the_file_is_ascii():
     names = ("a b", "<script>alert(1)</script>", "línea\n2", "關節", '"', "\\", "c")
-    told = text(spider(names=names))
-    assert [joint["name"] for joint in json.loads(told)["joints"]] == list(names)
-    assert told.isascii()
+    content = text(spider(names=names))
+    assert [joint["name"] for joint in json.loads(content)["joints"]] == list(names)
+    assert content.isascii()

@@ -1,25 +1,70 @@
 """Figures of the structure: chapters whose pictures are complete files."""
 
 import numpy as np
+import pytest
+from matplotlib.text import Text
 from results.rigged_bodies import spider
+from results.sample_derivation import parts_of, tree_of
 from results.sample_report import UP
-from traced import traces_of
 
+from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.schemas.structure.rigid_parts import RigidParts
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 from kinetree.tasks.results.structure_figures import structure_figures
 
+FIGURES = (cones, merging, elimination, structure, lengths)
 
-def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_traces() -> None:
+
+def of(body: Skeleton) -> StructureFigures:
+    return structure_figures(body, parts_of(body), tree_of(body), UP)
+
+
+def words(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> list[str]:
+    """All text of every figure."""
+    artifacts = {"skeleton": body, "rigid_parts": parts, "kinematic_tree": tree}
+    figures = [draw(lambda name, frame=None: artifacts[name], []) for draw in FIGURES]
+    return [" ".join(text.get_text() for text in figure.findobj(Text)) for figure in figures]
+
+
+def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_tree() -> None:
     body = spider()
-    told = structure_figures(body, traces_of(body), UP)
+    figures = of(body)
     begins = {"png": b"\x89PNG", "svg": b"<?xml"}
-    for chapter in told.chapters:
-        files = told.picture_files(chapter)
-        assert len(files) == len(chapter.pictures) > 0
+    for chapter in figures.chapters:
+        files = figures.picture_files(chapter)
+        assert len(files) == len(chapter.pictures) == len(FIGURES)
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
-    assert told.end[-1] == len(told.content)
-    np.testing.assert_array_equal(told.length_variation, traces_of(body).variation)
+    assert figures.end[-1] == len(figures.content)
+    np.testing.assert_array_equal(figures.length_variation, tree_of(body).length_variation)
 
 
-def test_same_traces_are_the_same_bytes() -> None:
+def test_same_derivation_gives_the_same_bytes() -> None:
+    assert of(spider()) == of(spider())
+
+
+def test_pictures_count_what_was_cut_removed_and_dropped() -> None:
     body = spider()
-    assert structure_figures(body, traces_of(body), UP) == structure_figures(body, traces_of(body), UP)
+    parts, tree = parts_of(body), tree_of(body)
+    text = words(body, parts, tree)
+    assert f"first cut: {int(parts.initial.max()) + 1} parts" in text[2]
+    assert f"{len(parts.origin)} parts left, 2 removed" in text[2]
+    assert "crossed: 1 dropped (1 slides)" in text[3]
+    assert f"{body.kinds.count('joint')} joints left" in text[3]
+
+
+@pytest.mark.parametrize("removed", [0, 2])
+def test_pictures_say_where_there_is_nothing_to_see(removed: int) -> None:
+    body = spider()
+    parts, tree = parts_of(body), tree_of(body)
+    none = {"tip": np.zeros(0, int), "run": np.zeros((0, 6), int), "merge": np.zeros((0, 6))}
+    outside = np.full(len(body.vertices), -1)
+    fields = {name: getattr(parts, name) for name in RigidParts.model_fields}
+    bare = RigidParts(
+        **{**fields, **none, "cone": outside, "ring": outside, "removed": parts.removed[:removed], "cost": parts.cost[:removed]}
+    )
+    text = words(body, bare, tree)
+    assert "no cones" in text[0]
+    assert "no cones" in text[1]
+    assert f"{removed} removed" in text[2]

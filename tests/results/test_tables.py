@@ -22,12 +22,12 @@ def rows(skeleton, name):
 
 
 def test_trajectories_are_a_row_a_frame_with_its_time(body):
-    head, *told = rows(body, "positions")
+    head, *values = rows(body, "positions")
     assert head[:5] == ["frame", "seconds", "trunk.x", "trunk.y", "trunk.z"]
-    found = np.array(told, dtype=float)
-    np.testing.assert_array_equal(found[:, 0], body.frames)
-    np.testing.assert_allclose(found[:, 1], np.arange(12) / 10)
-    np.testing.assert_allclose(found[:, 2:].reshape(body.positions.shape), body.positions, rtol=1e-8, atol=1e-7)
+    numbers = np.array(values, dtype=float)
+    np.testing.assert_array_equal(numbers[:, 0], body.frames)
+    np.testing.assert_allclose(numbers[:, 1], np.arange(12) / 10)
+    np.testing.assert_allclose(numbers[:, 2:].reshape(body.positions.shape), body.positions, rtol=1e-8, atol=1e-7)
 
 
 def test_time_is_empty_where_nobody_knows_it():
@@ -35,16 +35,16 @@ def test_time_is_empty_where_nobody_knows_it():
 
 
 def test_confidence_is_told_of_every_joint(body):
-    head, *told = rows(body, "confidence")
+    head, *values = rows(body, "confidence")
     assert head[2:] == list(body.names)
-    assert {value for row in told for value in row[2:]} == {"0.75"}
+    assert {value for row in values for value in row[2:]} == {"0.75"}
 
 
 def test_bones_have_their_length_and_unit(body):
-    head, *told = rows(body, "bones")
+    head, *values = rows(body, "bones")
     assert head == ["parent", "child", "length", "unit"]
-    assert told[0] == ["trunk", "arm", "4", "mm"]
-    assert len(told) == 6
+    assert values[0] == ["trunk", "arm", "4", "mm"]
+    assert len(values) == 6
 
 
 def test_angle_is_180_in_line_90_at_a_right_angle_and_0_folded(body):

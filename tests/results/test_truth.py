@@ -28,57 +28,57 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_no_file_is_no_truth() -> None:
-    told = read()
-    assert (told.names, told.frames, told.source) == ((), (), "")
+    true = read()
+    assert (true.names, true.frames, true.source) == ((), (), "")
 
 
 def test_file_and_recipe_of_the_same_body_say_the_same(file: Path) -> None:
-    told = read(file=str(file))
-    assert told.source == "truth.json"
-    assert told.model_copy(update={"source": "synth"}) == synthetic(RECIPE)
+    true = read(file=str(file))
+    assert true.source == "truth.json"
+    assert true.model_copy(update={"source": "synth"}) == synthetic(RECIPE)
 
 
 def test_file_that_changed_is_read_again(file: Path) -> None:
     before = read(file=str(file))
-    told = json.loads(file.read_text())
-    told["positions"][0][0][0] += 1.0
-    file.write_text(json.dumps(told, indent=1))
+    true = json.loads(file.read_text())
+    true["positions"][0][0][0] += 1.0
+    file.write_text(json.dumps(true, indent=1))
     assert read(file=str(file)).positions[0, 0, 0] == before.positions[0, 0, 0] + 1.0
 
 
 def test_unit_that_the_user_says_stands_in_for_one_the_file_does_not_say(file: Path) -> None:
-    told = json.loads(file.read_text())
+    true = json.loads(file.read_text())
     assert read(file=str(file), unit="cm").unit == "mm"
-    file.write_text(json.dumps({**told, "unit": "unknown"}))
+    file.write_text(json.dumps({**true, "unit": "unknown"}))
     assert read(file=str(file), unit="cm").unit == "cm"
 
 
 def test_body_of_a_generated_sequence_tells_what_carries_each_vertex() -> None:
     source, mesh, _ = observed(RECIPE)
-    found = true_carriers(synthetic(RECIPE), source[1], mesh[1].vertices, 1, "mm")
-    assert found is not None
+    carriers = true_carriers(synthetic(RECIPE), source[1], mesh[1].vertices, 1, "mm")
+    assert carriers is not None
     most = body(RECIPE).weights().argmax(axis=1)
-    assert (found[0] == most).mean() > 0.7  # the nearest limb and the heaviest weight differ where limbs blend
+    assert (carriers[0] == most).mean() > 0.7  # the nearest limb and the heaviest weight differ where limbs blend
     assert true_carriers(synthetic(RECIPE), Source(content="", path=""), mesh[1].vertices, 1, "mm") is None
 
 
 def test_true_body_tells_what_carries_the_nearest_vertex(file: Path, tmp_path: Path) -> None:
-    made = body(RECIPE)
-    V = np.concatenate([made.frame(t)[0] for t in range(3)])
+    generated = body(RECIPE)
+    V = np.concatenate([generated.frame(t)[0] for t in range(3)])
     npz = tmp_path / "body.npz"
-    np.savez(npz, vertices=V.astype(np.float32), weights=made.weights(), weight_names=made.figure.names)
-    told = read(file=str(file), body=str(npz))
-    found = true_carriers(told, Source(content="", path=""), made.frame(2)[0] / 1000 + 1e-7, 2, "m")
-    assert found is not None
-    assert np.array_equal(found[0], made.weights().argmax(axis=1))
-    assert (found[1] == -1).all()
+    np.savez(npz, vertices=V.astype(np.float32), weights=generated.weights(), weight_names=generated.figure.names)
+    true = read(file=str(file), body=str(npz))
+    carriers = true_carriers(true, Source(content="", path=""), generated.frame(2)[0] / 1000 + 1e-7, 2, "m")
+    assert carriers is not None
+    assert np.array_equal(carriers[0], generated.weights().argmax(axis=1))
+    assert (carriers[1] == -1).all()
 
 
 def test_weights_of_bones_are_named_by_the_numbers_of_both_joints(file: Path, tmp_path: Path) -> None:
-    made, told = body(RECIPE), synthetic(RECIPE)
-    child = next(j for j, p in enumerate(told.parents) if p == 1)
+    generated, true = body(RECIPE), synthetic(RECIPE)
+    child = next(j for j, p in enumerate(true.parents) if p == 1)
     npz = tmp_path / "body.npz"
-    V = np.concatenate([made.frame(t)[0] for t in range(3)])
+    V = np.concatenate([generated.frame(t)[0] for t in range(3)])
     held = {"vertices": V.astype(np.float32), "weights": np.ones((len(V) // 3, 1))}
     np.savez(npz, **held, weight_names=[f"bone_1_{child}"])
     read_back = read(file=str(file), body=str(npz))

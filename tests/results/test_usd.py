@@ -51,8 +51,8 @@ def test_every_validator_that_usdchecker_runs_is_content(opened):
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     assert len(validators) >= 10
     for skeleton in (spider(), spider(names=tuple("<&> \n'é"), fps=None, unit=None)):
-        found = UsdValidation.ValidationContext(validators).Validate(opened(skeleton, up="z"))
-        assert [(e.GetName(), e.GetMessage()) for e in found] == []
+        results = UsdValidation.ValidationContext(validators).Validate(opened(skeleton, up="z"))
+        assert [(e.GetName(), e.GetMessage()) for e in results] == []
 
 
 @needs_usd
@@ -63,8 +63,8 @@ def test_joints_are_where_the_skeleton_has_them_in_every_frame(opened):
     skeleton, _ = queries(opened(body))
     for t, frame in enumerate(body.frames):
         at = UsdGeom.XformCache(frame)
-        found = np.array(skeleton.ComputeJointWorldTransforms(at))[:, 3, :3]
-        np.testing.assert_allclose(found, body.positions[t], atol=1e-4)
+        results = np.array(skeleton.ComputeJointWorldTransforms(at))[:, 3, :3]
+        np.testing.assert_allclose(results, body.positions[t], atol=1e-4)
 
 
 @needs_usd

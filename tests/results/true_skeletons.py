@@ -21,36 +21,36 @@ def generated(figure: str = "human", frames: int = 6, vertices: int = 600) -> st
 
 def perfect(written: str) -> Skeleton:
     """The true skeleton as a run would leave it: root, joints that are scored, tips; the surface follows the true weights."""
-    made, truth = body(written), synthetic(written)
+    rig, truth = body(written), synthetic(written)
     tip = np.array([kind == "tip" for kind in truth.kinds])
-    kept = np.array(truth.scored) | tip | (np.array(truth.parents) < 0)
-    above = contracted_tree(truth.parents, list(kept))
-    stay = np.flatnonzero(kept)
-    carried = np.array(remaining_ancestors(truth.parents, list(kept)))
-    W = np.zeros((len(made.skin.V), len(stay)))
-    np.add.at(W.T, np.searchsorted(stay, carried), made.weights().T)
+    remains = np.array(truth.scored) | tip | (np.array(truth.parents) < 0)
+    above = contracted_tree(truth.parents, list(remains))
+    stay = np.flatnonzero(remains)
+    carried = np.array(remaining_ancestors(truth.parents, list(remains)))
+    W = np.zeros((len(rig.skin.V), len(stay)))
+    np.add.at(W.T, np.searchsorted(stay, carried), rig.weights().T)
     influence = np.argsort(-W, axis=1, kind="stable")[:, :4]
     weight = np.take_along_axis(W, influence, axis=1)
     weight /= weight.sum(axis=1, keepdims=True)
     kinds = ["root" if p < 0 else "leaf" if tip[j] else "joint" for j, p in zip(stay, above, strict=True)]
-    rotation = made.G[:, [truth.parents[j] if tip[j] else j for j in stay]]
+    rotation = rig.G[:, [truth.parents[j] if tip[j] else j for j in stay]]
     label = np.where(W.max(axis=1) > 0.9, W.argmax(axis=1), -1)
     return Skeleton(
-        frames=tuple(range(len(made.X))),
-        fps=made.fps,
-        unit=made.figure.unit,
+        frames=tuple(range(len(rig.X))),
+        fps=rig.fps,
+        unit=rig.figure.unit,
         names=tuple(truth.names[j] for j in stay),
         parents=tuple(above),
         kinds=tuple(kinds),
-        positions=made.X[:, stay],
+        positions=rig.X[:, stay],
         rotation=rotation,
-        confidence=np.ones((len(made.X), len(stay))),
-        rest=np.array(made.figure.rest)[stay],
+        confidence=np.ones((len(rig.X), len(stay))),
+        rest=np.array(rig.figure.rest)[stay],
         degrees=np.zeros(len(stay)),
         drift=np.zeros(len(stay)),
-        support=np.full(len(stay), len(made.X), np.int32),
-        vertices=made.skin.V,
-        faces=made.skin.F.astype(np.int32),
+        support=np.full(len(stay), len(rig.X), np.int32),
+        vertices=rig.skin.V,
+        faces=rig.skin.F.astype(np.int32),
         label=label.astype(np.int32),
         influence=influence.astype(np.int32),
         weight=weight,
@@ -59,16 +59,16 @@ def perfect(written: str) -> Skeleton:
 
 def observed(written: str) -> tuple[dict[int, Source], dict[int, Mesh], dict[int, Projection]]:
     """What a run reads of the same body: every vertex of every frame lies on a corner of the reference mesh."""
-    made = body(written)
-    F = made.skin.F
-    face, corner = np.zeros(len(made.skin.V), np.int32), np.zeros(len(made.skin.V), np.int64)
+    rig = body(written)
+    F = rig.skin.F
+    face, corner = np.zeros(len(rig.skin.V), np.int32), np.zeros(len(rig.skin.V), np.int64)
     for c in range(3):
         face[F[:, c]], corner[F[:, c]] = np.arange(len(F)), c
-    same = np.arange(len(made.skin.V), dtype=np.int32)
+    same = np.arange(len(rig.skin.V), dtype=np.int32)
     where = Projection(face=face, share=np.eye(3)[corner], distance=np.zeros(len(same)))
-    source = {t: Source(content=str(t), path="synth", part=t, kind="synth", recipe=written) for t in range(len(made.X))}
+    source = {t: Source(content=str(t), path="synth", part=t, kind="synth", recipe=written) for t in range(len(rig.X))}
     mesh = {
-        t: Mesh(vertices=made.frame(t)[0], faces=F.astype(np.int32), vertex_of_input=same, cleaning=Cleaning()) for t in source
+        t: Mesh(vertices=rig.frame(t)[0], faces=F.astype(np.int32), vertex_of_input=same, cleaning=Cleaning()) for t in source
     }
     return source, mesh, dict.fromkeys(source, where)
 

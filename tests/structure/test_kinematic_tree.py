@@ -11,9 +11,19 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTr
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
-from kinetree.tasks.structure.rigid_parts import tips_of
 
 FIRST = 10
+
+
+def rigid(body: Known, frames: tuple[int, ...]) -> RigidParts:
+    """The true parts; how they were cut decides nothing."""
+    none = np.zeros(len(body.V), int)
+    return RigidParts(
+        frames=frames, label=body.label, rigid=np.ones(len(body.V)), rotation=body.R, translation=body.t,
+        residual=body.residual, tip=none[:0], cone=none - 1, ring=none - 1, run=np.zeros((0, 4), int), merge=np.zeros((0, 4)),
+        merge_threshold=0.002, initial=body.label, removed=none[:0], cost=np.zeros(0), cost_threshold=0.0025,
+        origin=np.arange(body.R.shape[1]),
+    )  # fmt: skip
 
 
 def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), **params: float) -> KinematicTree:
@@ -24,9 +34,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
         size=float(np.sqrt(body.area.sum())), fixed=True, leaves=len(tips), free=True,
         score=np.zeros(count), before=np.array([1, 2, -1, *range(2, count - 1)]),
     )  # fmt: skip
-    parts = RigidParts(
-        frames=frames, label=body.label, rigid=np.ones(len(body.V)), rotation=body.R, translation=body.t, residual=body.residual
-    )
+    parts = rigid(body, frames)
     zero, one = np.zeros(len(body.V)), np.ones(len(body.V))
     aligned = {
         f: Alignment(vertices=x, residual=zero, stretch=one, trust=one if trust is None else trust[k], uncovered=0.0)
@@ -37,7 +45,6 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
         frames=frames, rows=np.zeros((len(tips), count), int), positions=positions, kept=np.ones((1, len(tips)), bool),
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
-    assert tips_of(leaves, reference).tolist() == list(tips)
     sequence = Sequence(frames=frames, fps=25.0, unit="mm")
     return kinematic_tree(reference, parts, aligned, {}, leaves, sequence, KinematicTreeParams(**params))
 
@@ -81,29 +88,27 @@ def test_frame_that_is_not_trusted_has_a_pose_without_confidence() -> None:
     assert np.isfinite(found.positions).all()
     assert found.confidence[5].max() < 0.05 < 0.9 < found.confidence[6].min()
     assert found.support.tolist() == [15] * len(found.names)
-    assert not found.doubted.any(), "every vertex was followed: there is nothing to ask the surface"
+    assert np.flatnonzero(found.uncertain).tolist() == [5]
 
 
-def test_leaf_not_seen_in_the_reference_frame_is_no_end() -> None:
-    frames = (3, 4)
-    V = np.eye(3)
-    reference = Reference(
-        frames=frames,
-        frame=4,
-        vertices=V,
-        faces=np.array([[0, 1, 2]]),
-        size=1.0,
-        fixed=True,
-        leaves=1,
-        free=True,
-        score=np.zeros(2),
-        before=np.array([1, -1]),
-    )
-    positions = np.full((3, 2, 3), np.nan)
-    positions[0], positions[2] = V[1], V[2]
-    none = np.zeros(0, int)
-    leaves = Leaves(
-        frames=frames, rows=np.array([[0, 0], [1, -1], [2, 1]]), positions=positions, kept=np.array([[True, True, False]]),
-        lost=none, lost_begin=none, lost_end=none,
-    )  # fmt: skip
-    assert tips_of(leaves, reference).tolist() == [1]
+def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:
+    turn = swings(16, 2, degrees=30.0)
+    turn[:, 1] = swings(16, 2, degrees=2.0)[:, 1]
+    found = told(chain((0.0,), turn))
+    assert sorted(found.joint_of_part.tolist()) == [-1, 0]
+    assert found.dropped == ((int(np.argmin(found.joint_of_part)), "still"),)
+    assert found.in_tree.tolist() == [True]
+
+
+def test_body_of_one_part_has_no_borders_and_no_bones() -> None:
+    body = chain((0.0,), swings(12, 2))
+    stiff = body._replace(label=np.zeros(len(body.V), int), R=body.R[:, :1], t=body.t[:, :1], x=np.stack([body.V] * 12))
+    alone = told(stiff)
+    assert (len(alone.pair), alone.joint_of_part.tolist(), alone.free_length.tolist()) == (0, [0], [0.0])
+
+
+def test_bones_of_rigid_arms_hardly_vary_before_their_lengths_are_held() -> None:
+    found = told(three_arms())
+    assert sorted(found.joint_of_part.tolist()) == [0, 1, 3, 5]
+    assert found.length_variation.max() < 0.5
+    assert found.length_variation[0] == 0.0

@@ -7,7 +7,7 @@ from fitting import FIRST, SPOILT, arms, articulation, seen
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
-from kinetree.schemas.structure.kinematic_tree import TOGETHER
+from kinetree.schemas.structure.kinematic_tree import MOST_TOGETHER
 from kinetree.schemas.structure.pose_refinement import PoseRefinement
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 
@@ -64,9 +64,9 @@ def test_same_input_gives_the_same_bytes() -> None:
 
 def test_frames_in_doubt_go_in_runs_and_a_few_at_a_time() -> None:
     known, _ = arms()
-    long = tuple(range(1, 2 + TOGETHER))
+    long = tuple(range(1, 2 + MOST_TOGETHER))
     of = articulation(known, (*long, 12, 14))
     assert of.members("doubt", ()) == range(4)
     runs = [tuple(f - FIRST for f in of.members("doubt/frame", (k,))) for k in range(4)]
-    assert runs == [long[:TOGETHER], long[TOGETHER:], (12,), (14,)]
+    assert runs == [long[:MOST_TOGETHER], long[MOST_TOGETHER:], (12,), (14,)]
     assert list(articulation(known, ()).members("doubt", ())) == []

@@ -43,6 +43,16 @@ def test_arms_that_turn_are_parts_and_carry_their_vertices() -> None:
     assert found.residual.shape == found.rotation.shape[:2]
 
 
+def test_how_parts_were_cut_and_eliminated_is_stored_with_them() -> None:
+    body = three_arms()
+    found = told(body.V, body.F, body.x, rings=20)
+    assert found.run.shape == found.merge.shape == (len(found.tip), 20)
+    assert found.initial.max() + 1 >= len(found.origin) == found.rotation.shape[1]
+    assert len(found.removed) == len(found.cost)
+    assert (found.cost < found.cost_threshold).all()
+    assert found.merge_threshold == 0.002
+
+
 def test_a_stiff_sequence_is_one_part() -> None:
     body = three_arms()
     found = told(body.V, body.F, np.stack([body.V + f for f in range(5)]))

@@ -7,7 +7,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2014.fixed_lengths import Observed, Posed, posed, rotations
 from kinetree.tasks.numerics.paper_2014.joint_tree import JointTree
-from kinetree.tasks.numerics.structure.joint_names import named
+from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.kinematic_tree import KinematicTree
 
@@ -114,7 +114,7 @@ def _assembled(
     above = np.concatenate([tree.parents, leaf_node])
     rest = np.concatenate([posed.motion.rest, posed.leaf_rest])
     is_leaf = np.arange(len(above)) >= nodes
-    order, names = named(rest, above, is_leaf)
+    order, names = joint_names(rest, above, is_leaf)
     position = np.argsort(order)
     R = posed.motion.R
     turns = np.einsum("tpxy,tpxz->tpyz", R[:, np.maximum(tree.parents, 0)], R)

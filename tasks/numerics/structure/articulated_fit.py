@@ -5,24 +5,24 @@ s_vj = Σ w_va over the parts a at or beyond joint j this is linear in a vertex'
 
     x_v(t) = x_0(t) + Σ_a R_a w_va v + Σ_j s_vj (R_p(j) − R_j) rest_j
 
-so that the sequence is seen only through Σ φ φᵀ and Σ x φᵀ, whatever the number of vertices. Bone lengths are the same
+so that a fit needs only Σ φ φᵀ and Σ x φᵀ, whatever the number of vertices. Bone lengths are the same
 in all frames because the model has no others.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 DAMPING = 1e-7
-STILL = 1e-7  # radians
+"""Added to the diagonal of the normal equations, share of its mean: keeps them solvable."""
+STILL = 1e-7
+"""Radians by which no part turns any more when a fit ends."""
 
 
 class Sums(NamedTuple):
-    """What a fit needs to know of the sequence; the number n of a vertex's numbers φ is four times that of the parts.
+    """The sums over vertices that a fit needs; each vertex has a vector φ of n numbers, four times the number of parts.
 
     G : (frame or 1, n, n) Σ τ φ φᵀ, C : (frame, xyz, n) Σ τ x φᵀ; φ is w_va v, by part, then s_vj
     """
@@ -44,8 +44,8 @@ class Motion(NamedTuple):
     x: Floats
 
 
-class Expected(NamedTuple):
-    """What is believed of poses beforehand.
+class PosePrior(NamedTuple):
+    """Where poses are expected before a fit.
 
     turn : (frame, part, 3, 3) rotation R_pᵀ R_a of each part against its parent; the root's against the space around
     firm : (frame, part) how firmly it is held there, mesh unit² times the vertices' weight
@@ -56,7 +56,7 @@ class Expected(NamedTuple):
 
 
 def beyond(parents: Ints) -> Floats:
-    """(part, part) 1 where the second part is the first or hangs on it; parents come before children."""
+    """(part, part) 1 where the second part is the first or lies below it, else 0; parents (part,) come before children."""
     below = np.eye(len(parents))
     for j in range(len(parents) - 1, 0, -1):
         below[parents[j]] += below[j]
@@ -64,7 +64,7 @@ def beyond(parents: Ints) -> Floats:
 
 
 def sums(V: Floats, x: Floats, W: Floats, parents: Ints, tau: Floats) -> Sums:
-    """The sums over vertices.
+    """The sums over vertices that a fit needs, in every frame (ours).
 
     V, x : (vertex, xyz) in the reference, (frame, vertex, xyz) mesh unit
     W    : (vertex, part) skinning weights, a part after its parent
@@ -83,10 +83,14 @@ def sums(V: Floats, x: Floats, W: Floats, parents: Ints, tau: Floats) -> Sums:
     return Sums(np.stack(G), np.stack(C))
 
 
-def fitted(s: Sums, start: Motion, parents: Ints, expected: Expected | None = None, *, rounds: int = 10) -> Motion:
-    """The poses that leave least, Σ τ |x − x̂|² + Σ firm |log|², by Gauss–Newton; the joints stay.
+def fitted(s: Sums, start: Motion, parents: Ints, expected: PosePrior | None = None, *, rounds: int = 10) -> Motion:
+    """The poses of least error, Σ τ |x − x̂|² + Σ firm |log|², by Gauss–Newton; the joints stay (2014, Sec. 6.3).
 
-    rounds : at most; it ends earlier when nothing turns any more
+    s        : sums over the vertices
+    start    : joints, and poses to start from
+    parents  : (part,) −1 for the root
+    expected : where poses are held; nowhere if not given
+    rounds   : at most; it ends earlier when nothing turns any more
     """
     motion = start
     levers = _levers(start.rest, parents)
@@ -98,14 +102,14 @@ def fitted(s: Sums, start: Motion, parents: Ints, expected: Expected | None = No
         H[:, diagonal, diagonal] += DAMPING * np.trace(H, axis1=1, axis2=2)[:, None] / len(diagonal)
         move = np.linalg.solve(H, g[..., None])[..., 0]
         omega = np.asarray(move[:, :-3].reshape(*motion.R.shape[:2], 3), dtype=np.float64)
-        motion = Motion(motion.rest, turns(omega) @ motion.R, motion.x + move[:, -3:])
+        motion = Motion(motion.rest, rotations(omega) @ motion.R, motion.x + move[:, -3:])
         if np.abs(omega).max(initial=0.0) < STILL:
             break
     return motion
 
 
 def placed(motion: Motion, parents: Ints) -> Floats:
-    """(frame, part, xyz) where the joints are, x_j = x_p + R_p (rest_j − rest_p)."""
+    """(frame, part, xyz) the joints, x_j = x_p + R_p (rest_j − rest_p), mesh unit; parents (part,) −1 for the root."""
     X = np.empty((*motion.R.shape[:2], 3))
     X[:, 0] = motion.x + motion.R[:, 0] @ motion.rest[0]
     for j in range(1, len(parents)):
@@ -115,7 +119,11 @@ def placed(motion: Motion, parents: Ints) -> Floats:
 
 
 def predicted(V: Floats, W: Floats, motion: Motion, parents: Ints) -> Floats:
-    """(frame, vertex, xyz) where the body's surface goes."""
+    """(frame, vertex, xyz) where linear blend skinning puts the surface, mesh unit.
+
+    V, W    : (vertex, xyz) reference, mesh unit · (vertex, part) skinning weights
+    parents : (part,) −1 for the root
+    """
     T, P = motion.R.shape[:2]
     t = placed(motion, parents) - np.einsum("tpxy,py->tpx", motion.R, motion.rest)
     phi = np.concatenate([(W[:, :, None] * V[:, None]).reshape(len(V), -1), W], axis=1)
@@ -129,7 +137,7 @@ def _normal_equations(s: Sums, motion: Motion, parents: Ints, levers: Floats) ->
     held = np.einsum("tpxy,py->tpx", motion.R[:, parents] - motion.R, motion.rest)
     held[:, 0] = motion.x
     theta = np.concatenate([motion.R.transpose(0, 2, 1, 3).reshape(T, 3, 3 * P), held.transpose(0, 2, 1)], axis=2)
-    left = s.C - theta @ s.G
+    error = s.C - theta @ s.G
     Z = np.einsum("tpxy,pyn->tpxn", motion.R, levers).reshape(T, 3 * P, -1)
     ZG = Z @ s.G
     S = (ZG @ Z.transpose(0, 2, 1)).reshape(T, P, 3, P, 3)
@@ -139,8 +147,8 @@ def _normal_equations(s: Sums, motion: Motion, parents: Ints, levers: Floats) ->
     H[:, :-3, -3:] = _crossing(ZG[:, :, 3 * P].reshape(T, P, 3)).reshape(T, 3 * P, 3)
     H[:, -3:, :-3] = H[:, :-3, -3:].transpose(0, 2, 1)
     H[:, -3:, -3:] = s.G[:, 3 * P, 3 * P, None, None] * np.eye(3)
-    torque = _axial((Z @ left.transpose(0, 2, 1)).reshape(T, P, 3, 3))
-    return H, np.concatenate([torque.reshape(T, -1), left[:, :, 3 * P]], axis=1)
+    torque = _axial((Z @ error.transpose(0, 2, 1)).reshape(T, P, 3, 3))
+    return H, np.concatenate([torque.reshape(T, -1), error[:, :, 3 * P]], axis=1)
 
 
 def _levers(rest: Floats, parents: Ints) -> Floats:
@@ -155,7 +163,7 @@ def _levers(rest: Floats, parents: Ints) -> Floats:
     return U
 
 
-def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Expected) -> None:
+def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: PosePrior) -> None:
     """Adds firm |log(R_p turn R_aᵀ)|² for every part a."""
     above = R[:, parents].copy()
     above[:, 0] = np.eye(3)
@@ -184,9 +192,9 @@ def _crossing(p: Floats) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def turns(omega: Floats) -> Floats:
-    """(…, 3, 3) rotation by the vector ω (Rodrigues)."""
+def rotations(omega: Floats) -> Floats:
+    """Rotations by vectors, ω (…, 3) in radians; (…, 3, 3) (Rodrigues)."""
     angle = np.maximum(np.linalg.norm(omega, axis=-1)[..., None, None], 1e-12)
     K = _crossing(omega)
-    turned: Floats = np.eye(3) + np.sin(angle) / angle * K + (1 - np.cos(angle)) / angle**2 * (K @ K)
-    return turned
+    R: Floats = np.eye(3) + np.sin(angle) / angle * K + (1 - np.cos(angle)) / angle**2 * (K @ K)
+    return R

@@ -1,4 +1,6 @@
-"""Where bones end: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
+"""End effectors: the leaves of the body, and the far end of every limb that has none (2014, Sec. 6.3)."""
+
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -6,42 +8,49 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
+def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
+    """Where chains of bones end on the surface.
 
-def bone_ends(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
-    """(end, 2) part and vertex of every end of a bone, by part, a part's most distant first.
-
-    Every leaf is one. A part on which nothing hangs and that has no leaf ends where its surface is farthest, along its edges,
-    from its border; a body of one part has no ends but its leaves.
+    Every leaf is an end effector. A part without a leaf and with no part below it ends where its surface is farthest, along
+    its edges, from its border; a body of one part has no ends but its leaves.
 
     V, F    : (vertex, xyz) mesh unit · (face, corner)
     label   : (vertex,) part, parents : (part,) −1 for the root
     leaves  : (leaf,) vertices
+    returns : (end, 2) part and vertex, by part, a part's most distant first
     """
     start, ring = rings(F, len(V))
     edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
     ends: list[tuple[int, int]] = []
     for part in range(len(parents)):
-        mine = [int(v) for v in leaves if label[v] == part]
+        tips = [int(v) for v in leaves if label[v] == part]
         bare = part > 0 and not (parents == part).any()
-        far = _from_border(V, edge, label, part) if bare or len(mine) > 1 else np.zeros(len(V))
-        if bare and not mine:
-            mine = [int(np.argmax(far))]
-        ends += [(part, v) for v in sorted(mine, key=lambda v: (-far[v], *V[v]))]
+        far = _from_border(V, edge, label, part) if bare or len(tips) > 1 else np.zeros(len(V))
+        if bare and not tips:
+            tips = [int(np.argmax(far))]
+        ends += [(part, v) for v in sorted(tips, key=lambda v: (-far[v], *V[v]))]
     return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
 
-def nearest_vertices(V: Floats, points: Floats) -> Ints:
-    """(point,) the vertex nearest to each point (point, xyz)."""
+def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer[Any]], counts: Flags) -> Ints:
+    """Vertices of the reference at the leaves that are seen in its frame and count in some interval.
+
+    V         : (vertex, xyz) reference, mesh unit
+    positions : (leaf, xyz) of the leaves in the reference's frame, mesh unit; NaN where a leaf is not seen
+    extremum  : (leaf,) extremum of that frame that is the leaf, −1 where it is not seen
+    counts    : (interval, leaf) whether a leaf counts in an interval
+    returns   : (seen leaf,) the nearest vertex to each
+    """
+    points = positions[(extremum >= 0) & counts.any(axis=0)]
     return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
 
 
 def _from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
-    """(vertex,) way along the part's own edges from its border, mesh unit; 0 elsewhere, and where no border can be reached."""
+    """(vertex,) distance along the part's own edges from its border, mesh unit; 0 elsewhere or where there is no path."""
     edge = edge[label[edge[:, 0]] == part]
     inside = label[edge[:, 1]] == part
     border = np.unique(edge[~inside, 0])

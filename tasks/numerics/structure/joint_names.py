@@ -1,21 +1,20 @@
 """Readable names for the joints of a tree, the same on every run and under small changes of the body.
 
 `root`; `spine_1`, `spine_2` … for joints beyond which the body branches; `limb_a_1`, `limb_a_2` … along a limb, which does not
-branch; `…_end` for ends of bones. Limbs are lettered from the root outwards in an order of lengths and places that
-is decided, again and again, at the widest gap: two limbs change letters only if what differs most in them no longer does.
+branch; `…_end` for ends of bones. Limbs are lettered from the root outwards in an order of lengths and places,
+decided at the widest gap of any of them, then again within both halves: so two limbs change letters only if the largest
+difference between them goes.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
-class Named(NamedTuple):
-    """An order of joints, a parent before what hangs on it, branch by branch, and their names.
+class JointNames(NamedTuple):
+    """An order of joints, parents before children, branch by branch, and their names.
 
     order : (joint,) the given joint at each place, names : of each place
     """
@@ -24,8 +23,8 @@ class Named(NamedTuple):
     names: tuple[str, ...]
 
 
-def named(rest: Floats, parents: Ints, ends: npt.NDArray[np.bool_]) -> Named:
-    """Order and name all joints.
+def joint_names(rest: Floats, parents: Ints, ends: Flags) -> JointNames:
+    """Orders and names all joints (ours).
 
     rest    : (joint, xyz) in the reference, parents : (joint,) −1 for the root, which is the first
     ends    : (joint,) whether it is the end of a bone
@@ -61,11 +60,11 @@ def named(rest: Floats, parents: Ints, ends: npt.NDArray[np.bool_]) -> Named:
         ranked = [turning[k] for k in widest_gaps(features)]
         ranked.sort(key=lambda c: not branching[c])
         waiting += [*reversed([*ranked, *(int(c) for c in children[j] if ends[c])])]
-    return Named(np.array(order), tuple(name[j] for j in order))
+    return JointNames(np.array(order), tuple(name[j] for j in order))
 
 
 def widest_gaps(features: Floats) -> list[int]:
-    """Rows in an order decided at the widest gap of any column, then within both halves; the greater half comes first."""
+    """Rows of (row, column) in an order decided at the widest gap of any column, then within both halves, the greater first."""
     rows = list(range(len(features)))
     if len(rows) < 2:
         return rows
@@ -76,7 +75,7 @@ def widest_gaps(features: Floats) -> list[int]:
     return [int(half[k]) for half in (high, low) for k in widest_gaps(features[half])]
 
 
-def _outwards(rest: Floats, parents: Ints, ends: npt.NDArray[np.bool_]) -> tuple[Floats, Ints, npt.NDArray[np.bool_]]:
+def _outwards(rest: Floats, parents: Ints, ends: Flags) -> tuple[Floats, Ints, Flags]:
     """Per joint: the longest way along bones from its parent through it, where that leads, and whether joints branch beyond."""
     length, tip = np.zeros(len(parents)), np.arange(len(parents))
     branching = np.zeros(len(parents), dtype=bool)

@@ -1,30 +1,39 @@
-"""How far parts turn against each other: ranges of angles, the ways of a surface, turnings that lie between turnings."""
+"""How far parts turn against each other: ranges of angles, displacement of a surface, rotations that follow others (ours)."""
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotation
 
-Floats = npt.NDArray[np.float64]
-
-POSES = 96
-"""Frames whose rotations are compared each with each."""
+MOST_COMPARED = 96
+"""Frames whose rotations are compared each with each, about; for time."""
 OUT_OF_ROUND = 0.1
-"""Share of the way of a twist that leads along the normals, from which on a twist is seen in full."""
+"""Share of a roll's displacement along the normals, from which on the surface shows the roll in full. Not recorded."""
 
 
 def turning_range(turns: Floats) -> float:
-    """The widest angle in degrees between any two rotations (frame, 3, 3) but those of two frames, which may err.
+    """The widest angle in degrees between any two rotations (frame, 3, 3), without those of two frames, which may be wrong.
 
-    Of fewer than 16 frames one may err, of fewer than 8 none.
+    Of fewer than 16 frames one may be wrong, of fewer than 8 none.
     """
-    every = turns[:: max(1, len(turns) // POSES)].reshape(-1, 9)
+    every = turns[:: max(1, len(turns) // MOST_COMPARED)].reshape(-1, 9)
     cosine = (every @ every.T - 1.0) / 2.0
     rank = min(3, 1 + len(every) // 8)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     third = np.sort(angle, axis=1)[:, -rank]
     return float(np.degrees(np.sort(third)[-rank]))
+
+
+def joint_degrees(R: Floats, parents: Ints, turns: Flags) -> Floats:
+    """(joint,) range of turning of every joint against its parent, degrees; 0 where it does not turn.
+
+    R       : (frame, joint, 3, 3)
+    parents : (joint,) −1 for the root
+    turns   : (joint,) whether a joint turns: not the root, and no leaf
+    """
+    against = (np.einsum("txy,txz->tyz", R[:, p], R[:, j]) for j, p in enumerate(parents))
+    return np.array([turning_range(r) if turn else 0.0 for r, turn in zip(against, turns, strict=True)])
 
 
 def mean_rotation(turns: Floats) -> Floats:
@@ -33,37 +42,40 @@ def mean_rotation(turns: Floats) -> Floats:
 
 
 def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool, N: Floats | None = None) -> float:
-    """Root mean square way, over frames and a part's surface, of turning about the joint against the mean pose, mesh unit.
+    """Root mean square displacement, over frames and a part's surface, by turning about a joint against the mean pose.
 
-    V, area : (vertex, xyz), (vertex,) of the part; centre : (xyz)
-    turns   : (frame, 3, 3) R_pᵀ R_a of a part a against the part p above it; above : whether V is of p
-    N       : (vertex, xyz) normals, where only the surface was seen to move: then the twist of a round limb about its own
-              axis, which leaves the surface where it is, is no way; None where every vertex was followed
+    V, area : (vertex, xyz), (vertex,) of the part, mesh unit
+    centre  : (xyz) the joint, mesh unit
+    turns   : (frame, 3, 3) R_pᵀ R_a of a part a against the part p above it
+    above   : whether V is of p
+    N       : (vertex, xyz) normals, where only the surface was seen to move: then the roll of a round limb about its own axis,
+              which leaves the surface where it is, does not count; None where every vertex was followed
+    returns : mesh unit
     """
     mean = mean_rotation(turns)
     base = np.eye(3) if above else mean.T
     arm = (V - centre) @ base
     share = area / max(float(area.sum()), np.finfo(float).tiny)
     away = turns @ mean.T - np.eye(3)
-    way = float(np.einsum("txy,yz,txz->t", away, (share[:, None] * arm).T @ arm, away).mean())
+    square = float(np.einsum("txy,yz,txz->t", away, (share[:, None] * arm).T @ arm, away).mean())
     if N is not None:
         axis = share @ arm
         axis /= max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
         around = np.cross(axis, arm)
         whole = float(share @ (around**2).sum(axis=1))
-        seen = float(share @ ((around * (N @ base)).sum(axis=1)) ** 2)
-        twist = Rotation.from_matrix(turns @ mean.T).as_rotvec() @ axis
-        way -= float((twist**2).mean()) * (whole - min(whole, seen / OUT_OF_ROUND))
-    return float(np.sqrt(max(way, 0.0)))
+        shown = float(share @ ((around * (N @ base)).sum(axis=1)) ** 2)
+        roll = Rotation.from_matrix(turns @ mean.T).as_rotvec() @ axis
+        square -= float((roll**2).mean()) * (whole - min(whole, shown / OUT_OF_ROUND))
+    return float(np.sqrt(max(square, 0.0)))
 
 
 def in_between(turns: Floats, beyond: Floats) -> float:
-    """How far, up to 1, a part's turning is a fixed share, between none and all, of that of the part beyond it.
+    """How well a fixed share of the rotation of the part beyond it, between none and all, explains a part's rotation.
 
-    Flesh around a joint turns by a share of what the joint turns by; a bone of its own would turn by itself.
+    Flesh around a joint turns by a share of what the joint turns by; a bone of its own turns by itself.
 
     turns, beyond : (frame, 3, 3) of the part and of that beyond it, against the part above both
-    returns       : the share of its variance, or of the variance of the rest if that is less, that is explained so; 0 if none
+    returns       : 0 to 1, share of its variance explained so, or of that of the remaining rotation if it is less
     """
     u, v = (Rotation.from_matrix(r @ mean_rotation(r).T).as_rotvec() for r in (turns, beyond))
     share = float((u * v).sum() / max(float((v * v).sum()), 1e-300))

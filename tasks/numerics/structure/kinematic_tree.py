@@ -1,44 +1,52 @@
-"""From rigid parts to the finished articulated body: tree, joints, skin, poses, ends of bones, names (2014, Sec. 6.3)."""
+"""From rigid parts to the finished articulated body: tree, joints, skin, poses, end effectors, names (2014, Sec. 6.3)."""
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
-from kinetree.tasks.numerics.structure.centre_lines import towards_axes
-from kinetree.tasks.numerics.structure.end_effectors import bone_ends
-from kinetree.tasks.numerics.structure.frame_poses import SEEN, posed, seen_share
-from kinetree.tasks.numerics.structure.joint_evidence import Seen
-from kinetree.tasks.numerics.structure.joint_names import named
+from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
+from kinetree.tasks.numerics.structure.centre_lines import towards_centre_lines
+from kinetree.tasks.numerics.structure.end_effectors import end_effectors
+from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
-from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
-from kinetree.tasks.numerics.structure.pruning import LEAST_DEGREES, LEAST_RATIO, Pruned, pruned
-from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.pruning import Dropped, Pruned, PruningSettings, pruned
+from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
-NOISE = 0.002
-"""Error of a vertex below which its motion says nothing of its weights, share of the root of the area."""
-SPREAD = 0.35
-"""Standard deviation of a joint about where it is expected, in radii of its border."""
-ALIKE = 3.0
-"""Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it."""
-FAR = 0.7
-"""Distance from where it is expected, in radii of its border, at which a joint is held twice as firmly."""
-QUIET = 0.5
-"""Share of what a part's motion leaves of single vertices that its motion may err by: noise averages out over a part."""
-RIGID = 0.75
-"""Weight of one part above which a vertex belongs to it."""
+class KinematicTreeSettings(NamedTuple):
+    """How parts become joints; lengths are shares of the root of the area where nothing else is said."""
+
+    pruning: PruningSettings | None = None
+    """What a joint must show to stay; the defaults if not given."""
+    noise: float = 0.002
+    """Error of a vertex below which its motion says nothing of its skinning weights. Not recorded."""
+    spread: float = 0.35
+    """Standard deviation of a joint about where it is expected, in radii of its border. Not recorded; see DESIGN for what the
+    expected place was chosen on."""
+    frames_alike: float = 3.0
+    """Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it. Not
+    recorded."""
+    far: float = 0.7
+    """Distance from where it is expected, in radii of its border, at which a joint is held twice as firmly. Chosen on heads,
+    whose joints run away along the axis by two radii."""
+    residual_share: float = 0.5
+    """Share of what a part's motion leaves of single vertices that its motion may err by: noise averages out over a part. Not
+    recorded."""
+    rigid_weight: float = 0.75
+    """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
 
 
 class KinematicTree(NamedTuple):
     """An articulated body: x_j(t) = x_p(t) + R_p(t) (rest_j − rest_p) for every joint j with parent p.
 
-    names, kinds      : (joint,) kinds are root, joint and leaf (the end of a bone); a parent before what hangs on it
+    names, kinds      : (joint,) kinds are root, joint and leaf (the end of a bone); parents come before children
     parents           : (joint,) −1 for the root
     rest              : (joint, xyz) in the reference mesh, mesh unit
     positions         : (frame, joint, xyz) mesh unit
@@ -66,6 +74,29 @@ class KinematicTree(NamedTuple):
     weight: Floats
 
 
+class Derivation(NamedTuple):
+    """How the tree came about; parts are numbered as they were given.
+
+    pair           : (border, 2) parts that meet, before any was dropped
+    centre         : (border, xyz) the point of the reference that the two turn about best, mesh unit
+    border_drift   : (border,) root mean square distance between that point as its two parts carry it, mesh unit
+    border_degrees : (border,) range of turning against each other, NaN for borders outside the spanning tree of all parts
+    joint_of_part  : (part,) joint about which each part turns, −1 for parts that were dropped or have no vertices
+    dropped        : parts that pruning dropped, in that order, and why
+    free_length    : (joint,) mean length of each joint's bone as the parts alone carry its ends, mesh unit; 0 for the root
+    free_deviation : (joint,) standard deviation of it over the frames, mesh unit
+    """
+
+    pair: Ints
+    centre: Floats
+    border_drift: Floats
+    border_degrees: Floats
+    joint_of_part: Ints
+    dropped: tuple[Dropped, ...]
+    free_length: Floats
+    free_deviation: Floats
+
+
 def kinematic_tree(
     V: Floats,
     F: Ints,
@@ -76,43 +107,43 @@ def kinematic_tree(
     t: Floats,
     residual: Floats,
     leaves: Ints,
-    trust: Floats | None = None,
-    surfaces: Seen | None = None,
-    *,
-    degrees: float = LEAST_DEGREES,
-    ratio: float = LEAST_RATIO,
-) -> KinematicTree:
-    """The whole of it.
+    confidence: Floats | None = None,
+    evidence: FrameEvidence | None = None,
+    settings: KinematicTreeSettings | None = None,
+) -> tuple[KinematicTree, Derivation]:
+    """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
 
-    V, F     : (vertex, xyz) mesh unit · (face, corner)
-    x        : (frame, vertex, xyz) mesh unit
-    area     : (vertex,) mesh unit²
-    label    : (vertex,) rigid part, −1 for none
-    R, t     : (frame, part, 3, 3), (frame, part, xyz) from the reference
-    residual : (frame, part) what a part's motion leaves unexplained, mesh unit
-    leaves   : (leaf,) vertices at the ends of limbs
-    trust    : (frame, vertex) 0 to 1; None believes all
-    surfaces : the frames' surfaces, by which joints are shown; None asks none
-    degrees, ratio : what a joint must turn by, and how many times farther than it drifts
+    V, F       : (vertex, xyz) mesh unit · (face, corner)
+    x          : (frame, vertex, xyz) mesh unit
+    area       : (vertex,) mesh unit²
+    label      : (vertex,) rigid part, −1 for none
+    R, t       : (frame, part, 3, 3), (frame, part, xyz) from the reference
+    residual   : (frame, part) what a part's motion leaves unexplained, mesh unit
+    leaves     : (leaf,) vertices at the ends of limbs
+    confidence : (frame, vertex) 0 to 1; None where every vertex was followed
+    evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
+    chosen = settings or KinematicTreeSettings()
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
     F, label = np.array(F, dtype=np.int64), _filled(V, np.array(label, dtype=np.int64))
-    label, R, t, residual = _used(label, R, t, residual)
-    seen = None if trust is None else seen_share(label, area, trust, len(x), R.shape[1])
-    parts = Carried(label, R, t, residual, seen)
-    found = pruned(Surfaces(V, F, x, area), parts, leaves, surfaces, degrees=degrees, ratio=ratio)
-    tree = found.part_tree.tree
-    label = np.argsort(tree.order)[found.parts.label]
-    tau = np.ones(x.shape[:2]) if trust is None else np.array(trust, dtype=np.float64)
-    R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (found.parts.R, found.parts.t))
-    W = skinning(V, F, x, label, R, t, tree.parents, tau, NOISE * float(np.sqrt(area.sum())))
-    rest, drift = _settled(V, area, label, W, found)
-    body = posed(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, trust)
-    shown = seen_share(label, area, trust, len(x), len(tree.order))
+    given = R.shape[1]
+    used, label, R, t, residual = _used(label, R, t, residual)
+    seen = None if confidence is None else confident_share(label, area, confidence, len(x), R.shape[1])
+    parts = MovingParts(label, R, t, residual, seen)
+    left = pruned(MovingSurface(V, F, x, area), parts, leaves, evidence, chosen.pruning)
+    tree = left.part_tree.tree
+    label = np.argsort(tree.order)[left.parts.label]
+    tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)
+    R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (left.parts.R, left.parts.t))
+    W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * float(np.sqrt(area.sum())))
+    rest, drift = _joints(V, area, label, W, left, chosen)
+    poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence)
+    share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
-    support = (np.minimum(shown, shown[:, above]) >= SEEN).sum(axis=0)
-    return _assembled(V, label, W, bone_ends(V, F, label, tree.parents, leaves), tree.parents, body.motion, body.confidence,
-                      drift, support)  # fmt: skip
+    support = (np.minimum(share, share[:, above]) >= FramePosesSettings().seen).sum(axis=0)
+    ends = end_effectors(V, F, label, tree.parents, leaves)
+    body, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, drift, support, chosen)
+    return body, _derivation(left, used, given, body, order, R, t)
 
 
 def _assembled(
@@ -125,67 +156,101 @@ def _assembled(
     confidence: Floats,
     drift: Floats,
     support: Ints,
-) -> KinematicTree:
-    """Parts and ends of bones as one list of joints, named and in the order of their names."""
+    chosen: KinematicTreeSettings,
+) -> tuple[KinematicTree, Ints]:
+    """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
     parts = len(parents)
-    of = np.concatenate([np.arange(parts), ends[:, 0]])
+    part = np.concatenate([np.arange(parts), ends[:, 0]])
     rest = np.concatenate([motion.rest, V[ends[:, 1]]])
     above = np.concatenate([parents, ends[:, 0]])
-    is_end = np.arange(len(of)) >= parts
-    order, names = named(rest, above, is_end)
+    is_end = np.arange(len(part)) >= parts
+    order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
     X = placed(motion, parents)
     tips = X[:, ends[:, 0]] + np.einsum("texy,ey->tex", motion.R[:, ends[:, 0]], rest[parts:] - motion.rest[ends[:, 0]])
     turns = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)
     degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, parts))])
     influence, weight = heaviest(W)
-    follows = np.where(weight > 0, place[influence], 0)
-    return KinematicTree(
+    body = KinematicTree(
         names=names,
         kinds=tuple("leaf" if is_end[j] else "joint" if above[j] >= 0 else "root" for j in order),
         parents=np.where(above[order] >= 0, place[above[order]], -1),
         rest=rest[order],
         positions=np.concatenate([X, tips], axis=1)[:, order],
-        rotation=motion.R[:, of[order]],
-        confidence=confidence[:, of[order]],
-        degrees=np.where(is_end, 0.0, degrees[of])[order],
-        drift=np.where(is_end, 0.0, drift[of])[order],
-        support=support[of[order]],
-        label=np.where(W[np.arange(len(V)), label] >= RIGID, place[label], -1),
-        influence=follows,
+        rotation=motion.R[:, part[order]],
+        confidence=confidence[:, part[order]],
+        degrees=np.where(is_end, 0.0, degrees[part])[order],
+        drift=np.where(is_end, 0.0, drift[part])[order],
+        support=support[part[order]],
+        label=np.where(W[np.arange(len(V)), label] >= chosen.rigid_weight, place[label], -1),
+        influence=np.where(weight > 0, place[influence], 0),
         weight=weight,
+    )
+    return body, order
+
+
+def _derivation(left: Pruned, used: Ints, given: int, body: KinematicTree, order: Ints, R: Floats, t: Floats) -> Derivation:
+    """The graph of all parts, what became of each part, and lengths before they are held.
+
+    used  : (part,) number of each part as it was given, of so many given
+    order : (joint,) part in the tree's order, or beyond them an end effector
+    R, t  : (frame, part, 3, 3), (frame, part, xyz) in the tree's order
+    """
+    parts = R.shape[1]
+    joint_of_part = np.full(given, -1)
+    joint_of_part[used[left.origin[left.part_tree.tree.order]]] = np.argsort(order)[:parts]
+    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), R, t)
+    return Derivation(
+        pair=used[left.before.borders.pair],
+        centre=left.before.joints.rest,
+        border_drift=left.before.joints.drift,
+        border_degrees=_border_degrees(left.before),
+        joint_of_part=joint_of_part,
+        dropped=tuple(d._replace(part=int(used[d.part])) for d in left.dropped),
+        free_length=length.mean(axis=0),
+        free_deviation=length.std(axis=0),
     )
 
 
-def _settled(V: Floats, area: Floats, label: Ints, W: Floats, found: Pruned) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected amid border or on centre lines, and their drift; the root's is its middle."""
-    parts, tree, met = found.parts, found.part_tree.tree, found.part_tree.borders
+def _border_degrees(tree: PartTree) -> Floats:
+    """(border,) range of turning across the borders of the tree, NaN across the others."""
+    degrees = np.full(len(tree.borders.pair), np.nan)
+    degrees[tree.tree.border[1:]] = tree.degrees[1:]
+    return degrees
+
+
+def _joints(
+    V: Floats, area: Floats, label: Ints, W: Floats, left: Pruned, chosen: KinematicTreeSettings
+) -> tuple[Floats, Floats]:
+    """Joints in the tree's order, expected amid their border or on centre lines, and their drift; the root's is its middle."""
+    parts, tree, met = left.parts, left.part_tree.tree, left.part_tree.borders
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
     rest[0] = area[root] @ V[root] / area[root].sum()
     rows = tree.border[1:]
-    expected = towards_axes(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
+    expected = towards_centre_lines(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
     pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
-    held = (expected, met.radius[rows], QUIET * parts.residual, parts.trust)
-    joints = rotation_centres(parts.R, parts.t, pair, *held, spread=SPREAD, alike=ALIKE, far=FAR)
+    residual = chosen.residual_share * parts.residual
+    prior = RotationCentresSettings(chosen.spread, chosen.frames_alike, chosen.far)
+    joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], residual, parts.confidence, prior)
     rest[1:], drift[1:] = joints.rest, joints.drift
     return rest, drift
 
 
 def _filled(V: Floats, label: Ints) -> Ints:
     """Vertices without a part have that of the nearest vertex with one."""
-    bare = label < 0
-    if not bare.any():
+    missing = label < 0
+    if not missing.any():
         return label
-    if bare.all():
+    if missing.all():
         return np.zeros_like(label)
     filled = label.copy()
-    filled[bare] = label[~bare][KDTree(V[~bare]).query(V[bare])[1]]
+    filled[missing] = label[~missing][KDTree(V[~missing]).query(V[missing])[1]]
     return filled
 
 
-def _used(label: Ints, *of_parts: Floats) -> tuple[Ints, Floats, Floats, Floats]:
-    """The same without parts that no vertex has."""
+def _used(label: Ints, *of_parts: Floats) -> tuple[Ints, Ints, Floats, Floats, Floats]:
+    """(part,) the parts that some vertex has · labels and arrays of these parts alone."""
     used, label = np.unique(label, return_inverse=True)
     R, t, residual = (np.ascontiguousarray(a[:, used], dtype=np.float64) for a in of_parts)
-    return label.astype(np.int64), R, t, residual
+    return used, label.astype(np.int64), R, t, residual

@@ -1,24 +1,21 @@
-"""Cones: the part of the surface around a leaf up to where the body branches, in rings (2014, Sec. 6.1.1.1; Fig. 4)."""
+"""Cones: the surface around a leaf up to where the body branches, in rings (2014, Sec. 6.1.1.1; Fig. 4)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def cones(distance: Floats, area: Floats, leaves: Ints, start: Ints, ring: Ints, rings: int = 50, pocket: float = 0.1) -> Ints:
     """Rings of equal geodesic width around every leaf, as far as what lies beyond is one branch.
 
-    The paper stops where the next ring falls apart, which ends an arm at its fingers. Here a cone goes on past side
-    branches that hold no leaf and less than `pocket` of the area: they are absorbed, ring by ring.
+    The paper stops where the next ring falls apart, which ends an arm at its fingers. Here (ours) a cone continues past side
+    branches that have no leaf and less than `pocket` of the area: they are absorbed, ring by ring.
 
-    distance    : (leaf, vertex) geodesic distance from each leaf, mesh unit; infinite where there is no way
+    distance    : (leaf, vertex) geodesic distance from each leaf, mesh unit; infinite where no path leads
     area        : (vertex,) mesh unit²
     leaves      : (leaf,) vertices
-    start, ring : neighbours of every vertex, see `rings.rings`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
     rings       : rings in the longest distance from each leaf
     pocket      : share of the area
     returns     : (leaf, vertex) ring of every vertex, 0 around the leaf, −1 beyond the cone
@@ -41,9 +38,7 @@ def cones(distance: Floats, area: Floats, leaves: Ints, start: Ints, ring: Ints,
 
 
 @compiled
-def _parting(
-    d: Floats, order: Ints, area: Floats, leaf: npt.NDArray[np.bool_], start: Ints, ring: Ints, enough: float
-) -> float:
+def _parting(d: Floats, order: Ints, area: Floats, leaf: Flags, start: Ints, ring: Ints, enough: float) -> float:
     """The smallest distance beyond which two branches lie apart, each with a leaf or of enough area; infinite if none.
 
     order : (vertex,) farthest first

@@ -1,21 +1,19 @@
 """The optimal cut of a chain of rings into rigid runs (after 2014, Sec. 6.1.2; by dynamic programming, not by growth)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, residual
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.structure.patch_merging import costs
 
 
 @compiled
 def runs(M: Floats, penalty: float, least: int) -> Ints:
-    """The cut that minimises Σ residual of the runs + penalty · (number of runs).
+    """The cut of a chain of rings that minimises Σ residual of the runs + penalty · (number of runs); ours.
 
-    M       : (ring, frame, 17) sums of every ring, from the leaf on; see `moments.MOMENTS`
-    penalty : mesh unit² times weight
+    M       : (ring, frame, 17) sums of every ring, from the leaf on; see `rigid_fit.MOMENTS`
+    penalty : what one more run must save, mesh unit² times weight
     least   : rings in a run; the whole chain is one run if it has fewer than two such
     returns : (ring,) number of the run of every ring, ascending from 0
     """
@@ -60,3 +58,18 @@ def runs(M: Floats, penalty: float, least: int) -> Ints:
         number += cut[k]
         run[k] = number
     return run
+
+
+def merge_growth(M: Floats, reach: int) -> Floats:
+    """Growth of the rigid residual when the rings before a border and the rings behind it become one rigid piece.
+
+    M       : (ring, frame, 17) sums of every ring; see `rigid_fit.MOMENTS`
+    reach   : rings that count on either side, fewer at the ends of the chain
+    returns : (ring − 1,) for the border behind every ring but the last, mesh unit² times weight, summed over frames
+    """
+    up_to = np.concatenate([np.zeros((1, *M.shape[1:])), np.cumsum(M, axis=0)])
+    border = np.arange(1, len(M))
+    before = up_to[border] - up_to[np.maximum(border - reach, 0)]
+    behind = up_to[np.minimum(border + reach, len(M))] - up_to[border]
+    growth: Floats = np.maximum(costs(before + behind) - costs(before) - costs(behind), 0.0)
+    return growth

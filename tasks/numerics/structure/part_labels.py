@@ -1,31 +1,28 @@
-"""Which part each vertex follows: the one whose motion explains its surroundings, all of a part in one piece."""
+"""Which part each vertex follows: the one whose motion is nearest to its surroundings' motion, each part connected (ours)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.part_motion import squared
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+from kinetree.tasks.numerics.structure.part_motion import squared_distance
 
 
 @compiled
 def relabelled(
     V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: Ints, start: Ints, ring: Ints, steps: int
 ) -> Ints:
-    """Every vertex given to the part, of its own and those next to it, that leaves least around the vertex.
+    """Every vertex labelled with the part, of its own and those next to it, of the least mean residual around the vertex.
 
     V, x        : (vertex, xyz) · (frame, vertex, xyz) mesh unit
-    weight      : (frame, vertex) belief
+    weight      : (frame, vertex) confidence, 0 to 1
     R, t        : (frame, part, 3, 3) · (frame, part, xyz)
     label       : (vertex,) part before
-    start, ring : neighbours of every vertex, see `rings.rings`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
     steps       : means over a vertex and its neighbours that residuals go through: how far the surroundings reach
-    returns     : (vertex,) part; what is cut off from the bulk of its part goes to those around it
+    returns     : (vertex,) part; vertices cut off from the bulk of their part go to the parts around them
     """
     parts = R.shape[1]
-    near = neighbouring(label, parts, start, ring)
+    near = border_edges(label, parts, start, ring)
     E = _misfits(V, x, weight, R, t, label, near)
     other = np.empty_like(E)
     for _ in range(steps):
@@ -45,8 +42,12 @@ def relabelled(
 
 
 @compiled
-def neighbouring(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
-    """(part, part) edges of the mesh between any two parts; each counted once from either side."""
+def border_edges(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
+    """(part, part) edges of the mesh between any two parts, each counted once from either side.
+
+    label       : (vertex,) part, below `parts`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    """
     near = np.zeros((parts, parts), np.int64)
     for v in range(len(label)):
         for q in range(start[v], start[v + 1]):
@@ -59,7 +60,9 @@ def neighbouring(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
 def connected(label: Ints, parts: int, start: Ints, ring: Ints) -> Ints:
     """Every part reduced to its largest connected piece, the rest given to the labels around it, nearest first.
 
-    returns : (vertex,) a piece with no other label around it keeps its own
+    label       : (vertex,) part, below `parts`
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    returns     : (vertex,) part; a piece with no other label around it keeps its own
     """
     piece = np.full(len(label), -1, np.int64)
     stack = np.empty(len(label), np.int64)
@@ -127,7 +130,7 @@ def _misfits(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: 
             if p == label[v] or near[label[v], p] > 0:
                 total = 0.0
                 for f in range(x.shape[0]):
-                    total += weight[f, v] * squared(V, x, R, t, v, f, p)
+                    total += weight[f, v] * squared_distance(V, x, R, t, v, f, p)
                 E[v, p] = total / mass
                 away = max(away, E[v, p])
     for v in range(len(label)):

@@ -1,21 +1,18 @@
-"""How parts move: rigid motions from clearly rigid vertices, and what they leave unexplained."""
+"""How parts move: rigid motions fitted to clearly rigid vertices, and the residuals of the others (ours)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, added, motion
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
-
-ROUNDS = 3  # of fitting and weighting anew
+ROUNDS = 3
+"""Rounds of fitting and weighting anew; motions no longer change by then."""
 
 
 @compiled
-def squared(V: Floats, x: Floats, R: Floats, t: Floats, v: int, f: int, p: int) -> float:
-    """|R q + t − x|² of vertex v in frame f under the motion of part p, mesh unit²."""
+def squared_distance(V: Floats, x: Floats, R: Floats, t: Floats, v: int, f: int, p: int) -> float:
+    """|R q + t − x|² of vertex v in frame f under the motion of part p, mesh unit²; arrays as in `misfit`."""
     total = 0.0
     for i in range(3):
         r = t[f, p, i] - x[f, v, i] + R[f, p, i, 0] * V[v, 0] + R[f, p, i, 1] * V[v, 1] + R[f, p, i, 2] * V[v, 2]
@@ -25,19 +22,19 @@ def squared(V: Floats, x: Floats, R: Floats, t: Floats, v: int, f: int, p: int) 
 
 @compiled
 def misfit(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: Ints) -> Floats:
-    """Mean over frames of what is left of each vertex by the motion of its part, e(v) = Σ_t w |R q + t − x|² / Σ_t w.
+    """Mean squared residual of each vertex under the motion of its part, e(v) = Σ_t w |R q + t − x|² / Σ_t w.
 
     V, x    : (vertex, xyz) · (frame, vertex, xyz) mesh unit
-    weight  : (frame, vertex) belief, 0 to 1
+    weight  : (frame, vertex) confidence, 0 to 1
     R, t    : (frame, part, 3, 3) · (frame, part, xyz)
     label   : (vertex,) part
-    returns : (vertex,) mesh unit²; 0 where no frame is believed
+    returns : (vertex,) mesh unit²; 0 where no frame has a weight
     """
     e = np.zeros(len(label))
     for v in range(len(label)):
         mass = 0.0
         for f in range(x.shape[0]):
-            e[v] += weight[f, v] * squared(V, x, R, t, v, f, label[v])
+            e[v] += weight[f, v] * squared_distance(V, x, R, t, v, f, label[v])
             mass += weight[f, v]
         if mass > 0.0:
             e[v] /= mass
@@ -54,7 +51,7 @@ def residuals(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label:
     total, mass = np.zeros(t.shape[:2]), np.zeros(t.shape[:2])
     for f in range(x.shape[0]):
         for v in range(len(label)):
-            total[f, label[v]] += weight[f, v] * squared(V, x, R, t, v, f, label[v])
+            total[f, label[v]] += weight[f, v] * squared_distance(V, x, R, t, v, f, label[v])
             mass[f, label[v]] += weight[f, v]
         for p in range(t.shape[1]):
             total[f, p] = np.sqrt(total[f, p] / mass[f, p]) if mass[f, p] > 0.0 else 0.0
@@ -68,7 +65,7 @@ def fit(
     weight: Floats,
     area: Floats,
     label: Ints,
-    asked: Flags,
+    fitted: Flags,
     warm: bool,
     most: int,
     floor: float,
@@ -79,15 +76,15 @@ def fit(
 
     area    : (vertex,) a, mesh unit²
     label   : (vertex,) part
-    asked   : (part,) which to fit
+    fitted  : (part,) which to fit
     warm    : whether R and t hold motions to begin from: a part then stays with what it explained before
     most    : vertices that a part is fitted to; of more, evenly many
     floor   : least s², mesh unit²
     R, t    : (frame, part, 3, 3) · (frame, part, xyz), written
     """
     member = np.empty(len(label), np.int64)
-    for p in range(len(asked)):
-        if not asked[p]:
+    for p in range(len(fitted)):
+        if not fitted[p]:
             continue
         count = members(label, p, most, member)
         if count == 0:
@@ -100,14 +97,14 @@ def fit(
                 m = np.zeros(MOMENTS)
                 for k in range(count):
                     v = member[k]
-                    # a frame in which nothing is believed still needs a motion
+                    # a frame without any confidence still needs a motion
                     added(m, V, x, f, v, sure[k] * area[v] * (weight[f, v] + 1e-6))
                 motion(m, R[f, p], t[f, p])
 
 
 @compiled
 def members(label: Ints, part: int, most: int, member: Ints) -> int:
-    """Writes vertices of a part, of more than `most` evenly many; returns how many."""
+    """Writes vertices of a part into `member` (vertex,), of more than `most` evenly many; returns how many."""
     total = 0
     for v in range(len(label)):
         total += label[v] == part
@@ -123,7 +120,7 @@ def members(label: Ints, part: int, most: int, member: Ints) -> int:
 
 @compiled
 def unevenness(V: Floats, x: Floats, area: Floats, patch: Ints, label: Ints, R: Floats, t: Floats) -> Floats:
-    """How far patches of the surface, each as a whole, stray from the motion of their part; noise of vertices cancels.
+    """Distance of patches of the surface, each as a whole, from the motion of their part; noise of vertices cancels.
 
     patch   : (vertex,) each within one part
     returns : (patch,) root mean square over frames of a patch's mean residual, mesh unit
@@ -155,22 +152,23 @@ def unevenness(V: Floats, x: Floats, area: Floats, patch: Ints, label: Ints, R: 
 def _weigh(
     V: Floats, x: Floats, weight: Floats, member: Ints, count: int, p: int, R: Floats, t: Floats, floor: float, sure: Floats
 ) -> None:
+    """Writes (member,) weights of a part's vertices by their residuals under its motion."""
     e = np.zeros(count)
     for k in range(count):
         v = member[k]
         mass = 1e-6
         for f in range(x.shape[0]):
-            e[k] += weight[f, v] * squared(V, x, R, t, v, f, p)
+            e[k] += weight[f, v] * squared_distance(V, x, R, t, v, f, p)
             mass += weight[f, v]
         e[k] /= mass
-    scale = max(middle(e, count), floor)
+    scale = max(median_of(e, count), floor)
     for k in range(count):
         sure[k] = (scale / (scale + e[k])) ** 2
 
 
 @compiled
-def middle(values: Floats, count: int) -> float:
-    """Median of the first few of an array of numbers not negative, by halving; not of a sorted copy: it compiles slowly."""
+def median_of(values: Floats, count: int) -> float:
+    """Median of the first `count` of an array of numbers not negative, by bisection; sorting a copy compiles slowly."""
     low, high = 0.0, 0.0
     for k in range(count):
         high = max(high, values[k])

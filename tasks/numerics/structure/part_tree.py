@@ -1,28 +1,45 @@
-"""All parts hung in one tree by the joints between them, and what speaks for each joint (2014, Sec. 6.3)."""
+"""One tree of all parts by the joints between them, and how clear each joint is (2014, Sec. 6.3)."""
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.joint_rotations import swing, turning_range
-from kinetree.tasks.numerics.structure.rotation_centres import SPREAD, Borders, Joints, blend_error, borders, rotation_centres
-from kinetree.tasks.numerics.structure.spanning_tree import Tree, rooted, spanning
+from kinetree.tasks.numerics.structure.rotation_centres import (
+    Borders,
+    Joints,
+    RotationCentresSettings,
+    blend_error,
+    borders,
+    rotation_centres,
+)
+from kinetree.tasks.numerics.structure.spanning_tree import RootedTree, rooted, spanning
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
-NOISE = 0.001
-"""Drift that is none, share of the root of the area."""
-SHORT = 0.1
-"""How much a border costs for every time that another one of its parts is longer."""
+class PartTreeSettings(NamedTuple):
+    """What a border costs in the spanning tree."""
+
+    noise: float = 0.001
+    """Drift that is none, share of the root of the area. Not recorded."""
+    shortness: float = 0.1
+    """By what share a border costs more for every time that another border of its parts is longer. Not recorded."""
+    bridge_radius: float = 0.02
+    """Radius of the border made between parts that touch no other, share of the root of the area. Not recorded."""
+    bridge_length: float = 0.1
+    """Its length, share of the root of the area. Not recorded."""
 
 
-class Surfaces(NamedTuple):
-    """A body's surface in motion: V (vertex, xyz), F (face, corner), x (frame, vertex, xyz), area (vertex,), mesh unit."""
+class MovingSurface(NamedTuple):
+    """A body's surface in motion.
+
+    V, F : (vertex, xyz) reference, mesh unit · (face, corner)
+    x    : (frame, vertex, xyz) mesh unit
+    area : (vertex,) mesh unit²
+    """
 
     V: Floats
     F: Ints
@@ -35,27 +52,27 @@ class Surfaces(NamedTuple):
         return float(np.sqrt(self.area.sum()))
 
 
-class Carried(NamedTuple):
+class MovingParts(NamedTuple):
     """Rigid parts, numbered without gaps.
 
     label    : (vertex,) part
     R, t     : (frame, part, 3, 3), (frame, part, xyz) from the reference
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit
-    trust    : (frame, part) how much each part is to be believed in each frame; None where every vertex was followed
+    confidence : (frame, part) 0 to 1; None where every vertex was followed
     """
 
     label: Ints
     R: Floats
     t: Floats
     residual: Floats
-    trust: Floats | None = None
+    confidence: Floats | None = None
 
-    def without(self, gone: int, label: Ints) -> "Carried":
-        """The others, after the vertices of the one that is gone were given the labels of others."""
-        kept = np.arange(self.R.shape[1]) != gone
-        trust = None if self.trust is None else self.trust[:, kept]
-        R, t, residual = (np.ascontiguousarray(a[:, kept]) for a in (self.R, self.t, self.residual))
-        return Carried(label - (label > gone), R, t, residual, trust)
+    def without(self, gone: int, label: Ints) -> "MovingParts":
+        """The other parts; `label` (vertex,) gives the vertices of the part that is gone to others."""
+        others = np.arange(self.R.shape[1]) != gone
+        confidence = None if self.confidence is None else self.confidence[:, others]
+        R, t, residual = (np.ascontiguousarray(a[:, others]) for a in (self.R, self.t, self.residual))
+        return MovingParts(label - (label > gone), R, t, residual, confidence)
 
 
 class PartTree(NamedTuple):
@@ -64,60 +81,73 @@ class PartTree(NamedTuple):
     borders, joints : where parts meet; a centre for each border
     tree            : of the parts
     degrees         : (part,) range of turning against the parent, by place in the tree; 0 for the root
-    ratio           : (part,) what turning moves the smaller side by against what the joint drifts by; infinite for the root
+    ratio           : (part,) displacement of the smaller side by turning, in drifts of the joint; infinite for the root
     """
 
     borders: Borders
     joints: Joints
-    tree: Tree
+    tree: RootedTree
     degrees: Floats
     ratio: Floats
 
 
-def part_tree(body: Surfaces, parts: Carried) -> PartTree:
-    """The tree of all parts, without a look at which of them deserve to be parts."""
+def part_tree(body: MovingSurface, parts: MovingParts, settings: PartTreeSettings | None = None) -> PartTree:
+    """The minimum spanning tree of all parts and a joint for each of its borders (2014, Sec. 6.3; the cost is ours).
+
+    It takes every part as it is; which of them are parts is for `pruning` to say.
+    """
+    chosen = settings or PartTreeSettings()
     V, R, t, label = body.V, parts.R, parts.t, parts.label
     mass = np.bincount(label, body.area, R.shape[1]).astype(np.float64)
-    met = _joined(V, borders(V, body.F, label), label, len(mass), body.size)
-    centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.trust)
-    cost = _cost(body, parts, met, centres)
+    met = _bridged(V, borders(V, body.F, label), label, len(mass), body.size, chosen)
+    centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.confidence)
+    cost = _border_cost(body, parts, met, centres, chosen)
     tree = rooted(met.pair, spanning(met.pair, cost, len(mass)), mass)
     met = branch_borders(met, tree)
-    centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.trust)
+    centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.confidence)
     degrees, ratio = np.zeros(len(mass)), np.full(len(mass), np.inf)
-    N = None if parts.trust is None else smoothed_normals(V, body.F)
+    N = None if parts.confidence is None else smoothed_normals(V, body.F)
     for k in range(1, len(mass)):
         part, above, row = tree.order[k], tree.order[tree.parents[k]], tree.border[k]
-        turns = against(R, above, part)
+        turns = relative_rotation(R, above, part)
         degrees[k] = turning_range(turns)
-        ways = []
+        displacements = []
         for p in (part, above):
-            mine = label == p
-            ways.append(swing(V[mine], body.area[mine], centres.rest[row], turns, p == above, None if N is None else N[mine]))
-        ratio[k] = min(ways) / (centres.drift[row] + NOISE * body.size)
+            own = label == p
+            normals = None if N is None else N[own]
+            displacements.append(swing(V[own], body.area[own], centres.rest[row], turns, p == above, normals))
+        ratio[k] = min(displacements) / (centres.drift[row] + chosen.noise * body.size)
     return PartTree(met, centres, tree, degrees, ratio)
 
 
-def against(R: Floats, above: int, part: int) -> Floats:
-    """(frame, 3, 3) R_pᵀ R_a: the turning of a part a against the part p above it, from R (frame, part, 3, 3)."""
+def relative_rotation(R: Floats, above: int, part: int) -> Floats:
+    """The turning of a part against the part above it.
+
+    R       : (frame, part, 3, 3)
+    returns : (frame, 3, 3) R_aboveᵀ R_part
+    """
     return R[:, above].transpose(0, 2, 1) @ R[:, part]
 
 
-def _cost(body: Surfaces, parts: Carried, met: Borders, centres: Joints) -> Floats:
-    """(border,) how ill a joint it would make: drift, being far from the border, blending ill, being a short border."""
+def _border_cost(body: MovingSurface, parts: MovingParts, met: Borders, centres: Joints, chosen: PartTreeSettings) -> Floats:
+    """(border,) how bad a joint it would make, mesh unit: by drift, distance from the border, bad blending, a short border."""
     longest = np.zeros(parts.R.shape[1])
     np.maximum.at(longest, met.pair.ravel(), np.repeat(met.length, 2))
     shortness = longest[met.pair].min(axis=1) / np.maximum(met.length, np.finfo(float).tiny)
-    away = np.linalg.norm(centres.rest - met.centre, axis=1) / (SPREAD * np.maximum(met.radius, np.finfo(float).tiny))
+    spread = RotationCentresSettings().spread
+    away = np.linalg.norm(centres.rest - met.centre, axis=1) / (spread * np.maximum(met.radius, np.finfo(float).tiny))
     blend = blend_error(body.V, body.F, body.x, parts.label, met.pair, parts.R, parts.t)
-    cost: Floats = (centres.drift * np.hypot(1.0, away) + blend + NOISE * body.size) * (1.0 + SHORT * shortness)
+    error = centres.drift * np.hypot(1.0, away) + blend + chosen.noise * body.size
+    cost: Floats = error * (1.0 + chosen.shortness * shortness)
     return cost
 
 
-def branch_borders(met: Borders, tree: Tree) -> Borders:
-    """The same borders; those of the tree have become the whole closed line around what hangs on them.
+def branch_borders(met: Borders, tree: RootedTree) -> Borders:
+    """The same borders; those of the tree have become the whole closed line around the branch below them.
 
     A thigh that meets the other one has its hip in the middle of all that it meets, not of its border with the trunk alone.
+
+    met, tree : all borders of the parts · the tree of some of them
     """
     count = len(tree.order)
     place = np.empty(count, dtype=np.int64)
@@ -133,8 +163,8 @@ def branch_borders(met: Borders, tree: Tree) -> Borders:
     return met._replace(centre=centre, radius=radius)
 
 
-def _joined(V: Floats, met: Borders, label: Ints, count: int, size: float) -> Borders:
-    """The borders, and one more between the nearest vertices wherever parts would hang on nothing."""
+def _bridged(V: Floats, met: Borders, label: Ints, count: int, size: float, chosen: PartTreeSettings) -> Borders:
+    """The borders, and one more between the nearest vertices wherever parts touch no other part."""
     of = np.arange(count)
     for a, b in met.pair:
         of[of == max(of[a], of[b])] = min(of[a], of[b])
@@ -147,8 +177,8 @@ def _joined(V: Floats, met: Borders, label: Ints, count: int, size: float) -> Bo
         met = Borders(
             np.concatenate([met.pair, pair[None]]),
             np.concatenate([met.centre, (V[u] + V[v])[None] / 2]),
-            np.append(met.radius, 0.02 * size),
-            np.append(met.length, 0.1 * size),
+            np.append(met.radius, chosen.bridge_radius * size),
+            np.append(met.length, chosen.bridge_length * size),
         )
         of[of == of[label[v]]] = of[0]
     return met

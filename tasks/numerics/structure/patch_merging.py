@@ -1,21 +1,18 @@
-"""Patches of a surface merged as long as they move as one (Ward's criterion on rigid motion)."""
+"""Patches of a surface merged as long as they move as one (Ward 1963, on the residual of rigid motion; ours)."""
 
 import heapq
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import MOMENTS, residual
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:
     """Neighbouring patches joined, the pair whose residual grows least first.
 
-    M       : (patch, frame, 17) sums of every patch; see `moments.MOMENTS`
+    M       : (patch, frame, 17) sums of every patch; see `rigid_fit.MOMENTS`
     pairs   : (pair, 2) patches that touch
     count   : groups to leave; patches that do not touch stay apart, however many there are
     limit   : growth of the residual beyond which nothing is joined, mesh unit² times weight, summed over frames
@@ -56,6 +53,7 @@ def merged(M: Floats, pairs: Ints, count: int, limit: float = np.inf) -> Ints:
 
 
 def _offer(queue: list[tuple[float, int, int, int, int]], sums: Floats, own: Floats, version: list[int], pairs: Ints) -> None:
+    """Puts the growth of the residual of pairs on the queue, with the versions of both that it holds for."""
     if not len(pairs):
         return
     for (a, b), together in zip(pairs.tolist(), _union_costs(sums, pairs).tolist(), strict=True):
@@ -64,7 +62,7 @@ def _offer(queue: list[tuple[float, int, int, int, int]], sums: Floats, own: Flo
 
 @compiled
 def costs(M: Floats) -> Floats:
-    """(set,) Σ over frames of the rigid residual of every set, mesh unit² times weight."""
+    """(set,) Σ over frames of the rigid residual of every set, mesh unit² times weight; M (set, frame, 17)."""
     out = np.zeros(len(M))
     for k in range(len(M)):
         for t in range(M.shape[1]):
@@ -74,6 +72,7 @@ def costs(M: Floats) -> Floats:
 
 @compiled
 def _union_costs(M: Floats, pairs: Ints) -> Floats:
+    """(pair,) cost of the union of two sets each."""
     out = np.zeros(len(pairs))
     m = np.empty(MOMENTS)
     for p in range(len(pairs)):

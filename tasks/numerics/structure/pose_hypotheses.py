@@ -1,62 +1,93 @@
-"""Where a limb may be that surface calls for: as it was in other frames, or between them."""
+"""Where a limb may be that the frame does not show where it is: as in other frames, or between them (ours)."""
+
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, against_parents, chained, limbs, surface
-from kinetree.tasks.numerics.structure.frame_poses import between
-from kinetree.tasks.numerics.structure.surface_matches import Matches, unexplained
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
-
-TRIED = 24  # frames from which a limb's turning is tried
-REACH = 0.1  # distance from which on a point explains nothing at all, share of the body's size
-NEAR = 0.03  # as near as this in place and direction the rest of the body explains a point
-FEW = 0.005  # share of a frame that may be left over anywhere
-BETTER = 0.8  # a guess leaves at most this share of what the posture leaves
+from kinetree.tasks.numerics.structure.articulated_frame import (
+    FramePose,
+    SkinnedBody,
+    chained,
+    limbs,
+    relative_rotations,
+    surface,
+)
+from kinetree.tasks.numerics.structure.frame_poses import interpolated
+from kinetree.tasks.numerics.structure.surface_matches import Matches, uncovered
 
 
-def guess(
-    body: Body, at: Posture, target: Target, found: Matches, turn: Floats, known: Flags, frame: int, doubted: Flags
-) -> Posture | None:
-    """The posture with its doubted limbs as they were in the frame in which they explain what is left over; None if none do.
+class PoseHypothesesSettings(NamedTuple):
+    """Which poses of a limb are tried and when one counts; lengths are shares of the root of the area."""
 
-    turn, known : (frame, part, 3, 3) against the parents · (frame, part) where each was seen
-    frame       : the row that is to be guessed
-    doubted     : (part,) what may be elsewhere, with all that hangs on it
+    frames: int = 24
+    """Frames whose pose of a limb is tried, evenly many of those that saw it. Not recorded; for time."""
+    reach: float = 0.1
+    """Distance from which on a vertex covers nothing of a point. Not recorded."""
+    near: float = 0.03
+    """Distance in place and direction up to which the rest of the body covers a point. Not recorded."""
+    least_uncovered: float = 0.005
+    """Share of a frame that must be uncovered for anything to be tried. Not recorded."""
+    better: float = 0.8
+    """Share of the uncovered points that a hypothesis leaves at most, against the pose so far. Not recorded."""
+
+
+def pose_hypothesis(
+    body: SkinnedBody,
+    pose: FramePose,
+    target: Target,
+    found: Matches,
+    turn: Floats,
+    known: Flags,
+    frame: int,
+    unseen: Flags,
+    settings: PoseHypothesesSettings | None = None,
+) -> FramePose | None:
+    """The pose with its unseen limbs as they were in the frame in which they cover most of what is uncovered.
+
+    found   : matches of the pose with the frame
+    turn    : (frame, part, 3, 3) rotations against the parents
+    known   : (frame, part) where each part was seen
+    frame   : the row of this frame
+    unseen  : (part,) parts that may be elsewhere, with all parts below them
+    returns : None where too little is uncovered or no limb covers it better elsewhere
     """
-    piece = limbs(body.parents, doubted)
-    if (unexplained(body, target, found) >= 1.0).mean() < FEW or piece.max(initial=-1) < 0:
+    chosen = settings or PoseHypothesesSettings()
+    limb = limbs(body.parents, unseen)
+    if (uncovered(body, target, found) >= 1.0).mean() < chosen.least_uncovered or limb.max(initial=-1) < 0:
         return None
-    best, changed = against_parents(at.R, body.parents), False
-    for number in range(piece.max() + 1):
-        parts = np.flatnonzero(piece == number)
-        ways = _ways(turn, known, frame, parts)
-        mine = np.isin(body.label[body.asked], np.flatnonzero(body.beyond[parts].any(axis=0)))
-        over = _points(target)[_away(found.x, found.n, target, body.asked[~mine], _points(target)) > NEAR * body.size]
-        tried = [surface(body, Posture(chained(_with(best, parts, way), body.parents), at.x)) for way in [best[parts], *ways]]
-        left = [np.minimum(_away(x, n, target, body.asked[mine], over) / (REACH * body.size), 1.0).sum() for x, n in tried]
-        chosen = int(np.argmin(left))
-        if left[chosen] < BETTER * left[0]:
-            best, changed = _with(best, parts, ways[chosen - 1]), True
-    return Posture(chained(best, body.parents), at.x) if changed else None
+    best, changed, points = relative_rotations(pose.R, body.parents), False, _points(target)
+    for number in range(limb.max() + 1):
+        parts = np.flatnonzero(limb == number)
+        candidates = _candidates(turn, known, frame, parts, chosen.frames)
+        own = np.isin(body.label[body.sample], np.flatnonzero(body.beyond[parts].any(axis=0)))
+        rest = points[_distance(found.x, found.n, target, body.sample[~own], points) > chosen.near * body.size]
+        cost = []
+        for candidate in [best[parts], *candidates]:
+            x, n = surface(body, FramePose(chained(_replaced(best, parts, candidate), body.parents), pose.x))
+            away = _distance(x, n, target, body.sample[own], rest) / (chosen.reach * body.size)
+            cost.append(np.minimum(away, 1.0).sum())
+        cheapest = int(np.argmin(cost))
+        if cost[cheapest] < chosen.better * cost[0]:
+            best, changed = _replaced(best, parts, candidates[cheapest - 1]), True
+    return FramePose(chained(best, body.parents), pose.x) if changed else None
 
 
-def _ways(turn: Floats, known: Flags, frame: int, parts: Ints) -> list[Floats]:
-    """Turnings (part, 3, 3) of one limb: between the nearest frames that saw each part, and as in frames that saw them all."""
-    middle = np.stack([between(turn[:, a], known[:, a] & (np.arange(len(turn)) != frame))[frame] for a in parts])
+def _candidates(turn: Floats, known: Flags, frame: int, parts: Ints, most: int) -> list[Floats]:
+    """Rotations (part, 3, 3) of one limb: between the nearest frames that saw each part, and of frames that saw them all."""
+    others = np.arange(len(turn)) != frame
+    between = np.stack([interpolated(turn[:, a], known[:, a] & others)[frame] for a in parts])
     seen = np.flatnonzero(known[:, parts].all(axis=1))
-    some = seen[np.linspace(0, len(seen) - 1, min(TRIED, len(seen))).astype(np.int64)] if len(seen) else seen
-    return [middle, *(turn[k, parts] for k in some)]
+    tried = seen[np.linspace(0, len(seen) - 1, min(most, len(seen))).astype(np.int64)] if len(seen) else seen
+    return [between, *(turn[k, parts] for k in tried)]
 
 
-def _with(turn: Floats, parts: Ints, way: Floats) -> Floats:
+def _replaced(turn: Floats, parts: Ints, candidate: Floats) -> Floats:
+    """Rotations with those of some parts replaced."""
     changed = turn.copy()
-    changed[parts] = way
+    changed[parts] = candidate
     return changed
 
 
@@ -66,8 +97,8 @@ def _points(target: Target) -> Floats:
     return points
 
 
-def _away(x: Floats, n: Floats, target: Target, mine: Ints, points: Floats) -> Floats:
+def _distance(x: Floats, n: Floats, target: Target, vertices: Ints, points: Floats) -> Floats:
     """(point,) distance to the nearest of some of the body's vertices in place and direction, mesh unit."""
-    if not len(mine):
+    if not len(vertices):
         return np.full(len(points), np.inf)
-    return np.asarray(cKDTree(np.hstack([x[mine], target.beta * n[mine]])).query(points)[0])
+    return np.asarray(cKDTree(np.hstack([x[vertices], target.beta * n[vertices]])).query(points)[0])

@@ -1,44 +1,75 @@
-"""The finished body fitted to the surface of one frame, where the pose so far is in doubt (2014, Sec. 7.3).
+"""The finished body fitted to the surface of one frame, where its pose is uncertain (2014, Sec. 7.3; ours).
 
-E = Σ across the surface, both ways (`matches`) + α Σ trust² |x_v − aligned_v|² + Σ_a firm_a |log(turn_a expected_aᵀ)|²,
-by Gauss–Newton over the turns of all parts and the root's shift, bones of fixed length, from wide to narrow. A part of which
-nothing is seen is held where it was expected; the more its surface says, the less.
+E = Σ across the surface, both ways (`matches`) + α Σ confidence² |x_v − aligned_v|² + Σ_a hold_a |log(turn_a expected_aᵀ)|²,
+by Gauss–Newton over the rotations of all parts and the root's shift, bones of fixed length, from wide to narrow. A part that
+the frame does not show is held where it was expected; the more the frame shows of it, the less it is held.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.articulated_fit import turns
-from kinetree.tasks.numerics.structure.articulated_frame import Body, Posture, against_parents, chained, joints, pulled
-from kinetree.tasks.numerics.structure.frame_poses import SEEN
-from kinetree.tasks.numerics.structure.pose_hypotheses import guess
-from kinetree.tasks.numerics.structure.surface_matches import Matches, Rows, followed, rows, shown, sought, unexplained
+from kinetree.tasks.numerics.structure.articulated_fit import rotations
+from kinetree.tasks.numerics.structure.articulated_frame import (
+    FramePose,
+    SkinnedBody,
+    add_equations,
+    chained,
+    joints,
+    relative_rotations,
+)
+from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
+from kinetree.tasks.numerics.structure.pose_hypotheses import pose_hypothesis
+from kinetree.tasks.numerics.structure.surface_matches import (
+    MatchEquations,
+    Matches,
+    equations,
+    followed,
+    searched,
+    uncovered,
+    visible_share,
+)
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
-
-DOUBT = 0.7  # confidence of a part below which a frame is fitted
-GAIN = 0.03  # share of what was left unexplained that a fit must explain
-STRANGE = np.deg2rad(60.0)  # no part turns farther than this from every turn it was seen in, unless it did already
-SURFACE = 0.7  # what a part is believed that the surface alone shows in full; it says little of turns about a limb's own axis
-
-SIGMA = (0.1, 0.06, 0.036, 0.022, 0.015, 0.012, 0.012, 0.012)  # where a match counts a quarter, shares of the body's size
-SEARCH = 2  # every so many steps matches are sought everywhere
-SLACK = 0.05  # ways along the surface against ways across it
-ALIGNED = 0.5  # α: aligned vertices against the surface
-FAINT = 0.5  # trust below which an aligned vertex says nothing
-HARDLY = 0.3  # confidence of a part below which its aligned vertices count less
-HOLD, ALONE = 0.002, 0.02  # what is expected against a part's surface: seen in full, and beside that where nothing is
 DAMPING = 1e-6
-STEP = 0.5  # radians
+"""Added to the diagonal of the normal equations, share of its mean: keeps them solvable."""
 
 
-class Known(NamedTuple):
-    """What the sequence says of all poses.
+class PoseRefinementSettings(NamedTuple):
+    """When a frame is fitted, how, and when the fit counts."""
+
+    certain: float = 0.7
+    """Confidence of a part below which its frame is fitted. Not recorded."""
+    gain: float = 0.03
+    """Share of the uncovered surface that a fit must cover to count. Not recorded."""
+    strange_turn: float = float(np.deg2rad(60.0))
+    """Radians: a part turns no farther than this from every turn it was seen in, unless it did before. Not recorded."""
+    surface_confidence: float = 0.7
+    """Confidence of a part that the frame's surface shows in full; it says little of roll. Not recorded."""
+    scales: tuple[float, ...] = (0.1, 0.06, 0.036, 0.022, 0.015, 0.012, 0.012, 0.012)
+    """Distance at which a match counts a quarter, share of the root of the area, step by step. Not recorded."""
+    search_every: int = 2
+    """Steps after which matches are searched everywhere; between them they are followed. Not recorded; for time."""
+    along: float = 0.05
+    """Weight of a match's distance along the surface against that across it. Not recorded."""
+    aligned: float = 0.5
+    """α: weight of aligned vertices against the surface. Not recorded."""
+    faint: float = 0.5
+    """Confidence below which an aligned vertex has no weight. Not recorded."""
+    hardly_seen: float = 0.3
+    """Confidence of a part below which its aligned vertices weigh less. Not recorded."""
+    hold: float = 0.002
+    """Weight of the expected rotation against a part's surface, seen in full. Chosen with limbs off by 50°: held five times as
+    firmly they did not come back."""
+    hold_unseen: float = 0.02
+    """Weight added where nothing of a part is seen. Not recorded."""
+    longest_step: float = 0.5
+    """Radians by which a part turns in one step, at most. Not recorded."""
+
+
+class KnownPoses(NamedTuple):
+    """The poses of all frames before any is refined.
 
     R          : (frame, part, 3, 3) from rest to each frame
     confidence : (frame, part) 0 to 1
@@ -48,120 +79,156 @@ class Known(NamedTuple):
     confidence: Floats
 
 
-class Fitted(NamedTuple):
-    """A frame's posture.
+class RefinedPose(NamedTuple):
+    """A frame's pose.
 
-    moved         : whether it is another than the one so far
-    at            : the posture
+    moved         : whether it is another than before
+    pose          : the pose
     confidence    : (part,) 0 to 1
-    before, after : share of the frame's surface that the posture so far and this one leave unexplained
+    before, after : share of the frame's surface that the body leaves uncovered before and in this pose
     """
 
     moved: bool
-    at: Posture
+    pose: FramePose
     confidence: Floats
     before: float
     after: float
 
 
-def doubtful(confidence: Floats) -> Flags:
+def needs_refinement(confidence: Floats, settings: PoseRefinementSettings | None = None) -> Flags:
     """(…,) whether a frame needs a fit, from the confidence (…, part) of its parts."""
-    return np.asarray((confidence < DOUBT).any(axis=-1))
+    return np.asarray((confidence < (settings or PoseRefinementSettings()).certain).any(axis=-1))
 
 
 def refined_pose(
-    body: Body, start: Posture, target: Target, aligned: Floats, trust: Floats, known: Known, frame: int
-) -> Fitted:
-    """The posture that explains the frame better than the one so far by a margin, or that one.
+    body: SkinnedBody,
+    start: FramePose,
+    target: Target,
+    aligned: Floats,
+    confidence: Floats,
+    known: KnownPoses,
+    frame: int,
+    settings: PoseRefinementSettings | None = None,
+) -> RefinedPose:
+    """The pose that covers the frame better than the one before by a margin, or the one before (2014, Sec. 7.3; ours).
 
-    start          : the posture so far
-    target         : the frame
-    aligned, trust : (vertex, xyz) where each vertex is believed to be, mesh unit · (vertex,) 0 to 1
-    known, frame   : all poses so far · the row of this one
+    start      : the pose before
+    target     : the frame
+    aligned    : (vertex, xyz) where each vertex is aligned to, mesh unit
+    confidence : (vertex,) of the aligned vertices, 0 to 1
+    known      : all poses before
+    frame      : the row of this frame in `known`
     """
-    first = sought(body, start, target)
-    before = float(unexplained(body, target, first).mean())
-    expected = against_parents(start.R, body.parents)
-    trust = believed(body, trust, known.confidence[frame])
-    best = refined(body, start, target, aligned, trust, expected)
-    found = sought(body, best, target)
-    turn, seen = against_parents(known.R, body.parents), _seen(known.confidence, body.parents)
-    lost = _out_of_sight(body, known.confidence[frame], shown(body, target, found))
-    other = guess(body, best, target, found, turn, seen, frame, lost)
+    chosen = settings or PoseRefinementSettings()
+    before = float(uncovered(body, target, searched(body, start, target)).mean())
+    expected, sure = relative_rotations(start.R, body.parents), known.confidence[frame]
+    weight = aligned_weight(body, confidence, sure, chosen)
+    best = refined(body, start, target, aligned, weight, expected, chosen)
+    found = searched(body, best, target)
+    turn, seen = relative_rotations(known.R, body.parents), _seen(known.confidence, body.parents)
+    unseen = _unseen_branches(body, sure, visible_share(body, target, found), chosen)
+    other = pose_hypothesis(body, best, target, found, turn, seen, frame, unseen)
     if other is not None:
-        other = refined(body, other, target, aligned, trust, against_parents(other.R, body.parents))
-        there = sought(body, other, target)
-        if unexplained(body, target, there).mean() < unexplained(body, target, found).mean():
-            best, found = other, there
-    strange = _strange(best, start, body.parents, turn, seen)
+        other = refined(body, other, target, aligned, weight, relative_rotations(other.R, body.parents), chosen)
+        matches = searched(body, other, target)
+        if uncovered(body, target, matches).mean() < uncovered(body, target, found).mean():
+            best, found = other, matches
+    strange = _strange(best, start, body.parents, turn, seen, chosen)
     if strange.any():
-        kept = np.where((strange @ body.beyond)[:, None, None], expected, against_parents(best.R, body.parents))
-        best = Posture(chained(kept, body.parents), best.x)
-        found = sought(body, best, target)
-    after = float(unexplained(body, target, found).mean())
-    if after > (1.0 - GAIN) * before:
-        return Fitted(False, start, known.confidence[frame], before, before)
-    above = np.maximum(body.parents, 0)
-    share = shown(body, target, found)
-    confidence = np.maximum(known.confidence[frame], SURFACE * np.minimum(share, share[above]) ** 2)
-    return Fitted(True, best, confidence, before, after)
+        kept = np.where((strange @ body.beyond)[:, None, None], expected, relative_rotations(best.R, body.parents))
+        best = FramePose(chained(kept, body.parents), best.x)
+        found = searched(body, best, target)
+    after = float(uncovered(body, target, found).mean())
+    if after > (1.0 - chosen.gain) * before:
+        return RefinedPose(False, start, sure, before, before)
+    above, share = np.maximum(body.parents, 0), visible_share(body, target, found)
+    shown = chosen.surface_confidence * np.minimum(share, share[above]) ** 2
+    return RefinedPose(True, best, np.maximum(sure, shown), before, after)
 
 
-def refined(body: Body, start: Posture, target: Target, aligned: Floats, trust: Floats, expected: Floats) -> Posture:
-    """The posture that explains the frame's surface best, from a posture not too far.
+def refined(
+    body: SkinnedBody,
+    start: FramePose,
+    target: Target,
+    aligned: Floats,
+    weight: Floats,
+    expected: Floats,
+    settings: PoseRefinementSettings | None = None,
+) -> FramePose:
+    """The pose that covers the frame's surface best, from a pose not too far.
 
-    trust    : (vertex,) weight of the aligned vertices
-    expected : (part, 3, 3) turns against the parents, the root's in space
+    aligned  : (vertex, xyz) where each vertex is aligned to, mesh unit
+    weight   : (vertex,) of the aligned vertices
+    expected : (part, 3, 3) rotations against the parents, the root's in space
     """
-    at, found = start, None
-    for step, sigma in enumerate(SIGMA):
-        found = sought(body, at, target) if found is None or step % SEARCH == 0 else followed(body, at, target, found)
-        said = rows(body, target, found, sigma * body.size, SLACK)
-        at = _stepped(body, at, said, _aligned(body, found, aligned, trust), expected)
-    return at
+    chosen = settings or PoseRefinementSettings()
+    pose, found = start, None
+    for step, scale in enumerate(chosen.scales):
+        search = found is None or step % chosen.search_every == 0
+        found = searched(body, pose, target) if search or found is None else followed(body, pose, target, found)
+        surface = equations(body, target, found, scale * body.size, chosen.along)
+        pose = _stepped(body, pose, surface, _aligned_equations(body, found, aligned, weight, chosen), expected, chosen)
+    return pose
 
 
-def _stepped(body: Body, at: Posture, said: Rows, aligned: Rows, expected: Floats) -> Posture:
+def _stepped(
+    body: SkinnedBody,
+    pose: FramePose,
+    surface: MatchEquations,
+    aligned: MatchEquations,
+    expected: Floats,
+    chosen: PoseRefinementSettings,
+) -> FramePose:
+    """One Gauss–Newton step."""
     count = len(body.parents)
     H, g = np.zeros((3 * count + 3, 3 * count + 3)), np.zeros(3 * count + 3)
-    R, X = np.ascontiguousarray(at.R), joints(body, at)
-    for drawn in (said, aligned):
-        pulled(H, g, *drawn, body.V, body.bound, body.weight, body.rest, body.parents, R, X)
-    _hold(H, g, R, body.parents, expected, body.reach * (HOLD + ALONE * (1.0 - heard(body, said)) ** 2))
+    R, X = np.ascontiguousarray(pose.R), joints(body, pose)
+    for rows in (surface, aligned):
+        add_equations(H, g, *rows, body.V, body.bound, body.weight, body.rest, body.parents, R, X)
+    unseen = (1.0 - surface_support(body, surface)) ** 2
+    _hold(H, g, R, body.parents, expected, body.reach * (chosen.hold + chosen.hold_unseen * unseen))
     H[-3:, :-3] = H[:-3, -3:].T
     diagonal = np.arange(len(g))
     H[diagonal, diagonal] += DAMPING * np.trace(H) / len(g)
     move: Floats = np.linalg.solve(H, g).astype(np.float64)
     omega = move[:-3].reshape(count, 3)
-    share = min(1.0, STEP / max(float(np.linalg.norm(omega, axis=1).max()), 1e-12))
-    return Posture(turns(share * omega) @ R, at.x + share * move[-3:])
+    share = min(1.0, chosen.longest_step / max(float(np.linalg.norm(omega, axis=1).max()), 1e-12))
+    return FramePose(rotations(share * omega) @ R, pose.x + share * move[-3:])
 
 
-def believed(body: Body, trust: Floats, confidence: Floats) -> Floats:
-    """(vertex,) weight of the aligned vertices: faint trust is none, and a part that is hardly seen has none worth trusting.
+def aligned_weight(
+    body: SkinnedBody, confidence: Floats, sure: Floats, settings: PoseRefinementSettings | None = None
+) -> Floats:
+    """Weight of the aligned vertices: none where confidence is faint, less on parts that are hardly seen.
 
     At the edge of a lost limb are vertices that the flesh around it has drawn to itself.
+
+    confidence : (vertex,) 0 to 1
+    sure       : (part,) confidence of the parts, 0 to 1
+    returns    : (vertex,) 0 to 1
     """
-    clear = np.clip((trust - FAINT) / (1.0 - FAINT), 0.0, 1.0) ** 2
-    weight: Floats = clear * np.minimum(confidence / HARDLY, 1.0)[body.label] ** 2
+    chosen = settings or PoseRefinementSettings()
+    clear = np.clip((confidence - chosen.faint) / (1.0 - chosen.faint), 0.0, 1.0) ** 2
+    weight: Floats = clear * np.minimum(sure / chosen.hardly_seen, 1.0)[body.label] ** 2
     return weight
 
 
-def heard(body: Body, said: Rows) -> Floats:
-    """(part,) 0 to 1: how much of each part's surface the frame speaks of, whichever way says more."""
-    count, asked = len(body.parents), len(body.asked)
-    part = body.label[said.vertex]
-    ways = [np.bincount(part[way], said.plane[way], count) for way in (slice(asked), slice(asked, None))]
-    whole = np.maximum(np.bincount(body.label[body.asked], body.mass, count), 1e-300)
+def surface_support(body: SkinnedBody, surface: MatchEquations) -> Floats:
+    """(part,) 0 to 1: share of each part's surface that the frame's matches weigh, in the direction that has more."""
+    count, sampled = len(body.parents), len(body.sample)
+    part = body.label[surface.vertex]
+    ways = [np.bincount(part[way], surface.plane[way], count) for way in (slice(sampled), slice(sampled, None))]
+    whole = np.maximum(np.bincount(body.label[body.sample], body.mass, count), 1e-300)
     return np.minimum(np.maximum(*ways) / whole, 1.0)
 
 
-def _aligned(body: Body, found: Matches, aligned: Floats, trust: Floats) -> Rows:
+def _aligned_equations(
+    body: SkinnedBody, found: Matches, aligned: Floats, weight: Floats, chosen: PoseRefinementSettings
+) -> MatchEquations:
     """The aligned vertices, in all directions alike."""
-    a = body.asked
-    d = aligned[a] - found.x[a]
-    weight = ALIGNED * body.mass * trust[a]
-    return Rows(a, d, np.zeros_like(d), np.zeros(len(a)), weight)
+    s = body.sample
+    d = aligned[s] - found.x[s]
+    return MatchEquations(s, d, np.zeros_like(d), np.zeros(len(s)), chosen.aligned * body.mass * weight[s])
 
 
 def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Floats, firm: Floats) -> None:
@@ -182,32 +249,34 @@ def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Floats, firm
             g[j] -= firm[a] * away[a]
 
 
-def _out_of_sight(body: Body, confidence: Floats, share: Floats) -> Flags:
-    """(part,) parts in doubt that the frame does not show where they are, and all that hangs on them; never the root."""
-    first = (confidence < DOUBT) & (share < SEEN)
+def _unseen_branches(body: SkinnedBody, sure: Floats, share: Floats, chosen: PoseRefinementSettings) -> Flags:
+    """(part,) uncertain parts that the frame does not show where they are, and all parts below them; never the root."""
+    first = (sure < chosen.certain) & (share < FramePosesSettings().seen)
     first[0] = False
     return np.asarray(first @ body.beyond)
 
 
 def _seen(confidence: Floats, parents: Ints) -> Flags:
-    """(frame, part) frames whose turning serves others: the part and its parent were seen."""
-    seen: Flags = np.minimum(confidence, confidence[:, np.maximum(parents, 0)]) >= SEEN
+    """(frame, part) frames whose rotation serves others: the part and its parent were seen."""
+    seen: Flags = np.minimum(confidence, confidence[:, np.maximum(parents, 0)]) >= FramePosesSettings().seen
     return seen
 
 
-def _strange(at: Posture, start: Posture, parents: Ints, turn: Floats, seen: Flags) -> Flags:
-    """(part,) parts that turn as they were seen nowhere, and did not before."""
+def _strange(
+    pose: FramePose, start: FramePose, parents: Ints, turn: Floats, seen: Flags, chosen: PoseRefinementSettings
+) -> Flags:
+    """(part,) parts that turn as they were seen in no frame, and did not before."""
     strange = np.zeros(len(parents), np.bool_)
-    new, old = (against_parents(p.R, parents) for p in (at, start))
+    new, old = (relative_rotations(p.R, parents) for p in (pose, start))
     for a in range(1, len(parents)):
-        ways = turn[seen[:, a], a]
-        if len(ways):
-            far, was = (_angles(ways, p[a]).min() for p in (new, old))
-            strange[a] = far > max(STRANGE, was)
+        known = turn[seen[:, a], a]
+        if len(known):
+            angle, before = (_angles(known, p[a]).min() for p in (new, old))
+            strange[a] = angle > max(chosen.strange_turn, before)
     return strange
 
 
-def _angles(ways: Floats, R: Floats) -> Floats:
-    """(way,) radians between rotations."""
-    cosine = (np.einsum("kxy,xy->k", ways, R) - 1.0) / 2.0
+def _angles(turns: Floats, R: Floats) -> Floats:
+    """(rotation,) radians between rotations (rotation, 3, 3) and one."""
+    cosine = (np.einsum("kxy,xy->k", turns, R) - 1.0) / 2.0
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))

@@ -1,131 +1,168 @@
-"""Which parts are parts: joints turn by themselves and more than they drift; the rest is flesh, cloth or error.
+"""Which parts are parts: joints turn by themselves and more than they drift; the rest is flesh, cloth or error (ours).
 
-A part that fails is dropped and its vertices go to the parts around it, never merged as a rigid whole: merging by a bad
-border once made two parts of a body. Everything around is then found anew. A part stays if without it the worst joint
-would be worse.
+A part that fails is dropped and its vertices go to the parts around it, never merged as a rigid whole: merging across a bad
+border once made two parts of a body. The tree is then built anew. A part stays if without it the worst joint would be worse.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
-from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, against, part_tree
-from kinetree.tasks.numerics.structure.vertex_reassignment import handed_over
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
+from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+FLESH, STILL, SLIDING, UNEVIDENT = "flesh", "still", "sliding", "unevident"
+"""Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames."""
 
-LEAST_DEGREES = 6.0
-LEAST_RATIO = 0.8
-"""What turning must move a part by, against what its joint drifts by."""
-LEAF_RATIO = 0.5
-"""The same for the last part of a limb that has a leaf: hands and feet are small."""
-FLAP_RATIO = 3.0
-"""The same for a last part without a leaf: few bodies have a limb there."""
-CLEAR_RATIO = 3.0
-"""A part between a poor joint and one as good as this stays."""
-FLESH = 0.92
-"""Share of a part's turning that follows from that of the part beyond it, above which it is flesh around a joint."""
-THIN = 1.25
-"""Length of such a part at most, from joint to joint in radii of its borders."""
-WORSE = 0.9
+
+DEFAULT_RATIO = 0.8
+"""`PruningSettings.ratio` that `leaf_ratio` and `flap_ratio` belong to: they grow and shrink with it."""
+
+
+class PruningSettings(NamedTuple):
+    """What a joint must show to stay."""
+
+    degrees: float = 6.0
+    """Range by which a joint turns, at least. Chosen on thirty generated bodies: with 8° three more true joints are lost."""
+    ratio: float = 0.8
+    """Displacement that turning gives the smaller side of a joint, in drifts of the joint, at least. Not recorded."""
+    leaf_ratio: float = 0.5
+    """The same for the last part of a limb that has a leaf: hands and feet are small. Not recorded."""
+    flap_ratio: float = 3.0
+    """The same for a last part without a leaf: few bodies have a limb there. Not recorded."""
+    clear_ratio: float = 3.0
+    """Ratio from which on a joint is clear: a part that has a clear joint stays when another of its joints is poor. Not
+    recorded."""
+    flesh_share: float = 0.92
+    """Share of a part's turning that follows from that of the part beyond it, above which it is flesh. Not recorded."""
+    flesh_length: float = 1.25
+    """Length of such a part at most, from joint to joint, in radii of its borders. Not recorded."""
+    worse: float = 0.9
+    """A part is dropped only if the worst ratio without it is at least this share of the worst ratio with it. Not recorded."""
+
+
+class Dropped(NamedTuple):
+    """A part that is none, by its number before any was dropped, and why: `FLESH`, `STILL`, `SLIDING` or `UNEVIDENT`."""
+
+    part: int
+    reason: str
 
 
 class Pruned(NamedTuple):
-    """The parts that are left, and the tree they hang in."""
+    """The parts that are left, the tree they are in, and how they came about.
 
-    parts: Carried
+    parts     : numbered without gaps
+    part_tree : of these parts
+    before    : the tree of all parts, before any was dropped
+    origin    : (part,) number of each part left, before any was dropped
+    dropped   : in the order in which parts were dropped
+    """
+
+    parts: MovingParts
     part_tree: PartTree
+    before: PartTree
+    origin: Ints
+    dropped: tuple[Dropped, ...]
 
 
 def pruned(
-    body: Surfaces,
-    parts: Carried,
+    body: MovingSurface,
+    parts: MovingParts,
     leaves: Ints,
-    seen: Seen | None = None,
-    *,
-    degrees: float = LEAST_DEGREES,
-    ratio: float = LEAST_RATIO,
+    evidence: FrameEvidence | None = None,
+    settings: PruningSettings | None = None,
 ) -> Pruned:
-    """Drops parts, the most doubtful first, until none is doubtful or none can be spared; then those that no surface shows.
+    """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows.
 
-    leaves         : (leaf,) vertices at the ends of limbs
-    seen           : the frames' surfaces; None where every vertex was followed
-    degrees, ratio : what a joint must turn by, and how many times farther than it drifts
+    leaves   : (leaf,) vertices at the ends of limbs
+    evidence : the frames' surfaces; None where every vertex was followed
     """
+    chosen = settings or PruningSettings()
     start, ring = rings(body.F, len(body.V))
-    left = _spared(body, parts, leaves, degrees, ratio)
-    while seen is not None and (gone := least_evident_joint(body, left.parts, left.part_tree, seen)) >= 0:
-        label = handed_over(body.V, body.x, left.parts.label, gone, left.parts.R, left.parts.t, start, ring)
-        left = _spared(body, left.parts.without(gone, label), leaves, degrees, ratio)
-    return left
+    tree = part_tree(body, parts)
+    state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, chosen)
+    while evidence is not None and (gone := least_evident_joint(body, state.parts, state.part_tree, evidence)) >= 0:
+        left = _without(body, state, gone, UNEVIDENT, start, ring)
+        state = _pruned_by_motion(body, left, leaves, chosen)
+    return state
 
 
-def _spared(body: Surfaces, parts: Carried, leaves: Ints, degrees: float, ratio: float) -> Pruned:
+def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, chosen: PruningSettings) -> Pruned:
+    """Drops weak parts until none is weak or none can be spared."""
     start, ring = rings(body.F, len(body.V))
-    found = part_tree(body, parts)
     while True:
-        for gone in _doubtful(body, parts, found, leaves, degrees, ratio):
-            label = handed_over(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring)
-            fewer = parts.without(gone, label)
-            without = part_tree(body, fewer)
-            if without.ratio.min() >= WORSE * found.ratio.min():
-                parts, found = fewer, without
+        for part, reason in _weak_parts(body, state.parts, state.part_tree, leaves, chosen).items():
+            fewer = _without(body, state, part, reason, start, ring)
+            if fewer.part_tree.ratio.min() >= chosen.worse * state.part_tree.ratio.min():
+                state = fewer
                 break
         else:
-            return Pruned(parts, found)
+            return state
 
 
-def _doubtful(body: Surfaces, parts: Carried, found: PartTree, leaves: Ints, degrees: float, ratio: float) -> list[int]:
-    """Parts that may be none, the most doubtful first: flesh, then what turns too little, then what drifts too much."""
+def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: Ints, ring: Ints) -> Pruned:
+    """The same without one part, whose vertices go to the parts around it."""
+    parts = state.parts
+    fewer = parts.without(gone, reassigned(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring))
+    dropped = (*state.dropped, Dropped(int(state.origin[gone]), reason))
+    return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
+
+
+def _weak_parts(
+    body: MovingSurface, parts: MovingParts, found: PartTree, leaves: Ints, chosen: PruningSettings
+) -> dict[int, str]:
+    """Parts that may be none, the weakest first, and why: flesh, else what turns too little, else what drifts too much."""
     tree, mass = found.tree, np.bincount(parts.label, body.area, parts.R.shape[1])
     has_leaf = np.isin(np.arange(len(mass)), parts.label[leaves])
-    doubts = [(_flesh(parts.R, found, k), int(part)) for k, part in enumerate(tree.order)]
+    scores = [(_flesh_score(parts.R, found, k, chosen), int(part), FLESH) for k, part in enumerate(tree.order)]
     for k in range(1, len(mass)):
         part, above = int(tree.order[k]), int(tree.order[tree.parents[k]])
         smaller = min((part, above), key=lambda p: (mass[p], p))
         last = not (tree.parents == k).any()
-        doubts.append((found.degrees[k] / max(degrees, 1e-9), smaller))
+        scores.append((found.degrees[k] / max(chosen.degrees, 1e-9), smaller, STILL))
         if last and not has_leaf[part]:
-            doubts.append((found.ratio[k] / max(FLAP_RATIO / LEAST_RATIO * ratio, 1e-9), part))
+            least = chosen.flap_ratio / DEFAULT_RATIO * chosen.ratio
+            scores.append((found.ratio[k] / max(least, 1e-9), part, SLIDING))
             continue
-        least = LEAF_RATIO / LEAST_RATIO * ratio if last else ratio
-        spare = [p for p in (smaller, part + above - smaller) if not _bears(found, p, k)]
-        doubts += [(found.ratio[k] / max(least, 1e-9), p) for p in spare[:1]]
-    return list(dict.fromkeys(part for doubt, part in sorted(doubts) if doubt < 1.0))
+        least = chosen.leaf_ratio / DEFAULT_RATIO * chosen.ratio if last else chosen.ratio
+        spare = [p for p in (smaller, part + above - smaller) if not _has_clear_joint(found, p, k, chosen.clear_ratio)]
+        scores += [(found.ratio[k] / max(least, 1e-9), p, SLIDING) for p in spare[:1]]
+    failed = [entry for entry in scores if entry[0] < 1.0]
+    reasons = {part: reason for kind in (SLIDING, STILL, FLESH) for _, part, reason in failed if reason == kind}
+    return {part: reasons[part] for _, part, _ in sorted(failed)}
 
 
-def _bears(found: PartTree, part: int, k: int) -> bool:
+def _has_clear_joint(found: PartTree, part: int, k: int, clear_ratio: float) -> bool:
     """Whether a part has a clear joint other than the k-th."""
     tree = found.tree
     place = int(np.flatnonzero(tree.order == part)[0])
     others = (tree.parents == place) | (np.arange(len(tree.order)) == place)
     others[[0, k]] = False
-    return bool((found.ratio[others] >= CLEAR_RATIO).any())
+    return bool((found.ratio[others] >= clear_ratio).any())
 
 
-def _flesh(R: Floats, found: PartTree, k: int) -> float:
+def _flesh_score(R: Floats, found: PartTree, k: int, chosen: PruningSettings) -> float:
     """Below 1, and the lower the clearer, where the part at the k-th place is a ring of flesh between two neighbours."""
     tree = found.tree
     children = np.flatnonzero(tree.parents == k)
     if k == 0 and len(children) != 2:
         return np.inf
-    ends = [(int(children[0]), int(children[1]))] if k == 0 else [(k, int(c)) for c in children]
-    return min((_ring(R, found, k, *pair) for pair in ends), default=np.inf)
+    pairs = [(int(children[0]), int(children[1]))] if k == 0 else [(k, int(c)) for c in children]
+    return min((_ring_score(R, found, k, *pair, chosen) for pair in pairs), default=np.inf)
 
 
-def _ring(R: Floats, found: PartTree, k: int, one: int, other: int) -> float:
-    """The same, asked of two of its joints: how near they are, if it turns by a share of what both turn by."""
+def _ring_score(R: Floats, found: PartTree, k: int, one: int, other: int, chosen: PruningSettings) -> float:
+    """The same for two of its joints: how near they are, if the part turns by a share of what both turn by."""
     tree = found.tree
     rows = tree.border[[one, other]]
-    apart = float(np.linalg.norm(np.diff(found.joints.rest[rows], axis=0)))
-    reach = THIN * float(found.borders.radius[rows].min())
+    distance = float(np.linalg.norm(np.diff(found.joints.rest[rows], axis=0)))
+    reach = chosen.flesh_length * float(found.borders.radius[rows].min())
     top = int(tree.order[one if k == 0 else tree.parents[k]])
     ring, end = int(tree.order[k]), int(tree.order[other])
-    if apart > reach or in_between(against(R, top, ring), against(R, top, end)) < FLESH:
+    if distance > reach or in_between(relative_rotation(R, top, ring), relative_rotation(R, top, end)) < chosen.flesh_share:
         return np.inf
-    return apart / reach - 1.0
+    return distance / reach - 1.0

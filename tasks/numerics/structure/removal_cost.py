@@ -1,16 +1,13 @@
-"""By how much a part would be missed: what its neighbours, single or blended in pairs, leave of its motion."""
+"""What removing a part costs: motion that its neighbours, single or blended in pairs, do not explain (ours)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.structure.part_motion import middle
+from kinetree.tasks.numerics.structure.part_motion import median_of
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-TOUCHING, BEYOND = 6, 3
-"""Neighbours that are tried: those with the longest borders, and the largest of those behind them."""
+MOST_NEIGHBOURS, MOST_BEYOND = 6, 3
+"""Parts that may explain a part, for time only: neighbours with the longest borders, and the largest parts behind them."""
 
 
 @compiled
@@ -31,60 +28,60 @@ def removal_cost(
     loose: float,
     quiet: float,
 ) -> float:
-    """L4 norm over frames of the root mean square of what the part explains and others do not.
+    """L4 norm over frames of the root mean square motion that the part explains and other parts do not.
 
-    Each vertex is explained by a part, or by the blend of two whose shares are the same in all frames, as skinning has
-    it. A bone between two others is nearly such a blend of its ends, a slice of a joint is exactly one: so only what
-    is short may be explained by blends. What the part itself leaves, as its median vertex has it, is taken off.
+    Each vertex is explained by another part, or by a blend of two whose shares are the same in all frames, as in skinning.
+    A slice of a joint is exactly such a blend, a bone between two others nearly one: so only short parts may be explained by
+    blends. The part's own residual at its median vertex is taken off.
 
     V, N    : (vertex, xyz) reference, mesh unit · (vertex, xyz) its unit normals
-    weight  : (frame, vertex) belief
+    weight  : (frame, vertex) confidence, 0 to 1
     area    : (vertex,) mesh unit²
-    member  : (own vertex,) vertices of the part that are asked
+    member  : (sample,) vertices of the part at which the cost is measured
     other   : (candidate,) parts that may explain it, of which the first `touches` touch it
     R, t    : (frame, part, 3, 3) · (frame, part, xyz)
-    bone    : 0 for a part that blends may explain, 1 for one that only single parts may, or between
-    slip    : what a displacement along the surface counts against one across it, 0 to 1
-    loose   : how much is taken off
-    quiet   : mean squared residual that all vertices have, of noise, and that is not taken off, mesh unit²
+    bone    : 0 for a part that blends may explain, 1 for one that only single parts may explain, or between
+    slip    : weight of a displacement along the surface against one across it, 0 to 1
+    loose   : share of the part's own residual that is taken off
+    quiet   : mean squared residual of noise, which all vertices have and which is not taken off, mesh unit²
     returns : mesh unit
     """
     frames, count = x.shape[0], len(other)
     loss, mass = np.zeros(frames), np.zeros(frames)
     r = np.empty((count + 1, frames, 3))
     E = np.empty((count + 1, count + 1))
-    itself = np.empty(len(member))
+    own_square = np.empty(len(member))
     for k in range(len(member)):
         v = member[k]
         for a in range(count):
-            _left(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
-        _left(V, N, x, weight, v, part, part, R, t, slip, r[count])
+            _residuals(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
+        _residuals(V, N, x, weight, v, part, part, R, t, slip, r[count])
         _products(r, E)
         best = 0
         for a in range(1, touches):
             if E[a, a] < E[best, best]:
                 best = a
-        i, j, w, without = _best_blend(E, 0, count)
-        m, n, u, kept = _best_blend(E, count, count + 1)
-        if without < kept:
+        i, j, w, without_part = _best_blend(E, 0, count)
+        m, n, u, with_part = _best_blend(E, count, count + 1)
+        if without_part < with_part:
             m, n, u = i, j, w
-        seen = 0.0
+        weight_sum = 0.0
         for f in range(frames):
             for c in range(3):
-                still = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
+                with_it = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
                 blend = w * r[i, f, c] + (1.0 - w) * r[j, f, c]
-                loss[f] += area[v] * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - still * still)
+                loss[f] += area[v] * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - with_it * with_it)
             mass[f] += area[v] * weight[f, v]
-            seen += weight[f, v]
-        itself[k] = E[count, count] / max(seen, 1e-6)
-    full, total, frames_seen = 1e-300, 0.0, 1e-300
+            weight_sum += weight[f, v]
+        own_square[k] = E[count, count] / max(weight_sum, 1e-6)
+    full, total, frame_weight = 1e-300, 0.0, 1e-300
     for f in range(frames):
         full = max(full, mass[f])
     for f in range(frames):
         if mass[f] > 0.0:
             total += mass[f] / full * max(loss[f] / mass[f], 0.0) ** 2
-            frames_seen += mass[f] / full
-    return np.sqrt(max(np.sqrt(total / frames_seen) - loose * max(middle(itself, len(member)) - quiet, 0.0), 0.0))
+            frame_weight += mass[f] / full
+    return np.sqrt(max(np.sqrt(total / frame_weight) - loose * max(median_of(own_square, len(member)) - quiet, 0.0), 0.0))
 
 
 @compiled
@@ -103,16 +100,16 @@ def candidates(near: Ints, size: Floats, part: int) -> tuple[Ints, int]:
             for p in range(parts):
                 if near[q, p] > 0 and p != part and near[part, p] == 0:
                     rank[p] = size[p] / (size[p] + 1.0)
-    out = np.empty(TOUCHING + BEYOND, np.int64)
+    out = np.empty(MOST_NEIGHBOURS + MOST_BEYOND, np.int64)
     count = touches = 0
     while count < len(out):
         best = 0
         for p in range(parts):
             if rank[p] > rank[best]:
                 best = p
-        if rank[best] <= 0.0 or (rank[best] < 1.0 and count - touches == BEYOND):
+        if rank[best] <= 0.0 or (rank[best] < 1.0 and count - touches == MOST_BEYOND):
             break
-        if rank[best] < 1.0 or touches < TOUCHING:
+        if rank[best] < 1.0 or touches < MOST_NEIGHBOURS:
             out[count] = best
             count += 1
             touches += rank[best] > 1.0
@@ -121,10 +118,10 @@ def candidates(near: Ints, size: Floats, part: int) -> tuple[Ints, int]:
 
 
 @compiled
-def _left(
+def _residuals(
     V: Floats, N: Floats, x: Floats, weight: Floats, v: int, p: int, home: int, R: Floats, t: Floats, slip: float, out: Floats
 ) -> None:
-    """Writes (frame, xyz) √w · what the motion of part p leaves of a vertex; along the surface, as `home` turns it, less."""
+    """Writes (frame, xyz) √w times the residual of a vertex under part p, less of it along the surface as `home` turns it."""
     for f in range(x.shape[0]):
         w = np.sqrt(weight[f, v])
         across = 0.0
@@ -141,7 +138,7 @@ def _left(
 
 @compiled
 def _products(r: Floats, E: Floats) -> None:
-    """Writes the lower triangle of E (one, one), the products of what each leaves, summed over frames."""
+    """Writes the lower triangle of E (candidate, candidate), products of residuals summed over frames."""
     for a in range(len(r)):
         for b in range(a + 1):
             total = 0.0
@@ -154,7 +151,7 @@ def _products(r: Floats, E: Floats) -> None:
 def _best_blend(E: Floats, low: int, high: int) -> tuple[int, int, float, float]:
     """The two whose blend leaves least, one of them from `low` on and below `high`, the other before it.
 
-    returns : first · second · share of the first · what is left; a single one is a blend with itself
+    returns : first · second · share of the first · what is left; a single one is a blend with own_square
     """
     first, second, share, least = low, low, 1.0, np.inf
     for a in range(low, high):

@@ -1,4 +1,4 @@
-"""Rigid parts of a body from the ways of its vertices (2014, Sec. 6.1 and 6.2; by elimination, not by growth)."""
+"""Rigid parts of a body from the trajectories of its vertices (2014, Sec. 6.1 and 6.2; by elimination, not by growth: ours)."""
 
 from typing import Any, NamedTuple
 
@@ -8,20 +8,49 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated
-from kinetree.tasks.numerics.structure.oversegmentation import cone_runs, grouped, patches
+from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated
+from kinetree.tasks.numerics.structure.oversegmentation import ConeRuns, OversegmentationSettings, cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.part_labels import connected, relabelled
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, unevenness
-from kinetree.tasks.numerics.topology.extrema import extrema as tips
+from kinetree.tasks.numerics.topology.extrema import extrema
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+LABEL_ROUNDS = 2
+"""Rounds of labels and motions before the elimination; more of them found no more joints."""
+ELIMINATIONS = 2
+"""Eliminations, each followed by a round of labels and motions; not recorded."""
+
+
+class Cut(NamedTuple):
+    """The cut into too many parts that the elimination began with, and what the elimination removed.
+
+    cone, ring : (vertex,) cone in which a vertex counts, or `NO_CONE` or `SHARED` of `oversegmentation` · its ring there, or −1
+    tip        : (cone,) vertex around which each cone lies
+    run, merge : (cone, ring) see `oversegmentation.ConeRuns`; lengths in the root of the area
+    initial    : (vertex,) part of the first cut
+    removed    : (removal,) parts of the first cut in the order in which they were eliminated
+    cost       : (removal,) what removing each cost, root of the area
+    merge_threshold, cost_threshold : merge error above which tenths of a cone are cut apart · cost from which on parts stay
+    origin     : (part,) which part of the first cut each rigid part has become
+    """
+
+    cone: Ints
+    ring: Ints
+    tip: Ints
+    run: Ints
+    merge: Floats
+    initial: Ints
+    removed: Ints
+    cost: Floats
+    merge_threshold: float
+    cost_threshold: float
+    origin: Ints
 
 
 class RigidParts(NamedTuple):
@@ -31,6 +60,7 @@ class RigidParts(NamedTuple):
     rigid    : (vertex,) share of its motion that the part alone explains: 1 on bones, less where the surface blends
     R, t     : (frame, part, 3, 3) · (frame, part, xyz) mesh unit
     residual : (frame, part) root mean square over the part's clearly rigid vertices, mesh unit
+    cut      : what they were made from
     """
 
     label: Ints
@@ -38,149 +68,171 @@ class RigidParts(NamedTuple):
     R: Floats
     t: Floats
     residual: Floats
+    cut: Cut
 
 
 class RigidPartsSettings(NamedTuple):
-    """Lengths are shares of the root of the reference's area, areas shares of it.
+    """How parts are cut, labelled and eliminated; lengths are shares of the root of the area, areas shares of it."""
 
-    rings   : in the longest distance from each leaf
-    cut     : root mean square residual that makes a tenth of a cone's rings worth a run of their own
-    patches : the whole surface is cut into
-    trunk   : groups of patches to begin with outside the cones
-    split   : growth of the mean squared residual, times area, from which on patches of one run or group stay apart
-    smooth  : radius of the surroundings that decide with a vertex
-    bar     : what a part must pass to stay
-    most    : vertices; a larger surface is asked at so many, and the others go with the nearest of them
-    slip    : the bar's own where every vertex was followed: nothing slides along the surface there
-    """
-
-    rings: int = 50
-    cut: float = 0.002
-    patches: int = 1000
-    trunk: int = 16
-    split: float = 1e-7
-    smooth: float = 0.015
-    bar: Bar = Bar()
-    most: int = 14_000
-    slip: float = 0.6
+    first_cut: OversegmentationSettings | None = None
+    """Of the cut into too many parts; its defaults if not given."""
+    elimination: EliminationSettings | None = None
+    """Of the elimination; its defaults if not given."""
+    smoothing: float = 0.015
+    """Radius of the surroundings whose residual decides with a vertex. Not recorded."""
+    most_vertices: int = 14_000
+    """A larger surface is cut at a sample of so many vertices, and the others go with the nearest of them. Chosen for time: a
+    body of 42,000 vertices takes a third of it."""
+    followed_slip: float = 0.6
+    """`EliminationSettings.slip` where every vertex was followed, so that nothing slides along the surface. Chosen on generated
+    humans: at 0.3 necks and spines were lost (90.6 % of joints found)."""
 
 
 def rigid_parts(
     V: Floats,
     F: npt.NDArray[np.integer[Any]],
     x: Floats,
-    trust: Floats | None = None,
+    confidence: Floats | None = None,
     leaves: Ints | None = None,
     settings: RigidPartsSettings | None = None,
 ) -> RigidParts:
-    """The rigid parts that the motion shows, as many as would be missed; one if nothing turns.
+    """The rigid parts that the motion shows, each of which costs enough to remove; one if nothing turns.
 
-    V, F    : (vertex, xyz) reference, mesh unit · (face, corner); small components go with what is nearest
-    x       : (frame, vertex, xyz) mesh unit
-    trust   : (frame, vertex) how far each position is to be believed, 0 to 1; if not given every vertex was followed
-    leaves  : (leaf,) vertices at the tips of the extremities; found on V, F if not given, and there may be none
-    returns : PartsFound, parts numbered by their first vertex
+    V, F       : (vertex, xyz) reference, mesh unit · (face, corner); small components go with what is nearest
+    x          : (frame, vertex, xyz) mesh unit
+    confidence : (frame, vertex) 0 to 1; if not given every vertex was followed
+    leaves     : (leaf,) vertices at the tips of the limbs; found on V, F if not given, and there may be none
+    returns    : parts numbered by their first vertex; `cut` was made at a sample of a large surface's vertices, and every other
+                 vertex has the values of the nearest one in the sample
     """
     chosen = settings or RigidPartsSettings()
-    if trust is None:
-        chosen = chosen._replace(bar=chosen.bar._replace(slip=chosen.slip))
-    kept, body = _asked(V, F, chosen.most)
-    nearest = _nearest(V, F, kept)
-    surface = Surface.of(V[kept], body)
-    tip = _tips(surface, body) if leaves is None else np.unique(nearest[leaves])
-    size, centre, shift = float(np.sqrt(surface.area.sum())), surface.centre, x[:, kept].mean(axis=1, keepdims=True)
-    X = np.ascontiguousarray((x[:, kept] - shift) / size, np.float64)
-    weight = np.ones(X.shape[:2]) if trust is None else np.array(trust[:, kept], np.float64)
-    found = _found(surface, body, (V[kept] - centre) / size, X, weight, tip, chosen)
-    t = size * found.t + shift - found.R @ centre
-    return RigidParts(found.label[nearest], found.rigid[nearest], found.R, t, size * found.residual)
+    limits = chosen.elimination or EliminationSettings()
+    if confidence is None:
+        limits = limits._replace(slip=chosen.followed_slip)
+    sample, faces = _sampled(V, F, chosen.most_vertices)
+    nearest = _nearest(V, F, sample)
+    surface = Surface.of(V[sample], faces)
+    tip = _tips(surface, faces) if leaves is None else np.unique(nearest[leaves])
+    size, centre, shift = float(np.sqrt(surface.area.sum())), surface.centre, x[:, sample].mean(axis=1, keepdims=True)
+    X = np.ascontiguousarray((x[:, sample] - shift) / size, np.float64)
+    weight = np.ones(X.shape[:2]) if confidence is None else np.array(confidence[:, sample], np.float64)
+    parts = _normalised_parts(surface, faces, (V[sample] - centre) / size, X, weight, tip, chosen, limits)
+    t = size * parts.t + shift - parts.R @ centre
+    cut = parts.cut._replace(
+        tip=sample[parts.cut.tip], **{name: getattr(parts.cut, name)[nearest] for name in ("cone", "ring", "initial")}
+    )
+    return RigidParts(parts.label[nearest], parts.rigid[nearest], parts.R, t, size * parts.residual, cut)
 
 
-def _asked(V: Floats, F: npt.NDArray[np.integer[Any]], most: int) -> tuple[Ints, Ints]:
-    """(kept,) vertices of the largest component, of a coarser mesh on some of them if they are many · (face, corner)."""
-    kept, faces, _ = largest_component(V, np.array(F, np.int32))
-    if len(kept) <= most:
-        return kept, faces
-    some, coarse = decimated(V[kept], faces, most)
-    whole, faces, _ = largest_component(V[kept[some]], coarse.astype(np.int32))
-    return kept[some[whole]], faces
+def _sampled(V: Floats, F: npt.NDArray[np.integer[Any]], most: int) -> tuple[Ints, Ints]:
+    """(sample,) vertices of the largest component, or of a coarser mesh on some of them if they are many · (face, corner)."""
+    component, faces, _ = largest_component(V, np.array(F, np.int32))
+    if len(component) <= most:
+        return component, faces
+    sample, coarse = decimated(V[component], faces, most)
+    whole, faces, _ = largest_component(V[component[sample]], coarse.astype(np.int32))
+    return component[sample[whole]], faces
 
 
-def _nearest(V: Floats, F: npt.NDArray[np.integer[Any]], kept: Ints) -> Ints:
-    """(vertex,) which of the vertices kept lies nearest along the edges; straight, where no way leads to one."""
+def _nearest(V: Floats, F: npt.NDArray[np.integer[Any]], sample: Ints) -> Ints:
+    """(vertex,) which of the sample lies nearest along the edges; the nearest in space where no path leads to one."""
     number = np.full(len(V), -1)
-    number[kept] = np.arange(len(kept))
-    if len(kept) == len(V):
+    number[sample] = np.arange(len(sample))
+    if len(sample) == len(V):
         return number
     start, ring = rings(np.array(F, np.int64), len(V))
     length = np.linalg.norm(V[np.repeat(np.arange(len(V)), np.diff(start))] - V[ring], axis=1)
-    way = csr_array((np.maximum(length, 1e-300), ring, start), shape=(len(V), len(V)))
-    source = dijkstra(way, indices=kept, return_predecessors=True, min_only=True)[2]
-    bare = source < 0
-    out = np.where(bare, -1, number[np.maximum(source, 0)])
-    if bare.any():
-        out[bare] = cKDTree(V[kept]).query(V[bare])[1]
+    graph = csr_array((np.maximum(length, 1e-300), ring, start), shape=(len(V), len(V)))
+    source = dijkstra(graph, indices=sample, return_predecessors=True, min_only=True)[2]
+    unreached = source < 0
+    out = np.where(unreached, -1, number[np.maximum(source, 0)])
+    if unreached.any():
+        out[unreached] = cKDTree(V[sample]).query(V[unreached])[1]
     return out
 
 
 def _tips(surface: Surface, F: Ints) -> Ints:
+    """(extremum,) vertices at the local maxima of μ."""
     bases = farthest_bases(surface)
-    return tips(mu(bases.distance, bases.weight), F).vertex
+    return extrema(mu(bases.distance, bases.weight), F).vertex
 
 
-def _found(
-    surface: Surface, F: Ints, V: Floats, x: Floats, weight: Floats, leaves: Ints, chosen: RigidPartsSettings
+def _normalised_parts(
+    surface: Surface,
+    F: Ints,
+    V: Floats,
+    x: Floats,
+    weight: Floats,
+    leaves: Ints,
+    chosen: RigidPartsSettings,
+    limits: EliminationSettings,
 ) -> RigidParts:
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
-    body = Body(V, vertex_normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
-    patch = patches(surface, V, body.start, body.ring, chosen.patches)
-    label = _many(surface, body, patch, leaves, chosen)
-    steps = max(round((chosen.smooth * unit / surface.edge) ** 2), 1)
-    label, R, t = _refitted(body, label, chosen.bar.floor)
-    bar = chosen.bar
-    for turn in range(4):
-        if turn == 2:
-            bar = _raised(chosen.bar, body, patch, label, R, t)
-        if turn > 1:
-            label, R, t = eliminated(body, bar, label, R, t)
+    body = NormalisedBody(V, vertex_normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
+    first = chosen.first_cut or OversegmentationSettings()
+    patch = patches(surface, V, body.start, body.ring, first.patches)
+    cones, initial = _first_cut(surface, body, patch, leaves, first)
+    steps = max(round((chosen.smoothing * unit / surface.edge) ** 2), 1)
+    used, label, R, t = _refitted(body, initial, limits.floor)
+    initial, origin = label, np.arange(len(used))
+    removed, cost = [], []
+    for turn in range(LABEL_ROUNDS + ELIMINATIONS):
+        if turn == LABEL_ROUNDS:
+            limits = _raised(limits, body, patch, label, R, t)
+        if turn >= LABEL_ROUNDS:
+            found = eliminated(body, label, R, t, limits)
+            label, R, t = found.label, found.R, found.t
+            removed.append(origin[found.removed])
+            cost.append(found.cost)
         label = relabelled(V, x, weight, R, t, label, body.start, body.ring, steps)
-        label, R, t = _refitted(body, label, chosen.bar.floor)
+        used, label, R, t = _refitted(body, label, limits.floor)
+        origin = origin[used]
     e = misfit(V, x, weight, R, t, label)
-    rigid = bar.removal_cost**2 / (bar.removal_cost**2 + 4 * e)
-    return RigidParts(label, rigid, R, t, residuals(V, x, weight * body.area * rigid, R, t, label))
+    rigid = limits.removal_cost**2 / (limits.removal_cost**2 + 4 * e)
+    cut = Cut(
+        cones.cone, cones.ring, leaves, cones.run, cones.merge, initial, np.concatenate(removed), np.concatenate(cost),
+        first.cut, limits.removal_cost, origin,
+    )  # fmt: skip
+    return RigidParts(label, rigid, R, t, residuals(V, x, weight * body.area * rigid, R, t, label), cut)
 
 
-def _raised(bar: Bar, body: Body, patch: Ints, label: Ints, R: Floats, t: Floats) -> Bar:
-    """The bar, raised where the body is soft, as in cloth, or badly aligned: by the median unevenness of its patches."""
+def _raised(
+    limits: EliminationSettings, body: NormalisedBody, patch: Ints, label: Ints, R: Floats, t: Floats
+) -> EliminationSettings:
+    """Limits raised where the body is soft, as in cloth, or badly aligned: by the median unevenness of its patches."""
     piece = np.unique(patch * (label.max() + 1) + label, return_inverse=True)[1].reshape(-1)
-    stray = unevenness(body.V, body.x, body.area, piece, label, R, t)
-    uneven = _median(stray, np.bincount(piece, body.area).astype(np.float64))
-    quiet = _median(misfit(body.V, body.x, body.weight, R, t, label), body.area)
-    return bar._replace(removal_cost=max(bar.removal_cost, bar.noise * uneven), quiet=quiet)
+    strays = unevenness(body.V, body.x, body.area, piece, label, R, t)
+    uneven = _median(strays, np.bincount(piece, body.area).astype(np.float64))
+    noise = _median(misfit(body.V, body.x, body.weight, R, t, label), body.area)
+    return limits._replace(removal_cost=max(limits.removal_cost, limits.noise * uneven), noise_square=noise)
 
 
 def _median(values: Floats, weight: Floats) -> float:
+    """The weighted median."""
     order = np.argsort(values, kind="stable")
     share = np.cumsum(weight[order])
     return float(values[order[np.searchsorted(share, 0.5 * share[-1])]])
 
 
-def _many(surface: Surface, body: Body, patch: Ints, leaves: Ints, chosen: RigidPartsSettings) -> Ints:
-    """(vertex,) deliberately too many parts."""
+def _first_cut(
+    surface: Surface, body: NormalisedBody, patch: Ints, leaves: Ints, chosen: OversegmentationSettings
+) -> tuple[ConeRuns, Ints]:
+    """The cones' runs · (vertex,) deliberately too many parts."""
     V, x, start, ring = body.V, body.x, body.start, body.ring
     mass = body.weight * body.area
-    run = cone_runs(surface, V, x, mass, leaves, start, ring, chosen.rings, chosen.cut)
-    trunk = grouped(V, x, mass, patch, np.where(run < 0, 0, -1), start, ring, chosen.trunk, np.inf)
-    label = np.where(run < 0, run.max() + 1 + trunk, run)
+    cones = cone_runs(surface, V, x, mass, leaves, start, ring, chosen)
+    outside = cones.label < 0
+    trunk = grouped(V, x, mass, patch, np.where(outside, 0, -1), start, ring, chosen.trunk_groups, np.inf)
+    label = np.where(outside, cones.label.max() + 1 + trunk, cones.label)
     label = grouped(V, x, mass, patch, label, start, ring, 1, chosen.split * len(x))
-    return connected(label, int(label.max()) + 1, start, ring)
+    return cones, connected(label, int(label.max()) + 1, start, ring)
 
 
-def _refitted(body: Body, label: Ints, floor: float) -> tuple[Ints, Floats, Floats]:
-    """Parts that have vertices, numbered by their first one, and their motions."""
-    _, first, label = np.unique(label, return_index=True, return_inverse=True)
+def _refitted(body: NormalisedBody, label: Ints, floor: float) -> tuple[Ints, Ints, Floats, Floats]:
+    """(part,) parts that have vertices, in the order of their first vertex · (vertex,) labels by that order · their motions."""
+    used, first, label = np.unique(label, return_index=True, return_inverse=True)
     label = np.argsort(np.argsort(first))[label.reshape(-1)]
     R, t = np.empty((len(body.x), len(first), 3, 3)), np.empty((len(body.x), len(first), 3))
     fit(body.V, body.x, body.weight, body.area, label, np.ones(len(first), np.bool_), False, len(label), floor, R, t)
-    return label, R, t
+    return used[np.argsort(first)], label, R, t

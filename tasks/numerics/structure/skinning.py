@@ -1,21 +1,28 @@
 """Smooth skinning weights from labels and motion: at most four parts a vertex, not negative, summing to one.
 
 Least squares over the part of the vertex and its neighbours in the tree, held near the weights of the surface around
-(after Le and Deng 2014): where the motion says nothing, the surface decides.
+(after Le and Deng 2014): where the motion does not determine them, the surface does.
 """
 
-import numpy as np
-import numpy.typing as npt
+from typing import NamedTuple
 
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import rings
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
 INFLUENCES = 4
-FAINT = 0.01  # a smaller weight is none
-ROUNDS = 3
+"""Parts that a vertex follows, at most: what glTF and game engines take."""
+
+
+class SkinningSettings(NamedTuple):
+    """How weights are found."""
+
+    least_weight: float = 0.01
+    """A smaller weight is none. Not recorded."""
+    rounds: int = 3
+    """Rounds of smoothing and fitting. Not recorded."""
 
 
 def candidates(label: Ints, parents: Ints) -> Ints:
@@ -32,24 +39,28 @@ def candidates(label: Ints, parents: Ints) -> Ints:
 
 
 def skinning(
-    V: Floats, F: Ints, x: Floats, label: Ints, R: Floats, t: Floats, parents: Ints, tau: Floats, noise: float
-) -> Floats:
-    """(vertex, part) weights, rows summing to 1.
+    V: Floats, F: Ints, x: Floats, label: Ints, R: Floats, t: Floats, parents: Ints, tau: Floats, noise: float,
+    settings: SkinningSettings | None = None,
+) -> Floats:  # fmt: skip
+    """Skinning weights of at most four parts a vertex (after Le and Deng 2014).
 
     V, x    : (vertex, xyz) in the reference, (frame, vertex, xyz) mesh unit
+    F       : (face, corner)
     label   : (vertex,) part that a vertex moves with most
     R, t    : (frame, part, 3, 3), (frame, part, xyz) from the reference to each frame
     parents : (part,) −1 at the root
     tau     : (frame, vertex) weight of what was seen
     noise   : error of a vertex below which its motion says nothing, mesh unit
+    returns : (vertex, part) rows summing to 1
     """
+    chosen = settings or SkinningSettings()
     near = candidates(label, parents)
     H, g = _grams(V, x, R, t, label, near, tau)
     start, ring = rings(F, len(V))
     W = np.zeros((len(V), near.shape[1]))
     W[:, 0] = 1.0
     hold = np.full(len(V), noise**2)
-    for _ in range(ROUNDS):
+    for _ in range(chosen.rounds):
         around = _smoothed(W, label, near, start, ring)
         W = _on_simplex(H, g, hold, around)
     dense = np.zeros((len(V), len(parents)))
@@ -57,21 +68,21 @@ def skinning(
     for k in range(near.shape[1]):
         there = slots[:, k] >= 0
         dense[there, slots[there, k]] += W[there, k]
-    return few(dense)
+    return few(dense, chosen.least_weight)
 
 
-def few(W: Floats) -> Floats:
-    """The same weights with the heaviest four of each row alone, faint ones dropped, rows summing to 1."""
+def few(W: Floats, least: float = 0.01) -> Floats:
+    """The heaviest four weights of each vertex, without those below `least`, summing to 1; (vertex, part)."""
     if W.shape[1] > INFLUENCES:
-        least = np.partition(W, -INFLUENCES, axis=1)[:, -INFLUENCES]
-        W = np.where(np.maximum(least, FAINT)[:, None] <= W, W, 0.0)
+        fourth = np.partition(W, -INFLUENCES, axis=1)[:, -INFLUENCES]
+        W = np.where(np.maximum(fourth, least)[:, None] <= W, W, 0.0)
     else:
-        W = np.where(W >= FAINT, W, 0.0)
+        W = np.where(least <= W, W, 0.0)
     return W / W.sum(axis=1, keepdims=True)
 
 
 def heaviest(W: Floats) -> tuple[Ints, Floats]:
-    """(vertex, 4) parts, heaviest first, and (vertex, 4) their weights; 0 of part 0 where there are fewer."""
+    """(vertex, 4) parts, heaviest first · (vertex, 4) their weights, from W (vertex, part); 0 of part 0 where fewer."""
     order = np.argsort(-W, axis=1, kind="stable")[:, :INFLUENCES]
     weight = np.take_along_axis(W, order, axis=1)
     order = np.where(weight > 0, order, 0)

@@ -1,18 +1,22 @@
-"""To which parts the vertices of a part go that is none."""
+"""To which parts the vertices of a dropped part go (ours)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
+def reassigned(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
+    """Labels without one part: its vertices go, from its borders inwards, to the part that moves most like them.
 
-def handed_over(V: Floats, x: Floats, label: Ints, gone: int, R: Floats, t: Floats, start: Ints, ring: Ints) -> Ints:
-    """Labels after a part is gone: its vertices go, from its borders inwards, to the part that moves most like them.
+    Each vertex goes to a part that lies next to it, so that every part stays connected.
 
-    Each vertex goes to a part that lies next to it, so that every part stays in one piece.
+    V, x        : (vertex, xyz) · (frame, vertex, xyz) mesh unit
+    label       : (vertex,) part
+    gone        : the part that is dropped
+    R, t        : (frame, part, 3, 3) · (frame, part, xyz)
+    start, ring : neighbours of every vertex, see `neighbours.rings`
+    returns     : (vertex,) part
     """
     out = label.copy()
     waiting = np.flatnonzero(label == gone)

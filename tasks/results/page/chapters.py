@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class CaptionedFigure:
     """A figure with its caption; `vector` is true for lines and false for surfaces."""
 
     figure: "Figure"
@@ -25,28 +25,28 @@ class Drawn:
 
 
 @dataclass(frozen=True)
-class Written:
+class FigureChapter:
     """A chapter whose figures are not rendered to files yet."""
 
     anchor: str
     heading: str
-    drawn: Sequence[Drawn]
+    figures: Sequence[CaptionedFigure]
     paragraphs: Sequence[str] = ()
 
 
-def evidence_of(chapters: Sequence[Written], length_variation: Floats) -> StructureFigures:
+def rendered_chapters(chapters: Sequence[FigureChapter], length_variation: Floats) -> StructureFigures:
     """Renders the figures of some chapters and returns them as an artifact.
 
     length_variation : (joint,) %, see `StructureFigures`
     """
-    files = [rendered(d.figure, vector=d.vector) for chapter in chapters for d in chapter.drawn]
+    files = [rendered(d.figure, vector=d.vector) for chapter in chapters for d in chapter.figures]
     return StructureFigures(
         chapters=tuple(
             Chapter(
                 anchor=c.anchor,
                 heading=c.heading,
                 paragraphs=tuple(c.paragraphs),
-                pictures=tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in c.drawn),
+                pictures=tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in c.figures),
             )
             for c in chapters
         ),

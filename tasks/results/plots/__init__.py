@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinetree.errors import ConfigError
 from kinetree.tasks.results.plots.alignment import alignment
+from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 from kinetree.tasks.results.plots.drawing import FORMATS, Fetch, write_figure
 from kinetree.tasks.results.plots.evaluation import evaluation
 from kinetree.tasks.results.plots.macroscopic import correlation, mu
@@ -15,7 +16,6 @@ from kinetree.tasks.results.plots.mesoscopic import merging as merging_2014
 from kinetree.tasks.results.plots.mesoscopic import structure as structure_2014
 from kinetree.tasks.results.plots.motion import angles
 from kinetree.tasks.results.plots.structure import confidence, skeleton, tree
-from kinetree.tasks.results.plots.traces import cones, lengths, merging, structure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +31,7 @@ PLOTS: Plots = {
     "confidence": confidence,
     "cones": cones,
     "merging": merging,
+    "elimination": elimination,
     "structure": structure,
     "lengths": lengths,
     "angles": angles,
@@ -39,7 +40,8 @@ PLOTS: Plots = {
 """The pictures of the default method by name."""
 
 _OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**PLOTS, **_OF_2014}}
+_SHARED = {name: plot for name, plot in PLOTS.items() if name != "elimination"}
+PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_SHARED, **_OF_2014}}
 """The pictures of each method."""
 
 

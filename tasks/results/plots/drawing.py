@@ -20,7 +20,7 @@ Fetch = Callable[..., Any]
 """Gives the artifact of a task at an index, as `Pipeline.artifact` does."""
 FORMATS = (".png", ".svg", ".pdf")
 """How a picture's name may end."""
-BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
+LABEL_BOX = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 COLOURS = LINES
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinetree.schemas.array import Floats
 from kinetree.tasks.results.formats.colours import BLUE, ORANGE, VERMILION
-from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, levels, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, levels, surface, view
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,4 +58,6 @@ def _draw_leaves(axes: "Axes", leaves: Any, frame: int, axis: Floats) -> None:
             is_seen = leaves.rows[leaf, at] >= 0
             colour = COLOURS[leaf % len(COLOURS)]
             axes.plot(x, y, "o", ms=7, color=colour if is_seen else "none", mec="white" if is_seen else colour)
-            axes.annotate(str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, bbox=BEHIND)
+            axes.annotate(
+                str(leaf), (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, bbox=LABEL_BOX
+            )

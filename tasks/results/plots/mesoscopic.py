@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import to_rgba
 
 from kinetree.schemas.array import Floats, Ints
-from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, graded, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view
 from kinetree.tasks.results.plots.structure import bones, part_colours
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         before.plot(*X[[i, j], :2].T, "-" if in_tree else ":", color=shade.to_rgba(variation), lw=2.2, zorder=3)
     for area in np.flatnonzero(~areas.rigid):
         before.plot(*X[area, :2], "o", color=COLOURS[1], mec="white", mew=0.4, ms=5, zorder=4)
-        before.annotate(str(area), X[area, :2], xytext=(4, 3), textcoords="offset points", fontsize=7, bbox=BEHIND)
+        before.annotate(str(area), X[area, :2], xytext=(4, 3), textcoords="offset points", fontsize=7, bbox=LABEL_BOX)
     bar = figure.colorbar(shade, ax=before, shrink=0.7, location="left", pad=0.0)
     bar.set_label("standard deviation of a bone's length, % of the root of the area", fontsize=8)
     bar.ax.tick_params(labelsize=7)

@@ -9,7 +9,7 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.results.scene import part_colouring
 from kinetree.tasks.results.formats.rig import skinned
-from kinetree.tasks.results.plots.drawing import BEHIND, COLOURS, Fetch, blank, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, surface, view
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,7 @@ def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         axes.plot(*place[j], "o", color=colour, ms=6, zorder=2)
         told = found.names[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
         told += f", {found.degrees[j]:.0f}°" if found.kinds[j] == "joint" else ""
-        axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=BEHIND)
+        axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
     axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
     axes.set_axis_off()
     axes.set_title("Joints (orange), ends of bones (blue): length of the bone to the parent, range of turning", fontsize=9)

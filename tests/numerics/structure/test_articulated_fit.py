@@ -5,7 +5,7 @@ import pytest
 from articulated import chain, swings, three_arms
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.articulated_fit import Expected, Motion, beyond, fitted, placed, predicted, sums
+from kinetree.tasks.numerics.structure.articulated_fit import Motion, PosePrior, beyond, fitted, placed, predicted, sums
 
 
 def lengths(motion: Motion, parents: np.ndarray) -> np.ndarray:
@@ -51,7 +51,7 @@ def test_part_without_evidence_turns_as_expected() -> None:
     firm = np.zeros((6, 2))
     firm[:, 1] = 10.0
     found = fitted(
-        sums(body.V, body.x, body.W, body.parents, tau), at_rest(body.joints, 6), body.parents, Expected(turn, firm), rounds=30
+        sums(body.V, body.x, body.W, body.parents, tau), at_rest(body.joints, 6), body.parents, PosePrior(turn, firm), rounds=30
     )
     assert found.R[:, 1] == pytest.approx(turn[:, 1], abs=1e-4)
 

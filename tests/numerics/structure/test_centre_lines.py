@@ -5,7 +5,7 @@ import numpy.typing as npt
 import pytest
 from limbs import rotation, tube
 
-from kinetree.tasks.numerics.structure.centre_lines import centre_line, towards_axes
+from kinetree.tasks.numerics.structure.centre_lines import centre_line, towards_centre_lines
 
 EXPECTED = np.array([[0.3, 0.2, -4.0], [-0.2, 0.3, 4.0]])
 
@@ -23,7 +23,7 @@ def expected(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, b
     label = np.where(V[:, 2] < -4 * stretch, 0, np.where(V[:, 2] < 4 * stretch, 1, 2))
     V[:, 0] += bow * np.cos(V[:, 2] * np.pi / (4 * stretch))
     at = EXPECTED * [1.0, 1.0, stretch]
-    return towards_axes(V, np.ones(len(V)), label, np.eye(3)[label], np.array(parents), at, np.full(2, radius))
+    return towards_centre_lines(V, np.ones(len(V)), label, np.eye(3)[label], np.array(parents), at, np.full(2, radius))
 
 
 def test_joints_at_both_ends_of_a_long_part_are_expected_on_its_line() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 from limbs import bent, tube
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.structure.elimination import Bar, Body, eliminated, rims
+from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated, rims
 from kinetree.tasks.numerics.structure.part_motion import fit
 
 
@@ -15,7 +15,7 @@ def hinge(angles, bands=10):
     x = np.stack([bent(V, a, 0.001) for a in angles])
     area = np.full(len(V), 1 / len(V))
     N = V * [1, 1, 0] / np.linalg.norm(V[:, :2] + 1e-9, axis=1)[:, None]
-    body = Body(V, N, F, x, np.ones(x.shape[:2]), area, *rings(F, len(V)))
+    body = NormalisedBody(V, N, F, x, np.ones(x.shape[:2]), area, *rings(F, len(V)))
     label = np.minimum(((V[:, 2] * 12 + 5) / 10 * bands).astype(np.int64), bands - 1)
     R, t = np.empty((len(x), bands, 3, 3)), np.empty((len(x), bands, 3))
     fit(V, x, body.weight, area, label, np.ones(bands, bool), False, 10_000, 1e-10, R, t)
@@ -24,7 +24,7 @@ def hinge(angles, bands=10):
 
 def test_of_many_bands_of_a_hinge_its_two_sides_are_left():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    found, _, _ = eliminated(body, Bar(), label, R, t)
+    found = eliminated(body, label, R, t).label
     kept = np.unique(found)
     assert len(kept) == 2
     low, high = (body.V[found == k, 2] for k in kept)
@@ -34,19 +34,33 @@ def test_of_many_bands_of_a_hinge_its_two_sides_are_left():
 
 def test_what_does_not_move_is_one_part():
     body, label, R, t = hinge((0.0, 0.0))
-    assert len(np.unique(eliminated(body, Bar(), label, R, t)[0])) == 1
+    assert len(np.unique(eliminated(body, label, R, t).label)) == 1
+
+
+def test_parts_that_are_removed_and_what_each_cost_are_told_in_order():
+    body, label, R, t = hinge((0.3, 0.8, -0.4))
+    settings = EliminationSettings(removal_cost=0.02)
+    found = eliminated(body, label, R, t, settings)
+    np.testing.assert_array_equal(np.sort([*found.removed, *np.unique(found.label)]), np.arange(10))
+    assert 0.0 <= found.cost.min() <= found.cost.max() < 0.02
+    first = eliminated(body, label, R, t, settings._replace(removal_cost=np.nextafter(found.cost[0], 1.0)))
+    assert first.removed[0] == found.removed[0]
 
 
 def test_asked_again_nothing_goes():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
     for missed in (1e-6, 1e-4, 0.0025):
-        first = eliminated(body, Bar(removal_cost=missed), label, R, t)
-        np.testing.assert_array_equal(eliminated(body, Bar(removal_cost=missed), *first)[0], first[0])
+        settings = EliminationSettings(removal_cost=missed)
+        first = eliminated(body, label, R, t, settings)
+        again = eliminated(body, first.label, first.R, first.t, settings)
+        np.testing.assert_array_equal(again.label, first.label)
+        assert len(again.removed) == len(again.cost) == 0
 
 
 def test_a_lower_bar_never_leaves_fewer_parts():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    counts = [len(np.unique(eliminated(body, Bar(removal_cost=m), label, R, t)[0])) for m in (1e-9, 0.0025, 0.02, 1.0)]
+    settings = [EliminationSettings(removal_cost=cost) for cost in (1e-9, 0.0025, 0.02, 1.0)]
+    counts = [len(np.unique(eliminated(body, label, R, t, one).label)) for one in settings]
     assert counts == sorted(counts, reverse=True)
     assert counts[-1] == 1
 

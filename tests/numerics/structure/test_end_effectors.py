@@ -3,14 +3,14 @@
 import numpy as np
 from articulated import chain
 
-from kinetree.tasks.numerics.structure.end_effectors import bone_ends, nearest_vertices
+from kinetree.tasks.numerics.structure.end_effectors import end_effectors, leaf_vertices
 
 NONE = np.zeros(0, dtype=np.int64)
 
 
 def test_last_part_without_a_leaf_ends_where_it_is_farthest() -> None:
     body = chain((-2.0, 2.0))
-    ends = bone_ends(body.V, body.F, body.label, body.parents, NONE)
+    ends = end_effectors(body.V, body.F, body.label, body.parents, NONE)
     assert ends.tolist() == [[2, int(np.argmax(body.V[:, 2]))]]
 
 
@@ -19,18 +19,20 @@ def test_leaves_are_ends_wherever_they_are() -> None:
     low, middle = int(np.argmin(body.V[:, 2])), int(np.argmin(np.abs(body.V[:, 2])))
     near = int(np.argmin(np.abs(body.V[:, 2] - 3.0)))
     far = int(np.argmax(body.V[:, 2]))
-    ends = bone_ends(body.V, body.F, body.label, body.parents, np.array([near, low, far, middle]))
+    ends = end_effectors(body.V, body.F, body.label, body.parents, np.array([near, low, far, middle]))
     assert ends.tolist() == [[0, low], [1, middle], [2, far], [2, near]]
 
 
 def test_body_of_one_part_ends_nowhere_but_in_its_leaves() -> None:
     body = chain((0.0,))
     one, root = np.zeros(len(body.V), dtype=np.int64), np.array([-1])
-    assert bone_ends(body.V, body.F, one, root, NONE).shape == (0, 2)
-    assert bone_ends(body.V, body.F, one, root, np.array([5])).tolist() == [[0, 5]]
+    assert end_effectors(body.V, body.F, one, root, NONE).shape == (0, 2)
+    assert end_effectors(body.V, body.F, one, root, np.array([5])).tolist() == [[0, 5]]
 
 
-def test_nearest_vertices_of_no_points_are_none() -> None:
+def test_leaves_that_are_seen_and_count_are_at_the_nearest_vertices() -> None:
     V = np.eye(3)
-    assert nearest_vertices(V, np.zeros((0, 3))).tolist() == []
-    assert nearest_vertices(V, np.array([[0.9, 0.0, 0.1]])).tolist() == [0]
+    positions = np.array([[0.9, 0.0, 0.1], [np.nan] * 3, [0.0, 0.0, 1.1], [0.0, 1.0, 0.0]])
+    extremum, counts = np.array([0, -1, 2, 1]), np.array([[True, True, False, False], [False, True, False, True]])
+    assert leaf_vertices(V, positions, extremum, counts).tolist() == [0, 1]
+    assert leaf_vertices(V, positions[:0], extremum[:0], counts[:, :0]).tolist() == []

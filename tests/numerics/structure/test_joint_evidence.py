@@ -6,10 +6,10 @@ from articulated import Known, chain
 from limbs import rotation
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.structure import joint_evidence as shown
-from kinetree.tasks.numerics.structure.joint_evidence import Seen, least_evident_joint
-from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces, part_tree
-from kinetree.tasks.numerics.structure.pruning import pruned
+from kinetree.tasks.numerics.structure import joint_evidence as numerics
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.pruning import PruningSettings, pruned
 
 FRAMES = 4
 X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
@@ -24,19 +24,19 @@ def turned(axis: tuple[float, float, float], degrees: float) -> np.ndarray:
     return turn
 
 
-def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> tuple[Surfaces, Carried, Seen]:
+def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> tuple[MovingSurface, MovingParts, FrameEvidence]:
     """The aligned body before frames that show the true one, both moved as a whole."""
     M = np.eye(3) if moved is None else moved
     x, goal = aligned.x @ M.T, true.x @ M.T
     residual = np.stack([projected(a, b, true.F).distance for a, b in zip(x, goal, strict=True)])
-    parts = Carried(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
-    seen = Seen(np.ones(residual.shape), residual, lambda t: (goal[t], true.F))
-    return Surfaces(aligned.V, aligned.F, x, aligned.area), parts, seen
+    parts = MovingParts(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
+    evidence = FrameEvidence(np.ones(residual.shape), residual, lambda t: (goal[t], true.F))
+    return MovingSurface(aligned.V, aligned.F, x, aligned.area), parts, evidence
 
 
 def least(aligned: Known, true: Known, moved: np.ndarray | None = None) -> int:
-    body, parts, seen = looked_at(aligned, true, moved)
-    return least_evident_joint(body, parts, part_tree(body, parts), seen)
+    body, parts, evidence = looked_at(aligned, true, moved)
+    return least_evident_joint(body, parts, part_tree(body, parts), evidence)
 
 
 def otherwise(turn: np.ndarray) -> Known:
@@ -74,15 +74,15 @@ def test_body_that_only_slid_is_one_part_and_one_that_bends_two() -> None:
     slid, true = chain((1.0,), turned(Z, 9.0)), otherwise(turned(Z, 0.0))
     tips = np.zeros(0, np.int64)
     for aligned, there, count in ((slid, true, 1), (chain((1.0,), bent), otherwise(bent), 2)):
-        body, parts, seen = looked_at(aligned, there)
-        assert pruned(body, parts, tips, seen, ratio=0.0).parts.R.shape[1] == count
+        body, parts, evidence = looked_at(aligned, there)
+        assert pruned(body, parts, tips, evidence, PruningSettings(ratio=0.0)).parts.R.shape[1] == count
 
 
 @pytest.mark.parametrize(("first", "second", "goes"), [(2.0, 1.3, True), (np.inf, 1.3, False), (np.inf, 1.05, True)])
 def test_joint_needs_less_where_another_moves_clearly(
     first: float, second: float, goes: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    body, parts, seen = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
+    body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
     scores = iter((first, second))
     asked: list[int] = []
 
@@ -90,6 +90,6 @@ def test_joint_needs_less_where_another_moves_clearly(
         asked.append(int(str(told[4])))
         return next(scores)
 
-    monkeypatch.setattr(shown, "_shown", scored)
-    found = least_evident_joint(body, parts, part_tree(body, parts), seen)
+    monkeypatch.setattr(numerics, "_score", scored)
+    found = least_evident_joint(body, parts, part_tree(body, parts), evidence)
     assert found == (asked[1] if goes else -1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinetree.tasks.numerics.structure.joint_names import named, widest_gaps
+from kinetree.tasks.numerics.structure.joint_names import joint_names, widest_gaps
 
 # pelvis; two legs; spine; head; two arms
 JOINTS = {
@@ -21,7 +21,7 @@ def told(order: list[str], wobble: float = 0.0) -> dict[str, str]:
     rest = np.array([JOINTS[k][1] for k in order], float)
     rest += wobble * np.random.default_rng(3).normal(size=rest.shape)
     parents = np.array([-1 if JOINTS[k][0] is None else order.index(str(JOINTS[k][0])) for k in order])
-    found = named(rest, parents, np.array([k in ENDS for k in order]))
+    found = joint_names(rest, parents, np.array([k in ENDS for k in order]))
     assert len(set(found.names)) == len(order)
     place = {j: n for n, j in enumerate(found.order.tolist())}
     assert all(place[int(parents[j])] < place[j] for j in range(1, len(order)))
@@ -58,12 +58,12 @@ def test_names_stay_under_small_changes() -> None:
 
 def test_ends_beside_joints_are_told_apart() -> None:
     rest = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 3], [1, 0, 2], [0, 1, 2.0]])
-    found = named(rest, np.array([-1, 0, 1, 1, 0]), np.array([False, False, True, True, True]))
+    found = joint_names(rest, np.array([-1, 0, 1, 1, 0]), np.array([False, False, True, True, True]))
     assert found.names == ("root", "limb_a_1", "limb_a_end_1", "limb_a_end_2", "root_end")
 
 
 def test_root_alone_is_the_root() -> None:
-    assert named(np.zeros((1, 3)), np.array([-1]), np.array([False])).names == ("root",)
+    assert joint_names(np.zeros((1, 3)), np.array([-1]), np.array([False])).names == ("root",)
 
 
 def test_the_widest_gap_decides_first() -> None:
@@ -74,6 +74,6 @@ def test_the_widest_gap_decides_first() -> None:
 def test_there_are_letters_for_any_number_of_limbs() -> None:
     angle = np.linspace(0, 6, 30)
     rest = np.concatenate([np.zeros((1, 3)), np.stack([np.cos(angle), np.sin(angle), 0.01 * np.arange(30)], axis=1)])
-    found = named(rest, np.array([-1] + [0] * 30), np.zeros(31, bool))
+    found = joint_names(rest, np.array([-1] + [0] * 30), np.zeros(31, bool))
     assert found.names[1] == "limb_a_1"
     assert found.names[-1] == "limb_ad_1"

@@ -6,14 +6,17 @@ import trimesh
 from articulated import Known, chain, swings, three_arms
 from limbs import bent, rotation
 
-from kinetree.tasks.numerics.structure.kinematic_tree import KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 
 
-def of(body: Known, leaves: tuple[int, ...] = (), trust: np.ndarray | None = None) -> KinematicTree:
-    return kinematic_tree(
-        body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual, np.array(leaves, dtype=np.int64), trust
-    )
+def both(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> tuple[KinematicTree, Derivation]:
+    tips = np.array(leaves, dtype=np.int64)
+    return kinematic_tree(body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual, tips, confidence)
+
+
+def of(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> KinematicTree:
+    return both(body, leaves, confidence)[0]
 
 
 def ways(body: Known) -> np.ndarray:
@@ -72,7 +75,7 @@ def test_noise_at_every_vertex_moves_no_joint_by_half_a_percent() -> None:
     joints = []
     for x in (body.x, rough):
         p = rigid_parts(x[0], body.F, x)
-        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, np.zeros(0, dtype=np.int64))
+        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, np.zeros(0, dtype=np.int64))[0]
         joints.append(found.positions[:, [kind == "joint" for kind in found.kinds]])
     assert joints[0].shape == joints[1].shape == (24, 2, 3)
     assert np.linalg.norm(joints[0] - joints[1], axis=2).mean(axis=0).max() < 0.005 * 10.0
@@ -108,11 +111,11 @@ def test_vertices_without_a_part_and_parts_without_vertices_do_no_harm() -> None
     assert of(body._replace(label=np.full(len(body.V), -1), R=R, t=t)).names == ("root",)
 
 
-def test_distrust_of_one_frame_is_told_and_changes_no_joint() -> None:
+def test_part_not_seen_in_one_frame_has_no_confidence_there_and_no_other_joint() -> None:
     body = chain((0.0,), swings(16, 2))
-    trust = np.ones(body.x.shape[:2])
-    trust[5, body.label == 1] = 0.0
-    found = of(body, trust=trust)
+    confidence = np.ones(body.x.shape[:2])
+    confidence[5, body.label == 1] = 0.0
+    found = of(body, confidence=confidence)
     assert found.support.min() == 15
     assert found.confidence[5].min() < 0.1
     assert found.rest[1] == pytest.approx(of(body).rest[1], abs=1e-3)
@@ -124,8 +127,61 @@ def test_a_ring_with_no_leaf_or_one_has_one_tree(leaves: tuple[int, ...]) -> Non
     V, F, tips = np.array(ring.vertices), np.array(ring.faces), np.array(leaves, dtype=np.int64)
     x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
     held = rigid_parts(V, F, x, leaves=tips)
-    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips)
+    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips)[0]
     assert (found.parents < 0).sum() == 1
     assert found.kinds.count("joint") >= 1
     assert found.kinds.count("joint") + found.kinds.count("leaf") + 1 == len(found.kinds)
     assert np.isfinite(found.positions).all()
+
+
+def test_parts_become_joints_and_what_was_dropped_has_none() -> None:
+    turn = swings(24, 3)
+    turn[:, 2] = np.eye(3)
+    body = chain((-1.0, 2.0), turn)
+    found, derivation = both(body)
+    (dropped,) = derivation.dropped
+    assert dropped.reason == "still"
+    assert dropped.part in (1, 2)
+    left = [p for p in range(3) if p != dropped.part]
+    assert derivation.joint_of_part[dropped.part] == -1
+    assert sorted(derivation.joint_of_part[left]) == [j for j, kind in enumerate(found.kinds) if kind != "leaf"]
+    for part in left:
+        assert found.rotation[:, derivation.joint_of_part[part]] == pytest.approx(body.R[:, part], abs=1e-3)
+
+
+def test_graph_of_parts_is_that_before_any_was_dropped() -> None:
+    body = three_arms()
+    _, derivation = both(body)
+    assert derivation.pair.tolist() == [[0, 1], [0, 2], [0, 3]]
+    assert np.linalg.norm(derivation.centre - body.joints[1:], axis=1).max() < 1.0
+    assert derivation.border_drift.max() < 0.01
+    assert np.isfinite(derivation.border_degrees).all()
+
+
+def test_ring_of_parts_has_one_border_outside_the_spanning_tree() -> None:
+    body = three_arms()
+    around = np.where(body.label == 0, (body.V @ body.joints[1:].T).argmax(axis=1), body.label - 1)
+    t = body.t[:, 1:].copy()
+    t[:, 2] += np.array([3.0, 1.0, 0.0])[:, None].T * np.sin(np.arange(len(t)))[:, None]
+    _, derivation = both(body._replace(label=around, R=body.R[:, 1:], t=t))
+    assert derivation.pair.tolist() == [[0, 1], [0, 2], [1, 2]]
+    assert np.isnan(derivation.border_degrees).sum() == 1
+    assert np.isfinite(derivation.border_degrees[0])
+
+
+def test_parts_without_vertices_keep_their_numbers_and_are_not_dropped() -> None:
+    body = chain((0.0,))
+    R, t = (np.stack([a[:, 0], a[:, 0], a[:, 1]], axis=1) for a in (body.R, body.t))
+    _, derivation = both(body._replace(label=2 * body.label, R=R, t=t))
+    assert derivation.pair.tolist() == [[0, 2]]
+    assert derivation.joint_of_part[1] == -1
+    assert derivation.joint_of_part[[0, 2]].min() == 0
+    assert derivation.dropped == ()
+
+
+def test_lengths_before_they_are_held_are_those_of_bones_that_parts_share() -> None:
+    found, derivation = both(three_arms())
+    bones = [j for j, kind in enumerate(found.kinds) if kind == "joint"]
+    assert derivation.free_length[bones] == pytest.approx(12, abs=1.0)
+    assert derivation.free_deviation.max() < 0.005 * 12
+    assert derivation.free_length[0] == 0.0

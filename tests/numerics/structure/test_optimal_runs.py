@@ -1,10 +1,11 @@
 """Laws of the optimal cut of a chain of rings."""
 
+import articulated
 import numpy as np
 from limbs import bent, tube
 
 from kinetree.tasks.numerics.geometry.rigid_fit import moments
-from kinetree.tasks.numerics.structure.optimal_runs import runs
+from kinetree.tasks.numerics.structure.optimal_runs import merge_growth, runs
 from kinetree.tasks.numerics.structure.patch_merging import costs
 
 ANGLES = (0.3, 0.6, 0.9, -0.4)
@@ -40,3 +41,32 @@ def test_no_other_cut_in_two_costs_less():
 def test_a_run_has_the_least_number_of_rings_and_a_short_chain_is_one():
     assert np.bincount(runs(chain(), 1e-12, 5)).min() >= 5
     assert runs(chain()[:3], 0.0, 2).max() == 0
+
+
+def best_fit(q, x):
+    """Σ |R q + t − x|² of the best rigid motion, by singular values."""
+    a, b = q - q.mean(axis=0), x - x.mean(axis=0)
+    U, S, Vt = np.linalg.svd(a.T @ b)
+    S[-1] *= np.sign(np.linalg.det(U @ Vt))
+    return float((a**2).sum() + (b**2).sum() - 2 * S.sum())
+
+
+def test_growth_is_the_difference_of_best_fits():
+    body = articulated.chain((0.0,), articulated.swings(12, 2))
+    V, ring = body.V, np.digitize(body.V[:, 2], [-3, -1, 1, 3])
+    M = moments(V, body.x, np.ones(body.x.shape[:2]), ring, 5)
+    for k, growth in enumerate(merge_growth(M, 2)):
+        one, other = (ring <= k) & (ring > k - 2), (ring > k) & (ring <= k + 2)
+        sides = (one | other, one, other)
+        both, before, behind = (sum(best_fit(V[side], x[side]) for x in body.x) for side in sides)
+        np.testing.assert_allclose(growth, both - before - behind, rtol=1e-6, atol=1e-9)
+
+
+def test_two_tenths_are_cut_where_their_merge_error_is_above_the_threshold():
+    body = articulated.chain((0.0,), articulated.swings(12, 2))
+    ring = np.digitize(body.V[:, 2], np.linspace(-2, 2, 9))
+    M = moments(body.V, body.x, np.ones(body.x.shape[:2]), ring, 10)
+    mass = len(body.x) * float(np.median(M[:, :, 0].mean(axis=1))) * 50 / 5
+    error = np.sqrt(merge_growth(M, 5)[4] / mass)
+    assert runs(M, mass * (0.99 * error) ** 2, 2)[-1] == 1
+    assert runs(M, mass * (1.01 * error) ** 2, 2)[-1] == 0

@@ -5,7 +5,16 @@ from limbs import bent, tube
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.structure.oversegmentation import cone_runs, grouped, patches
+from kinetree.tasks.numerics.structure.oversegmentation import (
+    NO_CONE,
+    SHARED,
+    OversegmentationSettings,
+    cone_runs,
+    grouped,
+    patches,
+)
+
+COARSE = OversegmentationSettings(rings=40, cut=0.05)
 
 
 def hinge():
@@ -23,7 +32,7 @@ def test_patches_cover_the_surface_evenly():
 
 def test_runs_of_one_leaf_end_at_the_hinge():
     surface, V, x, weight, (start, ring) = hinge()
-    run = cone_runs(surface, V, x, weight * surface.area, np.array([len(V) - 1]), start, ring, 40, 0.05)
+    run = cone_runs(surface, V, x, weight * surface.area, np.array([len(V) - 1]), start, ring, COARSE).label
     for k in np.unique(run):
         z = V[run == k, 2]
         assert z.min() > -0.4 or z.max() < 0.4
@@ -32,18 +41,38 @@ def test_runs_of_one_leaf_end_at_the_hinge():
 def test_both_limbs_are_cut_where_each_one_s_cone_holds_the_whole_body():
     surface, V, x, weight, (start, ring) = hinge()
     leaves = np.array([V[:, 2].argmin(), V[:, 2].argmax()])
-    run = cone_runs(surface, V, x, weight * surface.area, leaves, start, ring, 40, 0.05)
-    end = 0.6 * V[:, 2].max()
+    found = cone_runs(surface, V, x, weight * surface.area, leaves, start, ring, COARSE)
+    run, end = found.label, 0.6 * V[:, 2].max()
     assert (run[np.abs(V[:, 2]) > end] >= 0).all()
     assert (run[np.abs(V[:, 2]) < 0.05 * end] == -1).all()
+    assert (found.cone[np.abs(V[:, 2]) < 0.05 * end] == SHARED).all()
     for k in np.unique(run[run >= 0]):
         z = V[run == k, 2]
         assert z.min() > 0 or z.max() < 0
 
 
+def test_rings_runs_and_merge_errors_are_those_of_the_cut():
+    surface, V, x, weight, (start, ring) = hinge()
+    leaf = int(V[:, 2].argmax())
+    found = cone_runs(surface, V, x, weight * surface.area, np.array([leaf]), start, ring, COARSE)
+    inside = found.cone == 0
+    assert found.ring[leaf] == 0
+    assert ((found.ring >= 0) == inside).all()
+    assert (found.label >= 0).tolist() == inside.tolist()
+    np.testing.assert_array_equal(found.run[0, found.ring[inside]], found.label[inside])
+    rings = int((found.run[0] >= 0).sum())
+    assert np.isnan(found.merge[0, rings - 1 :]).all()
+    worst = int(np.nanargmax(found.merge[0]))
+    assert abs(V[found.ring == worst, 2].min()) < 0.4
+    assert found.merge[0, worst] > COARSE.cut
+
+
 def test_without_leaves_there_is_no_run():
     surface, V, x, weight, (start, ring) = hinge()
-    assert (cone_runs(surface, V, x, weight, np.zeros(0, np.int64), start, ring, 40, 0.05) == -1).all()
+    found = cone_runs(surface, V, x, weight, np.zeros(0, np.int64), start, ring, COARSE)
+    assert (found.label == -1).all()
+    assert (found.cone == NO_CONE).all()
+    assert found.run.shape == found.merge.shape == (0, 40)
 
 
 def test_groups_stay_within_their_label_and_apart_where_the_motion_differs():

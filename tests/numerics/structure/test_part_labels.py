@@ -4,7 +4,7 @@ import numpy as np
 from limbs import bent, rotation, tube
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.structure.part_labels import connected, neighbouring, relabelled
+from kinetree.tasks.numerics.structure.part_labels import border_edges, connected, relabelled
 
 ANGLES = (0.5, 1.0, -0.5)
 
@@ -40,6 +40,6 @@ def test_islands_go_to_what_surrounds_them():
 
 def test_neighbours_are_counted_alike_from_both_sides():
     _, _, _, _, true, (start, ring) = hinge()
-    near = neighbouring(true, 3, start, ring)
+    near = border_edges(true, 3, start, ring)
     assert near[0, 1] == near[1, 0] > 0
     assert near[2].sum() == near[0, 0] == 0

@@ -3,7 +3,7 @@
 import numpy as np
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.part_motion import fit, members, middle, misfit, residuals, unevenness
+from kinetree.tasks.numerics.structure.part_motion import fit, median_of, members, misfit, residuals, unevenness
 
 
 def two_clouds():
@@ -69,8 +69,8 @@ def test_noise_of_vertices_cancels_in_patches_and_a_stray_patch_does_not():
 
 def test_the_median_is_the_median():
     values = np.random.default_rng(3).random(101)
-    np.testing.assert_allclose(middle(values, 101), np.median(values), atol=1e-9)
-    assert middle(np.zeros(5), 5) == 0.0
+    np.testing.assert_allclose(median_of(values, 101), np.median(values), atol=1e-9)
+    assert median_of(np.zeros(5), 5) == 0.0
 
 
 def test_of_too_many_members_evenly_many_are_taken():

@@ -6,12 +6,12 @@ import trimesh
 from articulated import Known, chain, moved, swings, three_arms
 from limbs import tube
 
-from kinetree.tasks.numerics.structure.part_tree import Carried, PartTree, Surfaces, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 
 
 def of(body: Known) -> PartTree:
-    parts = Carried(body.label, body.R, body.t, body.residual)
-    return part_tree(Surfaces(body.V, body.F, body.x, body.area), parts)
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    return part_tree(MovingSurface(body.V, body.F, body.x, body.area), parts)
 
 
 def test_links_of_a_chain_hang_on_each_other() -> None:

@@ -4,19 +4,21 @@ import numpy as np
 import pytest
 from articulated import Known, chain, moved, swings, three_arms
 
-from kinetree.tasks.numerics.structure.part_tree import Carried, Surfaces
-from kinetree.tasks.numerics.structure.pruning import Pruned, pruned
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
 
 
 def of(body: Known, leaves: tuple[int, ...] = ()) -> Pruned:
-    parts = Carried(body.label, body.R, body.t, body.residual)
-    return pruned(Surfaces(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    return pruned(MovingSurface(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
 
 
 @pytest.mark.parametrize("body", [chain((-2.0, 2.0)), chain((0.0,)), three_arms()], ids=["three links", "two links", "arms"])
 def test_true_parts_stay(body: Known) -> None:
     found = of(body)
     assert found.parts.label.tolist() == body.label.tolist()
+    assert found.dropped == ()
+    assert found.origin.tolist() == list(range(len(found.origin)))
 
 
 def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
@@ -27,6 +29,9 @@ def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
     body = chain((-0.4, 0.4), turn)
     found = of(body)
     assert found.parts.R.shape[1] == 2
+    assert found.dropped == (Dropped(1, FLESH),)
+    assert found.origin.tolist() == [0, 2]
+    assert len(found.before.borders.pair) == 2
     assert found.part_tree.joints.rest[found.part_tree.tree.border[1]][2] == pytest.approx(0, abs=0.2)
 
 
@@ -35,6 +40,7 @@ def test_parts_that_do_not_turn_are_one() -> None:
     turn[:, 2] = np.eye(3)
     found = of(chain((-1.0, 2.0), turn))
     assert found.parts.R.shape[1] == 2
+    assert [dropped.reason for dropped in found.dropped] == [STILL]
     assert of(chain((-1.0, 2.0), np.tile(np.eye(3), (24, 3, 1, 1)))).parts.R.shape[1] == 1
 
 
@@ -47,4 +53,6 @@ def test_patch_that_slides_is_no_part() -> None:
     t, x = known.t.copy(), known.x.copy()
     t[:, 3] += slide
     x[:, patch] += slide[:, None]
-    assert of(known._replace(t=t, x=x)).parts.R.shape[1] == 3
+    found = of(known._replace(t=t, x=x))
+    assert found.parts.R.shape[1] == 3
+    assert found.dropped == (Dropped(3, SLIDING),)

@@ -87,8 +87,43 @@ def test_the_order_of_vertices_changes_no_part():
 def test_the_same_input_has_the_same_parts_to_the_bit():
     V, F, x, _ = linked(0.0)
     V.flags.writeable = x.flags.writeable = False
-    for a, b in zip(rigid_parts(V, F, x), rigid_parts(V, F, x), strict=True):
+    one, other = rigid_parts(V, F, x), rigid_parts(V, F, x)
+    for a, b in zip((*one[:-1], *one.cut), (*other[:-1], *other.cut), strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def assert_every_initial_part_is_accounted_for(found):
+    """Each part of the first cut is left, was removed once at too small a cost, or has lost its vertices."""
+    cut = found.cut
+    removed, origin = cut.removed.tolist(), cut.origin.tolist()
+    assert len({*removed, *origin}) == len(removed) + len(origin)
+    assert {*removed, *origin} <= set(range(int(cut.initial.max()) + 1))
+    assert set(np.unique(cut.initial)) == set(range(int(cut.initial.max()) + 1))
+    assert len(origin) == found.R.shape[1]
+    assert (cut.cost < cut.cost_threshold).all()
+
+
+def test_the_first_cut_is_too_fine_and_every_part_of_it_is_accounted_for():
+    V, F, x, _ = linked(-1.7, 1.6)
+    found = rigid_parts(V, F, x)
+    assert_every_initial_part_is_accounted_for(found)
+    assert found.cut.initial.max() + 1 > found.R.shape[1]
+    for part, origin in enumerate(found.cut.origin):
+        first = found.cut.initial == origin
+        assert (found.label[first] == part).mean() > 0.5
+    assert found.cut.cost_threshold >= 0.0025
+
+
+def test_cones_of_the_first_cut_lie_around_their_tips():
+    V, F, x, _ = linked(0.0)
+    tips = np.array([int(V[:, 2].argmin()), int(V[:, 2].argmax())])
+    cut = rigid_parts(V, F, x, leaves=tips).cut
+    assert sorted(cut.tip) == sorted(tips)
+    for k, tip in enumerate(cut.tip):
+        assert (cut.cone[tip], cut.ring[tip]) == (k, 0)
+        side = np.sign(V[tip, 2])
+        assert (side * V[cut.cone == k, 2] > 0).all()
+    assert ((cut.cone >= 0) == (cut.ring >= 0)).all()
 
 
 def test_what_is_not_trusted_makes_no_part():
@@ -135,9 +170,12 @@ def test_a_large_surface_asked_at_some_of_its_vertices_has_the_same_parts():
     lone = np.array([[0.9, 0.0, 3.0], [0.9, 0.1, 3.0], [0.9, 0.0, 3.1]])
     F = np.concatenate([F, [[len(V), len(V) + 1, len(V) + 2]]])
     x = np.concatenate([x, np.tile(lone, (FRAMES, 1, 1))], axis=1)
-    found = rigid_parts(np.concatenate([V, lone]), F, x, settings=RigidPartsSettings(most=2000))
+    found = rigid_parts(np.concatenate([V, lone]), F, x, settings=RigidPartsSettings(most_vertices=2000))
     assert_parts_are(found, V, np.append(true, [2, 2, 2]))
     assert len(found.label) == len(found.rigid) == len(V) + 3
+    assert len(found.cut.initial) == len(found.cut.cone) == len(found.cut.ring) == len(V) + 3
+    assert (found.cut.ring[found.cut.tip] == 0).all()
+    assert_every_initial_part_is_accounted_for(found)
 
 
 def test_what_slides_along_the_surface_counts_only_where_every_vertex_was_followed():

@@ -6,7 +6,7 @@ import pytest
 from articulated import chain, swings
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.rotation_centres import blend_error, borders, rotation_centres
+from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, blend_error, borders, rotation_centres
 
 Floats = npt.NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def weakly_turning(noise: Floats) -> Floats:
     t[:, 1] += noise
     expected = body.joints[1] + [0.4, 0.0, 0.0]
     found = rotation_centres(
-        body.R, t, np.array([[0, 1]]), expected[None], np.ones(1), body.residual, spread=0.35, alike=3.0
+        body.R, t, np.array([[0, 1]]), expected[None], np.ones(1), body.residual, None, RotationCentresSettings(0.35, 3.0)
     )
     return np.asarray(found.rest[0] - body.joints[1])
 
@@ -93,7 +93,8 @@ def test_a_joint_that_runs_away_goes_a_smaller_share_of_the_way() -> None:
 
     def share(way: float, far: float) -> float:
         expected = body.joints[1:] - [0.0, 0.0, way]
-        found = rotation_centres(body.R, body.t, np.array([[0, 1]]), expected, np.ones(1), residual, far=far)
+        prior = RotationCentresSettings(far=far)
+        found = rotation_centres(body.R, body.t, np.array([[0, 1]]), expected, np.ones(1), residual, None, prior)
         return float((found.rest - expected)[0, 2] / way)
 
     assert share(0.2, 0.7) == pytest.approx(share(0.2, np.inf), abs=0.05)

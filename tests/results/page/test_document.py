@@ -24,9 +24,9 @@ def test_words_from_outside_are_escaped_everywhere():
 
 
 def test_json_in_a_script_cannot_end_it_and_reads_as_it_was():
-    told = {EVIL: [EVIL, 1.5, None]}
-    assert "<" not in as_script(told)
-    assert json.loads(as_script(told)) == told
+    value = {EVIL: [EVIL, 1.5, None]}
+    assert "<" not in as_script(value)
+    assert json.loads(as_script(value)) == value
 
 
 def test_numbers_that_json_does_not_know_are_refused():
@@ -44,11 +44,11 @@ def test_what_ran_is_laid_into_the_page_harmlessly():
     text = page()
     assert text.count(RUN) == 1
     report = Report(text=np.frombuffer(text.encode(), np.uint8))
-    told = views.page(report, {"run": EVIL}).decode()
-    assert RUN not in told
-    found = re.search(r'<script type="application/json" id="run-record">(.*?)</script>', told)
-    assert found is not None
-    assert json.loads(found.group(1)) == {"run": EVIL}
+    html = views.page(report, {"run": EVIL}).decode()
+    assert RUN not in html
+    record = re.search(r'<script type="application/json" id="run-record">(.*?)</script>', html)
+    assert record is not None
+    assert json.loads(record.group(1)) == {"run": EVIL}
 
 
 def test_warnings_have_a_box_only_where_there_are_some():
@@ -64,6 +64,6 @@ def test_every_joint_kind_has_its_colour_in_the_legend():
 
 
 def test_tables_put_numbers_to_the_right_and_escape_cells():
-    told = table(("a", "b"), [("<b>", 1.23456), ("c", 2)])
-    assert "&lt;b&gt;" in told
-    assert '<td class="n">1.235</td>' in told
+    html = table(("a", "b"), [("<b>", 1.23456), ("c", 2)])
+    assert "&lt;b&gt;" in html
+    assert '<td class="n">1.235</td>' in html

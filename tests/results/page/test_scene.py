@@ -39,8 +39,8 @@ def test_aligned_mesh_and_joints_are_where_they_were_seen_along_the_views_axes(s
     skeleton, arrays = spider(), unpacked(scene)
     x = skinned(skeleton)
     axes = view(list(x))
-    shown = np.array(scene.description["low"]) + scene.description["scale"] * arrays["positions"].astype(np.float64)
-    assert np.abs(shown - x @ axes).max() <= 0.5 * scene.description["scale"] * (1 + 1e-9)
+    positions = np.array(scene.description["low"]) + scene.description["scale"] * arrays["positions"].astype(np.float64)
+    assert np.abs(positions - x @ axes).max() <= 0.5 * scene.description["scale"] * (1 + 1e-9)
     np.testing.assert_allclose(arrays["joints"], skeleton.positions @ axes, atol=1e-5)
 
 

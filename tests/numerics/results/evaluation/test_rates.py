@@ -15,9 +15,9 @@ def test_same_joints_are_all_detected_at_no_distance():
 
 def test_node_that_is_nearest_to_two_joints_detects_one():
     """A node at 0.2 is nearest to joints 0 and 1, one at 3 to joints 2 (at distance 1) and 3."""
-    found = np.array([[[0.2, 0, 0], [3.0, 0, 0]]])
-    assert detection_rate(found, LINE).tolist() == [0.5]
-    assert nearest_distance(found, LINE) == pytest.approx([(0.2 + 0.8 + 1.0 + 0.0) / 4])
+    joints = np.array([[[0.2, 0, 0], [3.0, 0, 0]]])
+    assert detection_rate(joints, LINE).tolist() == [0.5]
+    assert nearest_distance(joints, LINE) == pytest.approx([(0.2 + 0.8 + 1.0 + 0.0) / 4])
 
 
 def test_redundant_node_costs_nothing_here():

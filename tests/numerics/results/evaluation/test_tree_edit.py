@@ -32,8 +32,8 @@ def test_distance_is_symmetric():
 
 @pytest.mark.parametrize("cut", range(1, 13))
 def test_joint_less_is_one_edit(cut):
-    kept = [j != cut for j in range(13)]
-    assert tree_edit_distance(HUMAN, contracted_tree(HUMAN, kept)) == 1
+    remains = [j != cut for j in range(13)]
+    assert tree_edit_distance(HUMAN, contracted_tree(HUMAN, remains)) == 1
 
 
 @pytest.mark.parametrize("end", range(13))

@@ -12,9 +12,9 @@ SAME = [(j, j) for j in range(1, 10)]
 
 def without(parents, cut):
     """The tree with one joint less, and its pairs with the tree as it was."""
-    kept = [j != cut for j in range(len(parents))]
+    remains = [j != cut for j in range(len(parents))]
     stay = [j for j in range(len(parents)) if j != cut]
-    return contracted_tree(parents, kept), [(k, j) for k, j in enumerate(stay) if parents[j] >= 0]
+    return contracted_tree(parents, remains), [(k, j) for k, j in enumerate(stay) if parents[j] >= 0]
 
 
 def distance(parents, others, pairs, place=None):
