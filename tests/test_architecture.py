@@ -1,4 +1,4 @@
-"""Who may import whom, and that every operation has one stem on one shelf behind every door."""
+"""Who may import whom, that every operation has one stem on one shelf behind every door, and that every artifact is read."""
 
 import ast
 import re
@@ -10,7 +10,10 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
+from kinetree.pipeline import views
+from kinetree.pipeline.graph import Graph
 from kinetree.tasks import METHODS
+from kinetree.tasks.input import INPUT
 
 ROOT = Path(__file__).resolve().parent.parent
 SHELVES = ("input", "topology", "registration", "structure", "paper_2014", "results")
@@ -173,3 +176,22 @@ def test_a_shelf_lists_all_of_its_tasks(place: str) -> None:
 def test_every_numeric_file_is_tried_by_laws(path: Path) -> None:
     tried = {m for test in ROOT.glob("tests/numerics/**/test_*.py") for m in imports(test)}
     assert path.name == "__init__.py" or module(path) in tried
+
+
+def unread(graph: Graph) -> set[str]:
+    """Artifacts that no other task of the graph reads and that leave nothing in the output folder."""
+    read = {a.artifact for task in graph.tasks for a in task.arguments if not issubclass(task.returns, a.artifact)}
+    left = [views.leaves_files, views.group_name, views.page_name]
+    stored = {task.returns for task in graph.tasks if not any(leaves(task.returns) for leaves in left)}
+    return {artifact.__name__ for artifact in stored if not any(issubclass(artifact, r) for r in read)}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_artifact_has_a_reader(method: str) -> None:
+    assert not unread(METHODS[method])
+
+
+def test_artifact_that_nobody_reads_is_named() -> None:
+    assert unread(Graph.of(INPUT)) == {"Sequence", "Connectivity"}
+    without_report = [task for task in METHODS["mesoscopic"].tasks if task.name != "report"]
+    assert {"FrameConfidence", "StructureFigures"} <= unread(Graph.of(without_report))

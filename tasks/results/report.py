@@ -11,6 +11,7 @@ from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.report import Report, ReportParams
@@ -51,6 +52,7 @@ def report(
     leaves: Leaves,
     evaluation: Evaluation,
     up_direction: UpDirection,
+    frame_confidence: FrameConfidence,
     alignment: Mapping[int, Alignment],
     projection: Mapping[int, Projection],
     mesh: Mapping[int, Mesh],
@@ -71,7 +73,7 @@ def report(
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
-        warnings=warnings(skeleton, intervals, leaves, alignment, mesh),
+        warnings=warnings(skeleton, intervals, leaves, frame_confidence, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
             Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, structure_figures)),

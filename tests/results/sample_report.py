@@ -11,6 +11,7 @@ from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.structure.skeleton import Skeleton
@@ -53,6 +54,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
         "intervals": halves(frames),
         "leaves": followed(skeleton),
         "evaluation": unjudged(skeleton),
+        "frame_confidence": confident(frames),
         "alignment": {
             f: Alignment(vertices=x[t], residual=zero, stretch=one, trust=one, uncovered=0.0) for t, f in enumerate(frames)
         },
@@ -97,6 +99,17 @@ def judged(skeleton: Skeleton) -> Evaluation:
         truth="truth.json", frames=skeleton.frames, unit=skeleton.unit, height=16.0, joints=rows, spurious=("knee",),
         true_frames=steps, summary=Summary(scored=2, found=1, missing=1, spurious=1, percent=1.25), error=off,
         detection=np.full(steps, 0.5), distance=np.full(steps, 0.0125),
+    )  # fmt: skip
+
+
+def confident(
+    frames: tuple[int, ...], failed: tuple[int, ...] = (), doubted: dict[int, float] | None = None
+) -> FrameConfidence:
+    """All frames are trusted but the failed ones; some have a share of the body in doubt."""
+    none = np.zeros(len(frames))
+    return FrameConfidence(
+        frames=frames, residual=none, uncovered=none, doubted=np.array([(doubted or {}).get(f, 0.0) for f in frames]),
+        trusted=np.array([f not in failed for f in frames]),
     )  # fmt: skip
 
 

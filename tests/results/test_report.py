@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 from results.rigged_bodies import skinned, spider
-from results.sample_report import artifacts, judged
+from results.sample_report import artifacts, confident, judged
 
 from kinetree.schemas.input.mesh import Cleaning
 from kinetree.schemas.registration.alignment import Alignment
@@ -70,13 +70,13 @@ def test_page_without_warnings_has_no_box_for_them() -> None:
 
 def test_box_of_warnings_names_frames_and_joints() -> None:
     content = artifacts()
-    low = {"doubted": 0.9}
-    doubt = {f: a.model_copy(update=low if f in (3, 4) else {}) for f, a in content["alignment"].items()}
+    doubt = confident(spider().frames, failed=(3, 4), doubted={9: 0.12})
     cleaned = Cleaning(components=2, components_kept=1)
     removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in content["mesh"].items()}
     body = spider(support=np.full(len(spider().names), 2))
-    sentences = warnings(page(alignment=doubt, mesh=removed, skeleton=body))
-    assert "the alignment is unreliable in frames 3, 4; poses there follow from the other frames" in sentences
+    sentences = warnings(page(frame_confidence=doubt, mesh=removed, skeleton=body))
+    assert "alignment failed in frames 3–4: the aligned body does not fit the mesh there" in sentences
+    assert "alignment partly unreliable in frame 9: up to 12% of the body is hidden or does not fit" in sentences
     assert "components apart from the body were removed in frame 7" in sentences
     assert any("supported by fewer than 5 frames" in text and "joints arm, knee" in text for text in sentences)
 

@@ -7,11 +7,13 @@ import numpy as np
 
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.formats.rig import skinned
+from kinetree.tasks.views.registration import frame_confidence_remarks
 from kinetree.tasks.views.structure import skeleton_remarks
 from kinetree.tasks.views.topology import leaf_losses
 
@@ -26,8 +28,6 @@ class WarningLimits(NamedTuple):
     skeleton does not explain the motion."""
     compared: int = 24
     """Frames in which the skin is compared with the aligned mesh, evenly spread; more take longer."""
-    doubted: float = 0.5
-    """Share of unreliable vertices above which a frame is named."""
     confidence: float = 0.5
     """Mean confidence below which a joint is named."""
     named: int = 12
@@ -41,6 +41,7 @@ def warnings(
     skeleton: Skeleton,
     intervals: Intervals,
     leaves: Leaves,
+    frame_confidence: FrameConfidence,
     alignments: Mapping[int, Alignment],
     meshes: Mapping[int, Mesh],
 ) -> list[str]:
@@ -48,7 +49,7 @@ def warnings(
 
     alignments, meshes : by source frame number
     """
-    return [*_of_skeleton(skeleton, alignments), *_of_frames(intervals, leaves, alignments, meshes)]
+    return [*_of_skeleton(skeleton, alignments), *_of_frames(intervals, leaves, frame_confidence, meshes)]
 
 
 def skin_distance(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> float:
@@ -105,12 +106,10 @@ def _handles(skeleton: Skeleton) -> int:
 
 
 def _of_frames(
-    intervals: Intervals, leaves: Leaves, alignments: Mapping[int, Alignment], meshes: Mapping[int, Mesh]
+    intervals: Intervals, leaves: Leaves, frame_confidence: FrameConfidence, meshes: Mapping[int, Mesh]
 ) -> Iterator[str]:
     """Warnings about frames: alignment, leaves, intervals, removed components."""
-    doubted = [str(frame) for frame, a in alignments.items() if a.doubted > LIMITS.doubted]
-    if doubted:
-        yield f"the alignment is unreliable in {_named(doubted, 'frame')}; poses there follow from the other frames"
+    yield from frame_confidence_remarks(frame_confidence)
     yield from leaf_losses(leaves)
     for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
         if end - begin + 1 < LIMITS.short < len(intervals.frames):
