@@ -34,6 +34,7 @@ OURS = {"kinetree.tasks", "kinetree.schemas"}
 """Packages that the loom names in one place: their definitions are what a code digest is made of (key.py)."""
 SYNTAX = {"body"}
 """Names of fields of Python's syntax trees."""
+PLOTTED = sorted(ROOT.glob("tasks/results/plots/*.py"))
 BORDER = "tasks/input/source.py"
 
 
@@ -179,10 +180,11 @@ def test_every_numeric_file_is_tried_by_laws(path: Path) -> None:
 
 
 def unread(graph: Graph) -> set[str]:
-    """Artifacts that no other task of the graph reads and that leave nothing in the output folder."""
+    """Artifacts that no other task of the graph reads, that no plot draws and that leave nothing in the output folder."""
+    drawn = {name for path in PLOTTED for name in re.findall(r'fetch\("(\w+)"', path.read_text())}
     read = {a.artifact for task in graph.tasks for a in task.arguments if not issubclass(task.returns, a.artifact)}
     left = [views.leaves_files, views.group_name, views.page_name]
-    stored = {task.returns for task in graph.tasks if not any(leaves(task.returns) for leaves in left)}
+    stored = {t.returns for t in graph.tasks if t.name not in drawn and not any(leaves(t.returns) for leaves in left)}
     return {artifact.__name__ for artifact in stored if not any(issubclass(artifact, r) for r in read)}
 
 
