@@ -24,6 +24,7 @@ from functools import cache
 from pathlib import Path
 
 from kinetree.pipeline.definitions import PACKAGE, Code
+from kinetree.pipeline.key import HARMLESS
 from kinetree.pipeline.statements import syntax
 
 ROOT = Path(__file__).parent.parent
@@ -32,21 +33,21 @@ Texts = Mapping[str, str]
 Tasks = dict[str, str]
 
 EDITS = (
-    ("a word in a warning", "schemas.reference", "nothing tells contact from freedom", "nothing tells touch from freedom"),
-    ("one character in what is told of a skeleton", "schemas.skeleton", "bone {self.lengths", "bone: {self.lengths"),
+    ("a word in a warning", "tasks.views.registration", "reference", "Reference"),
+    ("one character in what is told of a skeleton", "tasks.views.structure", "bone {", "bone: {"),
     ("a new dimension", "schemas.dims", 'FACE = Dim("face")', 'FACE = Dim("face")\nEDGE = Dim("edge")'),
     (
         "a constant of the synthetic generator",
-        "tasks.numerics.synth.body",
+        "tasks.numerics.input.synth.body",
         "_SURFACE, _NOISE, _HOLES, _REST = range(4)",
         "_SURFACE, _NOISE, _HOLES, _REST = range(1, 5)",
     ),
-    ("a formula of the geodesic front", "tasks.numerics.front", "np.uint64(BANDS - 1)", "np.uint64(BANDS - 2)"),
-    ("a docstring", "tasks.numerics.front", '"""', '"""Reworded. '),
-    ("a comment", "tasks.numerics.front", "\n\n\n", "\n\n\n# why\n"),
-    ("a default of the mesh's parameters", "schemas.mesh", r"(class MeshParams.*?: float = )[\d.e-]+", r"\g<1>0.123"),
-    ("a new helper that nothing uses", "tasks.numerics.mesh", "\n\n\ndef ", "\n\n\ndef spare(x):\n    return x\n\n\ndef "),
-    ("a colour of a plot", "tasks.plots.mesoscopic", "BLACK, WHITE = to_rgba(", 'BLACK, WHITE = to_rgba("0.1") or to_rgba('),
+    ("a formula of the geodesic front", "tasks.numerics.geometry.bucketed_dijkstra", "np.uint64(BANDS - 1)", "np.uint64(BANDS - 2)"),
+    ("a docstring", "tasks.numerics.geometry.bucketed_dijkstra", '"""', '"""Reworded. '),
+    ("a comment", "tasks.numerics.geometry.bucketed_dijkstra", "\n\n\n", "\n\n\n# why\n"),
+    ("a default of the mesh's parameters", "schemas.input.mesh", r"(class MeshParams.*?: float = )[\d.e-]+", r"\g<1>0.123"),
+    ("a new helper that nothing uses", "tasks.numerics.input.mesh", "\n\n\ndef ", "\n\n\ndef spare(x):\n    return x\n\n\ndef "),
+    ("a colour of a plot", "tasks.results.plots.mesoscopic", "BLACK, WHITE = to_rgba(", 'BLACK, WHITE = to_rgba("0.1") or to_rgba('),
 )
 """What is edited, in which module, the text or pattern, and what replaces its first occurrence."""
 
@@ -101,7 +102,7 @@ def stale(before: Texts, after: Texts, rule: Callable[[Texts], dict[str, object]
 
 def by_modules(texts: Texts) -> dict[str, object]:
     """What the digest of each task covered before: all modules it imports, transitively."""
-    code = Code(texts)
+    code = Code(texts, HARMLESS)
     found: dict[str, object] = {}
     for task, home in tasks_of(texts).items():
         covered: dict[str, str] = {}
@@ -122,7 +123,7 @@ def _whole(text: str) -> str:
 
 def by_definitions(texts: Texts) -> dict[str, object]:
     """What the digest of each task covers."""
-    code = Code(texts)
+    code = Code(texts, HARMLESS)
     return {task: code.reached(home, task) for task, home in tasks_of(texts).items()}
 
 
