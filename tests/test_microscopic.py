@@ -9,6 +9,7 @@ import trimesh
 from kinetree.pipeline import Pipeline
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.registration.stiffness import PASSES
 
 STEP_TWO = ("projection", "frame_confidence")
 COARSE = {"geodesics": {"bases": 40}, "deformation_graph": {"nodes": 120}}
@@ -52,7 +53,7 @@ def test_alignment_is_the_same_bit_for_bit_for_any_number_of_workers(tmp_path: P
     assert told["status"] == "done"
     assert max(far(alone, t) for t in range(5)) < NEAR
     several, _ = ran(tmp_path / "several", "threads", 4, source={"synth": HUMAN})
-    for task in ("tracking", "recovery", "third_stiffness", "alignment", "projection", "frame_confidence"):
+    for task in ("tracking", "recovery", "stiffness", "refit", "roll", "alignment", "projection", "frame_confidence"):
         assert digests(alone, task) == digests(several, task), task
 
 
@@ -63,7 +64,16 @@ def test_fixed_connectivity_is_aligned_already(tmp_path: Path) -> None:
         here, mesh = pipeline.artifact("alignment", frame=t), pipeline.artifact("mesh", frame=t)
         assert np.array_equal(here.vertices, mesh.vertices)  # type: ignore[attr-defined]
     assert pipeline.artifact("deformation_graph").nodes.size == 0  # type: ignore[attr-defined]
-    assert len(set(digests(pipeline, "third_refit"))) <= 2, "nothing is fitted, so there is next to nothing to store"
+    tasks = {node.task for node in pipeline.schedule(until=STEP_TWO).entries}
+    assert not {"stiffness", "refit", "roll_candidates", "roll"} & tasks, "without passes they have no nodes"
+
+
+def test_every_pass_has_its_nodes(tmp_path: Path) -> None:
+    pipeline, told = ran(tmp_path, source={"synth": {**HUMAN, "frames": 2}})
+    assert told["status"] == "done"
+    tasks = [node.task for node in pipeline.schedule(until=STEP_TWO).entries]
+    assert (tasks.count("stiffness"), tasks.count("roll")) == (len(PASSES), len(PASSES))
+    assert (tasks.count("refit"), tasks.count("roll_candidates")) == (2 * len(PASSES), 2 * len(PASSES))
 
 
 def test_two_frames_are_aligned(tmp_path: Path) -> None:
