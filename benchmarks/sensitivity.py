@@ -30,6 +30,7 @@ import inspect
 import json
 import math
 import multiprocessing
+import os
 import pkgutil
 import re
 import tempfile
@@ -158,9 +159,7 @@ def parameters(graph: Graph) -> list[Setting]:
             meanings = _meanings(task.params.__module__, task.params.__name__)
             for field, told in task.params.model_fields.items():
                 if is_numeric(told.default):
-                    found.append(
-                        Setting("parameter", task.module, task.name, field, told.default, meanings.get(field, ""))
-                    )
+                    found.append(Setting("parameter", task.module, task.name, field, told.default, meanings.get(field, "")))
     return found
 
 
@@ -189,7 +188,8 @@ def scaled(setting: Setting, factor: float) -> Value | str:
     value = setting.default
     items = value if isinstance(value, tuple) else (value,)
     made = tuple(max(1, round(i * factor)) if isinstance(i, int) else i * factor for i in items)
-    if made == items or not all(math.isfinite(i) for i in items):
+    is_mark = any(isinstance(i, int) and i < 1 for i in items)
+    if made == items or is_mark or not all(math.isfinite(i) for i in items):
         return f"{value} has no other value at ×{factor:g}"
     if setting.meaning.lower().startswith(UNIT_RANGE) and max(items) <= 1.0 < max(made):
         return f"{max(made):g} is no {setting.meaning.split()[0].lower()}"
@@ -216,9 +216,8 @@ def varied(setting: Setting, value: Value) -> Iterator[Callable[[], int]]:
 
 
 def reaches(module: str, name: str, setting: Setting) -> bool:
-    """Whether the code of a task reaches a setting's definition, or the whole of its module."""
-    names = {part.rpartition(":")[0] for part in code_parts(module, name).get(setting.module, "").split()}
-    return bool(names & {setting.definition, "*"})
+    """Whether the code of a task reaches a setting's definition."""
+    return setting.definition in {part.rpartition(":")[0] for part in code_parts(module, name).get(setting.module, "").split()}
 
 
 def fixed_uses(setting: Setting) -> list[str]:
@@ -233,17 +232,22 @@ def fixed_uses(setting: Setting) -> list[str]:
     return found
 
 
+def pipeline(body: Body, work: Path, sets: Sequence[str] = ()) -> Pipeline:
+    """The default method on a body, in the store that all runs share; every process has an output folder of its own."""
+    synth = {"figure": body.figure, "frames": body.frames, "vertices": body.vertices, "seed": body.seed}
+    folders = {"output": str(work / f"output-{os.getpid()}"), "store": str(work / "store")}
+    return Pipeline.of({"source": {"synth": synth}, **folders, "compute": {"executor": "sync"}}, sets=sets)
+
+
 def outcome(body: Body, work: Path, sets: Sequence[str] = (), until: str = "evaluation") -> Outcome:
-    """Runs the default method on a body, in the store that all runs share.
+    """Runs the default method on a body.
 
     until : the task that ends the run; with another than `evaluation` there are no joints and nothing is found
     """
-    synth = {"figure": body.figure, "frames": body.frames, "vertices": body.vertices, "seed": body.seed}
-    folder = {"output": str(work / "output"), "store": str(work / "store"), "compute": {"executor": "sync"}}
     empty = np.zeros((body.frames, 0, 3))
     try:
-        pipeline = Pipeline.of({"source": {"synth": synth}, **folder}, sets=sets)
-        run = pipeline.run(until=[until])
+        method = pipeline(body, work, sets)
+        run = method.run(until=[until])
     except KinetreeError as error:
         return Outcome(0, 0, math.nan, 0, empty, {}, why=f"{type(error).__name__}: {error}")
     ran = {task: told["ran"] for task, told in run["tasks"].items() if told["ran"]}
@@ -252,11 +256,11 @@ def outcome(body: Body, work: Path, sets: Sequence[str] = (), until: str = "eval
         return Outcome(0, 0, math.nan, 0, empty, ran, why=why)
     if until != "evaluation":
         return Outcome(0, 0, math.nan, 0, empty, ran)
-    within = pipeline.schedule(until=[until])
-    told: Any = pipeline.artifact(until, within=within)
-    skeleton: Any = pipeline.artifact("skeleton", within=within)
-    s = told.summary
-    joints = np.asarray(skeleton.positions, np.float64) / told.height
+    within = method.schedule(until=[until])
+    evaluated: Any = method.artifact(until, within=within)
+    skeleton: Any = method.artifact("skeleton", within=within)
+    s = evaluated.summary
+    joints = np.asarray(skeleton.positions, np.float64) / evaluated.height
     return Outcome(s.found, s.scored, math.nan if s.percent is None else s.percent, s.spurious, joints, ran)
 
 
@@ -331,13 +335,13 @@ def wanted(shelves: Sequence[str], only: str, params: bool, with_constants: bool
 def measure(bodies: Sequence[Body], asked: Sequence[Setting], work: Path, jobs: int, until: float) -> Iterator[Row]:
     """Rows as they come; nothing begins after the time `until`, seconds of `time.monotonic`."""
     for body in bodies:
-        default = outcome(body, work / "default")
+        default = outcome(body, work)
         if default.why:
             raise SystemExit(f"{body.figure}: the run with defaults failed: {default.why}")
         if jobs == 1:
             for setting in asked:
                 if time.monotonic() < until:
-                    yield measured(setting, body, default, work / "default")
+                    yield measured(setting, body, default, work)
             continue
         with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
             tasks = [pool.submit(_measured_in_time, s, body, default, work, until) for s in asked]
@@ -349,7 +353,7 @@ def measure(bodies: Sequence[Body], asked: Sequence[Setting], work: Path, jobs: 
 
 def _measured_in_time(setting: Setting, body: Body, default: Outcome, work: Path, until: float) -> Row | None:
     """A row, in another process; None where its time is over."""
-    return measured(setting, body, default, work / "default") if time.monotonic() < until else None
+    return measured(setting, body, default, work) if time.monotonic() < until else None
 
 
 HEADS = ("setting", "default", "meaning", "half", "at default", "double", "joints ±", "% moved")
