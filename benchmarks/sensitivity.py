@@ -398,11 +398,14 @@ def markdown(rows: Sequence[Row], unmeasured: Sequence[str]) -> str:
     lines = ["| " + " | ".join(HEADS) + " |", "|" + "---|" * len(HEADS)]
     varied_ones = [group for group in groups if effect(group).runs]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in cells(group)) + " |" for group in varied_ones]
-    both = [g for g in varied_ones if all(isinstance(s, Outcome) for row in g for s in (row.half, row.double))]
-    still = [g[0].setting.name for g in both if effect(g)[:3] == (0, 0, 0.0)]
+    idle = [g for g in varied_ones if effect(g)[:3] == (0, 0, 0.0)]
+    both = [all(isinstance(side, Outcome) for row in g for side in (row.half, row.double)) for g in idle]
+    still = [g[0].setting.name for g, complete in zip(idle, both, strict=True) if complete]
+    one_sided = [g[0].setting.name for g, complete in zip(idle, both, strict=True) if not complete]
     fixed = [f"{g[0].setting.name}: {_summed([r.half for r in g])}" for g in groups if not effect(g).runs]
     for title, names in (
         ("Halved and doubled, moved no joint at all", still),
+        ("Halved or doubled, not both, moved no joint at all", one_sided),
         ("Not varied", fixed),
         ("Not measured", unmeasured),
     ):
