@@ -42,12 +42,27 @@ EDITS = (
         "_SURFACE, _NOISE, _HOLES, _REST = range(4)",
         "_SURFACE, _NOISE, _HOLES, _REST = range(1, 5)",
     ),
-    ("a formula of the geodesic front", "tasks.numerics.geometry.bucketed_dijkstra", "np.uint64(BANDS - 1)", "np.uint64(BANDS - 2)"),
+    (
+        "a formula of the geodesic front",
+        "tasks.numerics.geometry.bucketed_dijkstra",
+        "np.uint64(BANDS - 1)",
+        "np.uint64(BANDS - 2)",
+    ),
     ("a docstring", "tasks.numerics.geometry.bucketed_dijkstra", '"""', '"""Reworded. '),
     ("a comment", "tasks.numerics.geometry.bucketed_dijkstra", "\n\n\n", "\n\n\n# why\n"),
     ("a default of the mesh's parameters", "schemas.input.mesh", r"(class MeshParams.*?: float = )[\d.e-]+", r"\g<1>0.123"),
-    ("a new helper that nothing uses", "tasks.numerics.input.mesh", "\n\n\ndef ", "\n\n\ndef spare(x):\n    return x\n\n\ndef "),
-    ("a colour of a plot", "tasks.results.plots.mesoscopic", "BLACK, WHITE = to_rgba(", 'BLACK, WHITE = to_rgba("0.1") or to_rgba('),
+    (
+        "a new helper that nothing uses",
+        "tasks.numerics.input.mesh",
+        "\n\n\ndef ",
+        "\n\n\ndef spare(x):\n    return x\n\n\ndef ",
+    ),
+    (
+        "a colour of a plot",
+        "tasks.results.plots.mesoscopic",
+        "BLACK, WHITE = to_rgba(",
+        'BLACK, WHITE = to_rgba("0.1") or to_rgba(',
+    ),
 )
 """What is edited, in which module, the text or pattern, and what replaces its first occurrence."""
 
