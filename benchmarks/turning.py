@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.roll import choices
+from kinetree.tasks.numerics.registration.roll import chosen_rolls
 from kinetree.tasks.numerics.registration.roll_candidates import limbs, roll_candidates, untwisted
 
 Floats = npt.NDArray[np.float64]
@@ -85,7 +85,7 @@ def twisted(
 ) -> tuple[list[Pose], Ints]:
     """Poses in which limbs have their twist back, and (node,) the limb of those that turned."""
     tried = [roll_candidates(body, pose, target, piece) for pose, target in zip(poses, targets, strict=True)]
-    turn = choices(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
+    turn = chosen_rolls(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
     limb = np.full(len(body.node), -1)
     for k, one in enumerate(limbs(body, piece)):
         limb[one.node] = k if (turn[:, k] >= 0).any() else -1

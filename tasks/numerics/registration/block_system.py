@@ -5,13 +5,10 @@ Jacobian is ever formed. All sums run in a fixed order on one thread.
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import distinct
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def pattern(bound: Ints, edge: Ints, nodes: int) -> tuple[Ints, Ints, Ints]:

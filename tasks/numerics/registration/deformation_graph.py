@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.nearest_nodes import nearest_nodes
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
@@ -18,9 +19,6 @@ from kinetree.tasks.numerics.geometry.sampling import farthest_points
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.geometry.thickness import opposite, thickness
 from kinetree.tasks.numerics.registration.block_system import pattern
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 BOUND = 4  # nodes a vertex follows
 NEIGHBOURS = 8  # nearest nodes each node is tied to

@@ -9,16 +9,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import rotation_gain
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 ONE = 1.0  # two pieces stay two if together they cost more than this a frame, spacings squared
 _AROUND = 4  # nearest nodes that tell the spacing
@@ -37,17 +34,17 @@ class _Moments(NamedTuple):
     C: Floats
 
 
-def rigid_clusters(template: DeformationGraph, poses: Sequence[Pose], limit: float = ONE) -> Ints:
+def rigid_clusters(graph: DeformationGraph, poses: Sequence[Pose], limit: float = ONE) -> Ints:
     """Which nodes have moved as one piece in all frames.
 
     poses   : one a frame, in any order; at least one
     limit   : cost above which pieces are not merged
     returns : (node,) number of the piece, in the order of each piece's first node
     """
-    spacing = _spacing(template.g)
-    moments = _moments(template, poses, spacing)
-    length = np.linalg.norm(template.g[template.edge[:, 0]] - template.g[template.edge[:, 1]], axis=1)
-    near = template.edge[length < _FAR * spacing[template.edge].max(axis=1)]
+    spacing = _spacing(graph.g)
+    moments = _moments(graph, poses, spacing)
+    length = np.linalg.norm(graph.g[graph.edge[:, 0]] - graph.g[graph.edge[:, 1]], axis=1)
+    near = graph.edge[length < _FAR * spacing[graph.edge].max(axis=1)]
     label = _merged(moments, near, limit)
     return np.unique(label, return_inverse=True)[1].astype(np.int64)
 
@@ -60,10 +57,10 @@ def _spacing(g: Floats) -> Floats:
     return np.where(mean > 0, mean, 1.0)
 
 
-def _moments(template: DeformationGraph, poses: Sequence[Pose], spacing: Floats) -> _Moments:
+def _moments(graph: DeformationGraph, poses: Sequence[Pose], spacing: Floats) -> _Moments:
     """Of every node by itself; places are taken from the middle of the body, against cancellation."""
-    middle = template.g.mean(axis=0)
-    g = template.g - middle
+    middle = graph.g.mean(axis=0)
+    g = graph.g - middle
     m, spread = 1.0 / spacing**2, (_EXTENT * spacing) ** 2
     P = np.stack([pose.translation - middle for pose in poses], axis=1)
     R = np.stack([pose.rotation for pose in poses], axis=1)

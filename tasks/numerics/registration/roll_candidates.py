@@ -8,18 +8,15 @@ them it has is seen only over many frames (`twist`).
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
-from kinetree.tasks.numerics.registration.correspondence import Target, walked
+from kinetree.tasks.numerics.registration.correspondence import Target, local_matches
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 from kinetree.tasks.numerics.registration.graph_kinematics import stepped
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 TURNS = 12  # starts, evenly around the axis; the first is where the piece is
 _LONG = 1.5  # length against width from which on a piece has an axis to turn about
@@ -61,43 +58,43 @@ class RollCandidates(NamedTuple):
     place: Floats
 
 
-def limbs(template: DeformationGraph, piece: Ints) -> list[Limb]:
+def limbs(graph: DeformationGraph, piece: Ints) -> list[Limb]:
     """Pieces with an axis, in their order.
 
     piece : (node,) see `pieces`
     """
-    owner = template.bound[template.sample, template.weight[template.sample].argmax(axis=1)]
+    owner = graph.bound[graph.sample, graph.weight[graph.sample].argmax(axis=1)]
     out = []
     for number in range(int(piece.max(initial=-1)) + 1):
-        node, sample = np.flatnonzero(piece == number), template.sample[piece[owner] == number]
+        node, sample = np.flatnonzero(piece == number), graph.sample[piece[owner] == number]
         if len(node) < _NODES or len(sample) < _SAMPLES:
             continue
         count = min(len(sample), _MOST)
         sample = sample[np.arange(count) * len(sample) // count]
-        middle = template.V[sample].mean(axis=0)
-        _, width, axes = np.linalg.svd(template.V[sample] - middle, full_matrices=False)
+        middle = graph.V[sample].mean(axis=0)
+        _, width, axes = np.linalg.svd(graph.V[sample] - middle, full_matrices=False)
         if width[0] >= _LONG * width[1]:
             out.append(Limb(node, sample, middle, axes[0]))
     return out
 
 
-def roll_candidates(template: DeformationGraph, pose: Pose, target: Target, piece: Ints) -> RollCandidates:
+def roll_candidates(graph: DeformationGraph, pose: Pose, target: Target, piece: Ints) -> RollCandidates:
     """Every limb fitted as a rigid body from each of the turns about its axis.
 
     pose    : of this frame, from an earlier pass
     piece   : (node,) see `pieces`
     returns : Turns; the first turn begins where the limb is
     """
-    every = limbs(template, piece)
+    every = limbs(graph, piece)
     shape = (len(every), TURNS)
     out = RollCandidates(np.zeros(shape), np.ones(shape), np.zeros((*shape, 3, 3)), np.zeros((*shape, 3)))
     size = target.size
     limits = _BETA * size, _REACH * size, _SCALE * size, _JUDGED * size
     surface = target.V, target.N, target.start, target.ring
     for k, limb in enumerate(every):
-        V, N = template.V[limb.sample] - limb.middle, template.N[limb.sample]
-        R, c = rigid_motion(template.g[limb.node] - limb.middle, pose.translation[limb.node])
-        match = target.found(V @ R.T + c, N @ R.T)
+        V, N = graph.V[limb.sample] - limb.middle, graph.N[limb.sample]
+        R, c = rigid_motion(graph.g[limb.node] - limb.middle, pose.translation[limb.node])
+        match = target.nearest(V @ R.T + c, N @ R.T)
         for h in range(TURNS):
             begun = R @ Rotation.from_rotvec(2.0 * np.pi * h / TURNS * limb.axis).as_matrix()
             out.rotation[k, h], out.place[k, h], out.misfit[k, h] = _iterated(V, N, begun, c, match, *surface, *limits, _STEPS)
@@ -105,7 +102,7 @@ def roll_candidates(template: DeformationGraph, pose: Pose, target: Target, piec
     return out
 
 
-def untwisted(template: DeformationGraph, pose: Pose, piece: Ints, found: RollCandidates, chosen: Ints) -> Pose:
+def untwisted(graph: DeformationGraph, pose: Pose, piece: Ints, found: RollCandidates, chosen: Ints) -> Pose:
     """The pose with some limbs in another turn.
 
     pose    : of the frame, as it was given to `turns` with `piece`
@@ -113,11 +110,11 @@ def untwisted(template: DeformationGraph, pose: Pose, piece: Ints, found: RollCa
     returns : Pose, in which the nodes of a limb that turned move as one; the others are as they were
     """
     R, p = pose.rotation.copy(), pose.translation.copy()
-    for k, limb in enumerate(limbs(template, piece)):
+    for k, limb in enumerate(limbs(graph, piece)):
         if chosen[k] >= 0:
             turned = found.rotation[k, chosen[k]]
             R[limb.node] = turned
-            p[limb.node] = (template.g[limb.node] - limb.middle) @ turned.T + found.place[k, chosen[k]]
+            p[limb.node] = (graph.g[limb.node] - limb.middle) @ turned.T + found.place[k, chosen[k]]
     return Pose(R, p)
 
 
@@ -139,7 +136,7 @@ def _iterated(
     misfit = 1.0
     for i in range(steps + 1):
         x, n = _placed(P, turn[0], place[0]), _placed(N, turn[0], np.zeros(3))
-        match = walked(x, n, match, V, M, start, ring, beta)
+        match = local_matches(x, n, match, V, M, start, ring, beta)
         A, b, misfit = _normal_equations(x, n, place[0], V[match], M[match], reach, scale, judged)
         if i < steps:
             for block in range(2):

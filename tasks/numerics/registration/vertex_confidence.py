@@ -6,14 +6,14 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.registration.correspondence import ALIKE, COVERED, Target
+from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target
 from kinetree.tasks.numerics.registration.frame_confidence import stretches
 
 
 class VertexConfidenceSettings(NamedTuple):
     """At which value each factor of the confidence is a half."""
 
-    residual: float = COVERED
+    residual: float = CorrespondenceSettings().covered
     """Distance to the frame's surface, share of √area: that at which a vertex no longer covers a sample."""
     stretch: float = float(np.log(2.0))
     """Logarithm of the stretch: edges twice or half as long as at rest. Chosen on: not recorded."""
@@ -64,7 +64,9 @@ def vertex_confidence(
     origin = np.einsum("pk,pkx->px", back.share, rest[F[back.face]])
     round_trip = np.linalg.norm(np.einsum("vk,vkx->vx", there.share, origin[target.F[there.face]]) - rest, axis=1)
     cosine = np.einsum("pk,pkx,px->p", back.share, n[F[back.face]], target.N)
-    uncovered = 1.0 - float(((back.distance < COVERED * target.size) & (cosine > ALIKE)).mean())
+    coverage = CorrespondenceSettings()
+    covered = (back.distance < coverage.covered * target.size) & (cosine > coverage.cosine)
+    uncovered = 1.0 - float(covered.mean())
     stretch = stretches(rest, x, F)
     confidence = (
         _half_at(there.distance, settings.residual * target.size)

@@ -5,7 +5,7 @@ import pytest
 from limbs import LENGTH, tube
 
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.registration.correspondence import COVERED, Target
+from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.vertex_confidence import VertexConfidenceSettings, vertex_confidence
 
 SETTINGS = VertexConfidenceSettings()
@@ -34,9 +34,9 @@ def test_distance_at_which_a_point_no_longer_covers_halves_belief(rest):
     x = V.copy()
     size = np.sqrt(2 * np.pi * LENGTH)
     tip = V[:, 2].argmax()
-    x[tip, 2] += COVERED * size
+    x[tip, 2] += SETTINGS.residual * size
     found, _ = confidence_of(rest, x, V, F)
-    assert found.residual[tip] == pytest.approx(COVERED * size)
+    assert found.residual[tip] == pytest.approx(SETTINGS.residual * size)
     assert found.confidence[tip] <= 0.5
     assert np.median(found.confidence) > 0.99
 
