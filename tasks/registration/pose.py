@@ -44,7 +44,7 @@ def rolled_pose(
     if not (candidate >= 0).any():
         return before
     fits = roll_candidates.RollCandidates(candidates.angle, candidates.misfit, candidates.rotation, candidates.place)
-    return roll_candidates.untwisted(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
+    return roll_candidates.rolled(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
 
 
 def target(mesh: Mesh, stored: DeformationGraph) -> Target:
