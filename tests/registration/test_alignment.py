@@ -1,4 +1,4 @@
-"""Contract of alignment: where the body is in a frame, and how far it is to be believed."""
+"""Contract of alignment: where the body is in a frame, with a confidence of every vertex."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def test_in_the_reference_frame_the_body_is_the_reference() -> None:
     assert here.confidence.min() > 0.99
 
 
-def test_body_that_is_followed_is_believed() -> None:
+def test_body_that_is_followed_has_confidence() -> None:
     made = walk()
     for here in made.alignment.values():
         assert here.residual.mean() < 0.01 * made.reference.size
@@ -24,7 +24,7 @@ def test_body_that_is_followed_is_believed() -> None:
         assert np.median(here.confidence) > 0.9
 
 
-def test_limb_that_is_not_in_the_frame_is_doubted_and_the_rest_is_believed() -> None:
+def test_limb_that_is_not_in_the_frame_is_unreliable_and_the_rest_is_not() -> None:
     lost = {"dropped": [{"limb": "elbow_r", "begin": 3, "end": 4}]}
     made, body = aligned(generated(**lost)), bodied(**lost)
     rest = body.parts(made.reference.frame, np.array(made.reference.vertices))
@@ -35,7 +35,7 @@ def test_limb_that_is_not_in_the_frame_is_doubted_and_the_rest_is_believed() -> 
     assert np.median(made.alignment[1].confidence[arm]) > 0.9
 
 
-def test_frame_that_is_another_pose_entirely_is_not_believed() -> None:
+def test_frame_that_is_another_pose_entirely_is_unreliable() -> None:
     made = walk()
     strange = made.mesh[4].model_copy(update={"vertices": made.mesh[4].vertices + 0.3 * made.reference.size})
     here = alignment(strange, made.reference, made.deformation_graph, made.recovery, (made.refit[-1][4],))

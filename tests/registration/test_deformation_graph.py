@@ -1,4 +1,4 @@
-"""Contract of template: the numerics' graph, whole, in the store's dtypes; nothing at all for fixed connectivity."""
+"""Contract of deformation_graph: the numerics' graph, whole, in the store's dtypes; nothing at all for fixed connectivity."""
 
 from dataclasses import fields
 

@@ -102,6 +102,7 @@ def _add(block: Floats, A: Floats, other: Floats, q: Floats, M: Floats, w: float
 
 @compiled
 def _times(D: Floats, B: Floats, pair: Ints, x: Floats, y: Floats) -> None:
+    """Write the product of the system with x into y."""
     for j in range(len(D)):
         for a in range(6):
             s = 0.0
@@ -120,6 +121,7 @@ def _times(D: Floats, B: Floats, pair: Ints, x: Floats, y: Floats) -> None:
 
 @compiled
 def _precondition(inverse: Floats, r: Floats, z: Floats) -> float:
+    """Write the preconditioned residual into z, and return its product with r."""
     total = 0.0
     for j in range(len(inverse)):
         for a in range(6):

@@ -1,8 +1,8 @@
 """The reference mesh bent onto one frame by turning and shifting the nodes of its graph: Gauss–Newton (for 2014, §5.3).
 
 x(v) = Σ_j w_vj [R_j (v − g_j) + p_j]  (Sumner 2007, Eq. 1). The energy is Σ a [(n·(x − y))² + b |x − y|²] over matches
-both ways, plus λ Σ s_jk |R_j (g_k − g_j) + p_j − p_k|² over edges both ways. The data count one per node in all, so that
-λ does not depend on how many samples or nodes there are.
+both ways, plus λ Σ s_jk |R_j (g_k − g_j) + p_j − p_k|² over both ends of every edge. The data count one per node in all, so
+that λ does not depend on how many samples or nodes there are.
 """
 
 from dataclasses import dataclass
@@ -18,12 +18,17 @@ from kinetree.tasks.numerics.registration.deformation_graph import DeformationGr
 from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
 
-_Pair = tuple[Ints, Ints]  # of the body and of the frame
+_Pair = tuple[Ints, Ints]
+"""Of the body and of the frame."""
 
-_ALIKE = 0.5  # matches whose normals have a smaller cosine do not count
-_DAMPING = 1e-4  # of the mean diagonal
-_TOLERANCE = 1e-2  # of conjugate gradients: the next step has other matches anyway
+_LEAST_COSINE = 0.5
+"""Matches whose normals have a smaller cosine do not count; with 0.3 a dancer and a wolf keep the same turning."""
+_DAMPING = 1e-4
+"""Added to the diagonal, share of its mean."""
+_TOLERANCE = 1e-2
+"""Of conjugate gradients: the next step has other matches anyway."""
 _HALVINGS = 3
+"""Times a step that raises the energy is halved before it is left out."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +37,13 @@ class FitSettings:
 
     steps     : Gauss–Newton steps
     stiffness : λ
-    reach     : matches further apart do not count, share of the body's size
-    scale     : distance from the plane at which a match counts a quarter, share of the body's size
+    reach     : matches farther apart do not count, share of √area
+    scale     : distance from the plane at which a match counts a quarter, share of √area
     point     : b, what distance counts beside distance from the plane
     searches  : so many steps search for matches among all samples, later ones start from the last matches
     solves    : conjugate-gradient steps at most
     thin      : of the samples of both surfaces every so many are used
-    beta      : what a turn of the normal counts against distance in local searches, share of the body's size
+    beta      : what a turn of the normal by one radian counts against distance in local searches, share of √area
     """
 
     steps: int = 10
@@ -85,12 +90,15 @@ class _Rows(NamedTuple):
 
 
 def at_rest(graph: DeformationGraph) -> Pose:
-    """The pose in which the body is its reference."""
+    """The pose in which the body is its reference: no node turned, each at its rest position."""
     return Pose(np.tile(np.eye(3), (len(graph.node), 1, 1)), graph.g)
 
 
 def shape(graph: DeformationGraph, pose: Pose) -> tuple[Floats, Floats]:
-    """The body in a pose: (vertex, xyz) in the mesh's unit · (vertex, xyz) unit normals."""
+    """The body in a pose (Sumner 2007, Eq. 1).
+
+    returns : (vertex, xyz) mesh unit · (vertex, xyz) unit normals
+    """
     x = deformed(graph.V, graph.bound, graph.weight, graph.g, *pose)
     return x, turned(graph.N, graph.bound, graph.weight, pose.rotation)
 
@@ -102,9 +110,11 @@ def fit(
     settings: FitSettings | None = None,
     stiffness: Floats | None = None,
 ) -> Fitted:
-    """Bend the reference onto a frame.
+    """Bend the reference onto a frame by Gauss–Newton steps (ours, for 2014, Sec. 5.3).
 
+    graph     : of the reference mesh
     start     : the pose to begin with, of a frame nearby or of this frame from an earlier pass
+    target    : the frame
     stiffness : (edge,) s, 1 everywhere if not given
     returns   : Fitted; a step that would raise the energy is halved, and left out if that does not help
     """
@@ -132,12 +142,12 @@ def _matches(
 
     x, n : the body now · last : matches to start from, or None to search · beta : β of the local search, mesh unit
     """
-    mine, theirs = samples
-    y, m = target.V[theirs], target.N[theirs]
+    body_sample, frame_sample = samples
+    y, m = target.V[frame_sample], target.N[frame_sample]
     if last is None:
-        tree = cKDTree(np.hstack([x[mine], target.beta * n[mine]]), balanced_tree=False)
-        last = target.nearest(x[mine], n[mine]), mine[tree.query(np.hstack([y, target.beta * m]))[1]]
-    there = local_matches(x[mine], n[mine], last[0], target.V, target.N, target.start, target.ring, beta)
+        tree = cKDTree(np.hstack([x[body_sample], target.beta * n[body_sample]]), balanced_tree=False)
+        last = target.nearest(x[body_sample], n[body_sample]), body_sample[tree.query(np.hstack([y, target.beta * m]))[1]]
+    there = local_matches(x[body_sample], n[body_sample], last[0], target.V, target.N, target.start, target.ring, beta)
     return there, local_matches(y, m, last[1], x, n, graph.start, graph.ring, beta)
 
 
@@ -159,7 +169,7 @@ def _rows(
     vertex, other = np.concatenate([samples[0], match[1]]), np.concatenate([match[0], samples[1]])
     r, m = x[vertex] - target.V[other], target.N[other]
     alike = np.einsum("rx,rx->r", n[vertex], m)
-    near = (alike > _ALIKE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
+    near = (alike > _LEAST_COSINE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
     halfway = m + n[vertex]
     halfway /= np.maximum(np.linalg.norm(halfway, axis=1, keepdims=True), np.finfo(float).tiny)
     off = np.einsum("rx,rx->r", r, halfway)

@@ -37,7 +37,7 @@ def test_a_body_that_never_bends_is_one_cluster(body):
     assert rigid_clusters(body, [at_rest(body), turned]).max() == 0
 
 
-def test_a_twist_about_its_own_axis_parts_a_tube_too(body):
+def test_roll_about_its_own_axis_parts_a_tube_too(body):
     upper = body.g[:, 2] > 0
     R = np.tile(np.eye(3), (len(body.g), 1, 1))
     R[upper] = rotation((0, 0, 1), 1.2)

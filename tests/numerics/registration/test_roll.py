@@ -1,4 +1,4 @@
-"""Laws of the way a limb takes through its turns: evidence of many frames moves it, noise does not."""
+"""Laws of the path of a limb through its candidates: evidence of many frames moves it, noise does not."""
 
 import numpy as np
 
@@ -17,11 +17,11 @@ def told(true, depth, noise=0.0, seed=0):
 
 
 def grown():
-    """A twist that is none at the reference and grows to a third of a turn."""
+    """Roll that is zero at the reference and grows to a third of a turn."""
     return np.clip((np.arange(FRAMES) - REFERENCE) * np.radians(15.0), 0.0, np.radians(120.0))
 
 
-def test_a_twist_that_grows_is_followed():
+def test_roll_that_grows_is_followed():
     angle, misfit = told(grown(), 0.1, noise=0.02)
     turn = chosen_rolls(angle, misfit, REFERENCE)[:, 0]
     found = np.where(turn >= 0, angle[np.arange(FRAMES), 0, turn], 0.0)

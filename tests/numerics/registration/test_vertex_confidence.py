@@ -29,7 +29,7 @@ def test_body_that_is_the_frame_has_full_confidence(rest):
     assert found.round_trip == pytest.approx(0.0, abs=1e-9)
 
 
-def test_distance_at_which_a_point_no_longer_covers_halves_belief(rest):
+def test_distance_at_which_a_point_no_longer_covers_halves_confidence(rest):
     V, F = rest
     x = V.copy()
     size = np.sqrt(2 * np.pi * LENGTH)
