@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import trimesh
-from turning import Truth, twisted
+from turning import Truth, with_roll
 
 from kinetree.schemas.input.synth import ContactParams, SynthParams
 from kinetree.tasks.input.synth import body as posed
@@ -38,8 +38,8 @@ from kinetree.tasks.numerics.registration.frame_confidence import residuals, tru
 from kinetree.tasks.numerics.registration.recovery import recovery
 from kinetree.tasks.numerics.registration.reference import profile, reference
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
-from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
-from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
+from kinetree.tasks.numerics.registration.stiffness import PASSES, learned_stiffness, loose_between_clusters, loose_limb_ends
+from kinetree.tasks.numerics.registration.tracking import Tracking, tracking
 from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.leaves import follow
@@ -102,20 +102,20 @@ def chosen(meshes: list[Cleaned]) -> int:
     return reference(count, [m.euler for m in meshes], area, np.stack(poses), limbs).frame
 
 
-def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tracked]:
-    """Tracked outwards from the reference in both directions."""
-    out = [Tracked(at_rest(body), 0.0, 0)] * len(targets)
+def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tracking]:
+    """Tracking outwards from the reference in both directions."""
+    out = [Tracking(at_rest(body), 0.0, 0)] * len(targets)
     for step in (1, -1):
         before, t, usual = None, start + step, 0.0
         while 0 <= t < len(targets):
-            out[t] = tracked(body, before, out[t - step].pose, targets[t], usual=usual)
+            out[t] = tracking(body, before, out[t - step].pose, targets[t], usual=usual)
             usual = out[t].uncovered if before is None else min(usual, out[t].uncovered)
             before, t = out[t - step].pose, t + step
     return out
 
 
 def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationGraph, list[int], list[Pose], Floats, float]:
-    """All passes: the template, the frames kept, their poses, uncovered shares, and seconds a frame."""
+    """All passes: the graph, the frames kept, their poses, uncovered shares, and seconds a frame."""
     body = deformation_graph(meshes[start].V, meshes[start].F)
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
     begun = time.process_time()
@@ -128,14 +128,14 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationG
     kept = sorted({start, *range(0, len(meshes), every)})
     poses = [found[t].pose for t in kept]
     begun = time.process_time()
-    limb = piece = np.full(len(body.node), -1)
+    limb = cluster = np.full(len(body.node), -1)
     for number, settings in enumerate(PASSES):
-        s = freed(body, learned(body, poses), limb)
-        s = loosened(body, s, piece) if settings.is_loosened else s
+        s = loose_limb_ends(body, learned_stiffness(body, poses), limb)
+        s = loose_between_clusters(body, s, cluster) if settings.is_loosened else s
         poses = [fit(body, pose, targets[t], settings.fit, s).pose for t, pose in zip(kept, poses, strict=True)]
         if not number:
-            piece = rigid_clusters(body, poses)
-            poses, limb = twisted(body, piece, poses, [targets[t] for t in kept], kept.index(start))
+            cluster = rigid_clusters(body, poses)
+            poses, limb = with_roll(body, cluster, poses, [targets[t] for t in kept], kept.index(start))
     seconds = first + (time.process_time() - begun) / len(kept)
     return body, kept, poses, np.array([found[t].uncovered for t in kept]), seconds
 

@@ -181,7 +181,7 @@ def compared(folder: Path, name: str, args: argparse.Namespace, here: Sequence, 
 
 def _alignment(x: Floats) -> Arap:
     plain = np.ones(len(x))
-    return Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, rigid_residual=9.0)
+    return Arap(vertices=x, residual=0 * plain, stretch=plain, confidence=plain, uncovered=0.0, rigid_residual=9.0)
 
 
 def _cuts(here: Sequence, references: list[IntervalReference], truths: list[Truth], alignments: list[Arap]) -> None:

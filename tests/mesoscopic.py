@@ -89,7 +89,7 @@ def aligned(body: Known, rigid_residual: float) -> tuple[Arap, ...]:
     """Exact alignments in all frames."""
     plain = np.ones(len(body.V))
     return tuple(
-        Arap(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0, rigid_residual=rigid_residual)
+        Arap(vertices=x, residual=0 * plain, stretch=plain, confidence=plain, uncovered=0.0, rigid_residual=rigid_residual)
         for x in body.x[: SPANS[-1].stop]
     )
 

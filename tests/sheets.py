@@ -92,4 +92,4 @@ def exact(number: NDArray[np.int64], here: Frame) -> Alignment:
     x = np.empty_like(here.mesh.vertices)
     x[number] = here.mesh.vertices[here.number]
     plain = np.ones(len(x))
-    return Alignment(vertices=x, residual=0 * plain, stretch=plain, trust=plain, uncovered=0.0)
+    return Alignment(vertices=x, residual=0 * plain, stretch=plain, confidence=plain, uncovered=0.0)

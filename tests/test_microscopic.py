@@ -113,7 +113,7 @@ def test_teleport_is_not_trusted_and_the_frames_around_it_are(tmp_path: Path) ->
     assert told["status"] == "done"
     trust = pipeline.artifact("frame_confidence")
     assert trust.trusted.tolist() == [True, True, True, True, False]  # type: ignore[attr-defined]
-    assert pipeline.artifact("alignment", frame=4).trust.mean() < 0.3  # type: ignore[attr-defined]
+    assert pipeline.artifact("alignment", frame=4).confidence.mean() < 0.3  # type: ignore[attr-defined]
     assert "alignment failed in frame 4" in said(pipeline)
     assert max(far(pipeline, t) for t in range(4)) < NEAR
 

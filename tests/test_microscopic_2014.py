@@ -85,4 +85,4 @@ def test_tracked_vertices_pass_unchanged(tmp_path: Path) -> None:
     for t in range(3):
         here = artifact(pipeline, "arap", interval=0, frame=t)
         np.testing.assert_array_equal(here.vertices, artifact(pipeline, "mesh", frame=t).vertices)
-        assert (here.trust == 1.0).all()
+        assert (here.confidence == 1.0).all()

@@ -1,4 +1,4 @@
-"""The reference mesh in one frame, and how far it is to be believed there (2014, Sec. 5.3)."""
+"""The reference mesh in one frame, and a confidence of every vertex (2014, Sec. 5.3)."""
 
 from typing import Annotated
 
@@ -15,13 +15,13 @@ class Alignment(Artifact):
     """Distance of every vertex to the frame's surface, point to triangle; 0 for fixed connectivity."""
     stretch: Annotated[Floats, Array("float64", VERTEX)]
     """Length of the edges around every vertex against their length in the reference."""
-    trust: Annotated[Floats, Array("float64", VERTEX)]
-    """Weight of every vertex in later steps, 1 where it is to be believed, near 0 where it is not."""
+    confidence: Annotated[Floats, Array("float64", VERTEX)]
+    """Confidence of every vertex, 0 to 1: its weight in later steps."""
     uncovered: float
     """Share of the frame's surface that the body does not explain."""
     distance: float = 0.0
     """Median residual, length: what is missing in a frame does not make the rest worse."""
-    doubted: float = 0.0
-    """Share of the vertices whose trust is below a half."""
+    unreliable: float = 0.0
+    """Share of the vertices whose confidence is below a half."""
     given: bool = False
     """Whether the frame's own vertices are those of the reference (fixed connectivity), so that nothing was estimated."""

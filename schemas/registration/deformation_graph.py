@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
-from kinetree.schemas.dims import BLOCK, CORNER, END, FACE, INFLUENCE, NEIGHBOUR, NODE, PAIRING, SAMPLE, TIE, VERTEX, XYZ
+from kinetree.schemas.dims import BLOCK, CORNER, EDGE, END, FACE, INFLUENCE, NEIGHBOUR, NODE, PAIRING, SAMPLE, VERTEX, XYZ
 
 
 class DeformationGraphParams(Params):
@@ -19,7 +19,7 @@ class DeformationGraphParams(Params):
     thick: float = Field(default=0.08, gt=0)
     """Thickness from which on the spacing no longer grows, share of the root of the area."""
     strut: float = Field(default=0.15, ge=0)
-    """Nodes on opposite sides are tied through the body up to this thickness, share of the root of the area."""
+    """Edges link nodes on opposite sides, through the body, up to this thickness, share of the root of the area."""
     samples: int = Field(default=8, ge=1)
     """Vertices per node that stand for the surface in a fit."""
 
@@ -50,8 +50,8 @@ class DeformationGraph(Artifact):
     """The nodes each vertex follows, ascending along each row."""
     weight: Annotated[Floats, Array("float64", VERTEX, INFLUENCE)]
     """How far it follows each, not negative, summing to 1."""
-    ties: Annotated[Ints, Array("int32", TIE, END)]
-    """Nodes that are tied, the smaller first."""
+    edges: Annotated[Ints, Array("int32", EDGE, END)]
+    """Pairs of nodes that an edge links, the smaller first."""
     samples: Annotated[Ints, Array("int32", SAMPLE)]
     """Vertices that stand for the surface in a fit, ascending."""
     size: float
@@ -64,8 +64,8 @@ class DeformationGraph(Artifact):
     """Pairs of nodes that a fit couples."""
     block_of_vertex: Annotated[Ints, Array("int32", VERTEX, PAIRING)]
     """The block of every pair of nodes a vertex follows."""
-    block_of_tie: Annotated[Ints, Array("int32", TIE)]
-    """The block of every tie."""
+    block_of_edge: Annotated[Ints, Array("int32", EDGE)]
+    """The block of every edge."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The passes, numbered from 0, and the frames of each."""

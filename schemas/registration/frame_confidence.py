@@ -1,4 +1,4 @@
-"""Which frames of an alignment are to be believed (ours)."""
+"""Which frames the alignment explains (ours)."""
 
 from typing import Annotated
 
@@ -15,7 +15,7 @@ class FrameConfidence(Artifact):
     """Median distance of the body to each frame's surface, share of the root of its area."""
     uncovered: Annotated[Floats, Array("float64", FRAME)]
     """Share of each frame's surface that the body does not explain."""
-    doubted: Annotated[Floats, Array("float64", FRAME)]
-    """Share of the body's vertices that are hardly to be believed in each frame."""
+    unreliable: Annotated[Floats, Array("float64", FRAME)]
+    """Share of the body's vertices whose confidence is below a half in each frame."""
     trusted: Annotated[Bools, Array("bool", FRAME)]
-    """False where a frame is explained clearly worse than the others. Only what people are told depends on it."""
+    """False where a frame is explained clearly worse than the others. Only messages to people depend on it."""

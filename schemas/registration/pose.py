@@ -1,4 +1,4 @@
-"""How a deformation graph is bent onto one frame: what tracking, recovery and every refit leave (2014, Sec. 5.3)."""
+"""How a deformation graph is bent onto one frame: result of tracking and of every refit (2014, Sec. 5.3)."""
 
 from typing import Annotated
 

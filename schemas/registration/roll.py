@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
-from kinetree.schemas.dims import FRAME, LIMB, NODE, TIE
+from kinetree.schemas.dims import EDGE, FRAME, LIMB, NODE
 
 
 class Roll(Artifact):
@@ -15,7 +15,7 @@ class Roll(Artifact):
     """The candidate of every limb in each frame, −1 where it stays as it was; no limbs in passes without a search."""
     limb: Annotated[Ints, Array("int32", NODE)]
     """Number of the limb of every node where that limb rolled in this pass or an earlier one, else −1."""
-    stiffness: Annotated[Floats, Array("float64", TIE)]
+    stiffness: Annotated[Floats, Array("float64", EDGE)]
     """Stiffness of every edge for the fits of this pass: learned from poses with roll corrected, loose where limbs rolled."""
 
     def row(self, frame: int) -> Ints:

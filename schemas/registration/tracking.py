@@ -8,14 +8,14 @@ from kinetree.schemas.registration.pose import Pose
 
 
 class Tracking(Pose):
-    """A frame of the chain outwards from the reference, with what the next one needs to go on."""
+    """A frame of the chain outwards from the reference, with what the next frame needs to start from."""
 
     steps: int
     """Frames between the reference and this one, in the order in which frames are reached; 0 for the reference."""
     uncovered: float
     """Share of the frame's surface that the body does not explain."""
     usual: float
-    """The least that any frame on the way here left uncovered: holes of a capture, which no pose would cover."""
+    """Smallest share that any frame between the reference and this one leaves uncovered: holes of a capture."""
     attempt: int
     """Which way of fitting was taken; 0 is the usual one."""
     earlier_rotation: Annotated[Floats, Array("float64", NODE, ROW, XYZ)]

@@ -27,7 +27,7 @@ def arap(interval_reference: IntervalReference, geodesic_mapping: GeodesicMappin
         vertices=x,
         residual=quality.residual,
         stretch=quality.stretch,
-        trust=quality.confidence,
+        confidence=quality.confidence,
         uncovered=quality.uncovered,
         rigid_residual=rigid_residual(rest, x, np.array(reference.area), frame_V, frame_F),
     )

@@ -30,8 +30,8 @@ def transferred_alignment(transfers: tuple[Transfer, ...], mesh: Mesh, skeleton:
         vertices=x,
         residual=quality.residual,
         stretch=quality.stretch,
-        trust=confidence,
+        confidence=confidence,
         uncovered=quality.uncovered,
         distance=float(np.median(quality.residual)),
-        doubted=float((confidence < 0.5).mean()),
+        unreliable=float((confidence < 0.5).mean()),
     )

@@ -24,15 +24,15 @@ def alignment(
         return _given(mesh, reference)
     body = graph(deformation_graph)
     x, n = shape(body, pose(refit[-1]))
-    found = vertex_confidence(body.V, x, n, body.F, target(mesh, deformation_graph), recovery.usual)
+    estimate = vertex_confidence(body.V, x, n, body.F, target(mesh, deformation_graph), recovery.usual)
     return Alignment(
         vertices=x,
-        residual=found.residual,
-        stretch=found.stretch,
-        trust=found.trust,
-        uncovered=found.uncovered,
-        distance=float(np.median(found.residual)),
-        doubted=float((found.trust < 0.5).mean()),
+        residual=estimate.residual,
+        stretch=estimate.stretch,
+        confidence=estimate.confidence,
+        uncovered=estimate.uncovered,
+        distance=float(np.median(estimate.residual)),
+        unreliable=float((estimate.confidence < 0.5).mean()),
     )
 
 
@@ -43,7 +43,7 @@ def _given(mesh: Mesh, reference: Reference) -> Alignment:
         vertices=x,
         residual=np.zeros(len(x)),
         stretch=stretches(rest, x, reference.faces.astype(np.int64)),
-        trust=np.ones(len(x)),
+        confidence=np.ones(len(x)),
         uncovered=0.0,
         given=True,
     )

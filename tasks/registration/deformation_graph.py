@@ -11,10 +11,10 @@ from kinetree.tasks.numerics.registration.stiffness import PASSES
 
 @task()
 def deformation_graph(reference: Reference, params: DeformationGraphParams) -> DeformationGraph:
-    """Covers the reference mesh with nodes, binds its vertices to them and ties neighbours (ours, for 2014, Sec. 5.2)."""
+    """Covers the reference mesh with nodes, binds its vertices to them and links neighbours (ours, for 2014, Sec. 5.2)."""
     if reference.fixed:  # every vertex is followed by the input itself: nothing to fit, no passes
         return _empty(reference)
-    # with a node on every vertex nothing lies between nodes, and nothing would tie them
+    # with a node on every vertex nothing lies between nodes, and no edge would link them
     nodes = max(min(params.nodes, len(reference.vertices) // 2), 1)
     settings = numerics.DeformationGraphSettings(nodes, params.finest, params.thick, params.strut, params.samples)
     made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), settings)
@@ -28,14 +28,14 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
         nodes=made.node,
         bound=made.bound,
         weight=made.weight,
-        ties=made.edge,
+        edges=made.edge,
         samples=made.sample,
         size=made.size,
         degree=np.diff(made.start),
         ring=made.ring,
         blocks=made.pair,
         block_of_vertex=made.of_vertex,
-        block_of_tie=made.of_edge,
+        block_of_edge=made.of_edge,
     )
 
 
@@ -52,12 +52,12 @@ def _empty(reference: Reference) -> DeformationGraph:
         nodes=np.empty(0, whole),
         bound=np.empty((0, 4), whole),
         weight=np.empty((0, 4), real),
-        ties=np.empty((0, 2), whole),
+        edges=np.empty((0, 2), whole),
         samples=np.empty(0, whole),
         size=reference.size,
         degree=np.empty(0, whole),
         ring=np.empty(0, whole),
         blocks=np.empty((0, 2), whole),
         block_of_vertex=np.empty((0, 6), whole),
-        block_of_tie=np.empty(0, whole),
+        block_of_edge=np.empty(0, whole),
     )

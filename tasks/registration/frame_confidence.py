@@ -21,6 +21,6 @@ def frame_confidence(alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh
         frames=tuple(alignment),
         residual=residual,
         uncovered=uncovered,
-        doubted=np.array([a.doubted for a in alignment.values()]),
+        unreliable=np.array([a.unreliable for a in alignment.values()]),
         trusted=trusted(uncovered, residual),
     )

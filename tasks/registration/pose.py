@@ -44,29 +44,29 @@ def rolled_pose(
     if not (candidate >= 0).any():
         return before
     fits = roll_candidates.RollCandidates(candidates.angle, candidates.misfit, candidates.rotation, candidates.place)
-    return roll_candidates.untwisted(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
+    return roll_candidates.rolled(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
 
 
-def target(mesh: Mesh, template: DeformationGraph) -> Target:
+def target(mesh: Mesh, stored: DeformationGraph) -> Target:
     """A frame prepared to be fitted."""
-    return Target.of(np.array(mesh.vertices), mesh.faces, template.size)
+    return Target.of(np.array(mesh.vertices), mesh.faces, stored.size)
 
 
-def graph(template: DeformationGraph) -> numerics.DeformationGraph:
+def graph(stored: DeformationGraph) -> numerics.DeformationGraph:
     """The deformation graph."""
     return numerics.DeformationGraph(
-        V=np.array(template.vertices),
-        F=template.faces.astype(np.int64),
-        N=np.array(template.normals),
-        node=template.nodes.astype(np.int64),
-        bound=template.bound.astype(np.int64),
-        weight=np.array(template.weight),
-        edge=template.ties.astype(np.int64),
-        sample=template.samples.astype(np.int64),
-        size=template.size,
-        start=np.concatenate([[0], np.cumsum(template.degree, dtype=np.int64)]),
-        ring=template.ring.astype(np.int64),
-        pair=template.blocks.astype(np.int64),
-        of_vertex=template.block_of_vertex.astype(np.int64),
-        of_edge=template.block_of_tie.astype(np.int64),
+        V=np.array(stored.vertices),
+        F=stored.faces.astype(np.int64),
+        N=np.array(stored.normals),
+        node=stored.nodes.astype(np.int64),
+        bound=stored.bound.astype(np.int64),
+        weight=np.array(stored.weight),
+        edge=stored.edges.astype(np.int64),
+        sample=stored.samples.astype(np.int64),
+        size=stored.size,
+        start=np.concatenate([[0], np.cumsum(stored.degree, dtype=np.int64)]),
+        ring=stored.ring.astype(np.int64),
+        pair=stored.blocks.astype(np.int64),
+        of_vertex=stored.block_of_vertex.astype(np.int64),
+        of_edge=stored.block_of_edge.astype(np.int64),
     )

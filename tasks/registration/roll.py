@@ -13,9 +13,9 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.tasks.numerics.arrays import Ints as Longs
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
-from kinetree.tasks.numerics.registration.roll import choices
+from kinetree.tasks.numerics.registration.roll import chosen_rolls
 from kinetree.tasks.numerics.registration.roll_candidates import limbs
-from kinetree.tasks.numerics.registration.stiffness import PASSES, freed, learned, loosened
+from kinetree.tasks.numerics.registration.stiffness import PASSES, learned_stiffness, loose_between_clusters, loose_limb_ends
 from kinetree.tasks.registration.pose import graph, rolled_pose
 
 
@@ -32,13 +32,13 @@ def roll(
     nodes, frames = graph(deformation_graph), tuple(candidates)
     cluster = stiffness.cluster.astype(np.int64)
     angle, misfit = (np.stack([getattr(c, name) for c in candidates.values()]) for name in ("angle", "misfit"))
-    chosen = choices(angle, misfit, frames.index(deformation_graph.frame)).astype(np.int32)
+    chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame)).astype(np.int32)
     limb = np.array(previous.limb) if previous is not None else np.full(len(nodes.node), -1, np.int32)
     corrected = np.array(stiffness.stiffness)
     if (chosen >= 0).any():
         limb = _rolled_limbs(nodes, cluster, chosen)
         pairs = zip(refit, candidates.values(), chosen, strict=True)
-        corrected = learned(nodes, [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs])
+        corrected = learned_stiffness(nodes, [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs])
     return Roll(
         frames=frames,
         candidate=chosen,
@@ -57,5 +57,5 @@ def _rolled_limbs(nodes: Nodes, cluster: Longs, chosen: Ints) -> Ints:
 
 def _held(nodes: Nodes, stiffness: Floats, limb: Ints, cluster: Longs, *, is_loosened: bool) -> Floats:
     """Stiffness with rolled limbs rigid and loose at their ends, and looser between rigid clusters where asked for."""
-    freed_limbs = freed(nodes, stiffness, limb.astype(np.int64))
-    return loosened(nodes, freed_limbs, cluster) if is_loosened else freed_limbs
+    freed_limbs = loose_limb_ends(nodes, stiffness, limb.astype(np.int64))
+    return loose_between_clusters(nodes, freed_limbs, cluster) if is_loosened else freed_limbs

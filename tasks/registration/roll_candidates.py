@@ -20,7 +20,7 @@ def roll_candidates(
 ) -> RollCandidates:
     """Fits every limb as a rigid body from several rolls about its axis, in passes that search for lost roll (ours)."""
     if refit is None or not PASSES[index[0]].roll:
-        none = (0, numerics.TURNS)
+        none = (0, numerics.RollCandidatesSettings().starts)
         return RollCandidates(
             angle=np.empty(none), misfit=np.empty(none), rotation=np.empty((*none, 3, 3)), place=np.empty((*none, 3))
         )

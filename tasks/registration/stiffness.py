@@ -12,7 +12,7 @@ from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
-from kinetree.tasks.numerics.registration.stiffness import PASSES, learned
+from kinetree.tasks.numerics.registration.stiffness import PASSES, learned_stiffness
 from kinetree.tasks.registration.pose import graph, pose, tracked_pose
 
 
@@ -31,4 +31,4 @@ def stiffness(
     cluster = previous.cluster if previous is not None else np.full(len(nodes.node), -1)
     if PASSES[index[0]].clusters:
         cluster = rigid_clusters(nodes, poses)
-    return Stiffness(stiffness=learned(nodes, poses), cluster=cluster)
+    return Stiffness(stiffness=learned_stiffness(nodes, poses), cluster=cluster)

@@ -5,8 +5,8 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
 from kinetree.tasks.registration.pose import graph, pose, target
 
 
@@ -16,16 +16,17 @@ def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking
     body = graph(deformation_graph)
     if previous is None:
         rest = at_rest(body)
-        return _tracking(Tracked(rest, 0.0, 0), rest, 0, 0.0)
+        return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    fitted = tracked(body, earlier, last, target(mesh, deformation_graph), usual=previous.usual)
+    fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
-    return _tracking(fitted, last, previous.steps + 1, usual)
+    return _stored(fitted, last, previous.steps + 1, usual)
 
 
-def _tracking(fitted: Tracked, earlier: Pose, steps: int, usual: float) -> Tracking:
+def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float) -> Tracking:
+    """A fitted frame, with the pose before it and its place in the chain."""
     return Tracking(
         steps=steps,
         rotation=fitted.pose.rotation,

@@ -34,7 +34,7 @@ def pose_refinement(
     for k, (row, frame, aligned) in enumerate(zip(rows, mesh.values(), alignment.values(), strict=True)):
         start = FramePose(known.R[row].copy(), tree.positions[row, 0].copy())
         target = Target.of(np.array(frame.vertices), frame.faces, body.size, SAMPLE)
-        fit = numerics.refined_pose(body, start, target, np.array(aligned.vertices), np.array(aligned.trust), known, row)
+        fit = numerics.refined_pose(body, start, target, np.array(aligned.vertices), np.array(aligned.confidence), known, row)
         moved[k], share[:, k] = fit.moved, (fit.before, fit.after)
         if fit.moved:
             X = joints(body, fit.pose)

@@ -27,7 +27,7 @@ def rigid_parts(
         reference.vertices,
         np.asarray(reference.faces, dtype=np.int64),
         np.stack([a.vertices for a in aligned]),
-        limited_confidence(np.stack([a.trust for a in aligned])),
+        limited_confidence(np.stack([a.confidence for a in aligned])),
         leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         numerics.RigidPartsSettings(first_cut, EliminationSettings(removal_cost=params.removal_cost)),
     )

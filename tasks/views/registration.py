@@ -37,11 +37,11 @@ def reference_remarks(reference: Reference) -> tuple[str, ...]:
 def frame_confidence_remarks(confidence: FrameConfidence) -> tuple[str, ...]:
     """Frames whose alignment failed, and frames in which parts of it are unreliable."""
     lines = []
-    failed, partly = ~confidence.trusted, confidence.trusted & (confidence.doubted > PARTLY_DOUBTED)
+    failed, partly = ~confidence.trusted, confidence.trusted & (confidence.unreliable > PARTLY_DOUBTED)
     if failed.any():
         lines.append(f"alignment failed in {_runs(confidence, failed)}: the aligned body does not fit the mesh there")
     if partly.any():
-        most = float(confidence.doubted[partly].max())
+        most = float(confidence.unreliable[partly].max())
         where = _runs(confidence, partly)
         lines.append(f"alignment partly unreliable in {where}: up to {most:.0%} of the body is hidden or does not fit")
     return tuple(lines)

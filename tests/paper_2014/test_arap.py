@@ -19,7 +19,7 @@ def test_reference_in_its_own_frame_is_itself_with_full_confidence() -> None:
     np.testing.assert_allclose(artifact.vertices, REFERENCE.vertices, atol=1e-9)
     assert artifact.residual.max() < 1e-9
     assert artifact.uncovered == 0.0
-    assert artifact.trust.min() > 0.99
+    assert artifact.confidence.min() > 0.99
 
 
 @pytest.mark.parametrize("t", [1, 3])
@@ -48,7 +48,7 @@ def test_tracked_vertices_are_where_the_frame_has_them() -> None:
     artifact = arap(reference_of(frames, 0, 4, connectivity=TRACKED), IDENTITY, frames[4].mesh, ArapParams())
     np.testing.assert_array_equal(artifact.vertices, frames[4].mesh.vertices)
     assert (artifact.residual == 0.0).all()
-    assert (artifact.trust == 1.0).all()
+    assert (artifact.confidence == 1.0).all()
     assert not artifact.is_rigid
 
 
@@ -56,7 +56,7 @@ def test_alignments_are_those_of_the_frames_of_each_interval() -> None:
     references = [reference_of(FRAMES, i, 1, 4) for i in (0, 1)]
     one = np.ones(1)
     alignments = [
-        Arap(vertices=np.zeros((1, 3)), residual=one, stretch=one, trust=one, uncovered=0.0, rigid_residual=float(t))
+        Arap(vertices=np.zeros((1, 3)), residual=one, stretch=one, confidence=one, uncovered=0.0, rigid_residual=float(t))
         for t in FRAMES
     ]
     groups = by_interval(alignments, references)

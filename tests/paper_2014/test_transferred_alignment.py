@@ -24,8 +24,8 @@ def test_transferred_vertices_keep_their_positions_with_full_confidence() -> Non
         x, alignment = aligned(3, tracked=tracked)
         np.testing.assert_array_equal(alignment.vertices, x)
         np.testing.assert_allclose(alignment.residual, 0.0, atol=1e-9)
-        assert np.median(alignment.trust) == 1.0
-        assert alignment.doubted < 0.01, "only the flesh of joints stretches"
+        assert np.median(alignment.confidence) == 1.0
+        assert alignment.unreliable < 0.01, "only the flesh of joints stretches"
 
 
 def test_vertex_without_a_position_moves_with_those_around_it_and_has_no_confidence() -> None:
@@ -33,7 +33,7 @@ def test_vertex_without_a_position_moves_with_those_around_it_and_has_no_confide
         x, alignment = aligned(3, tracked=tracked, missing=slice(10, 14))
         assert np.isfinite(alignment.vertices).all()
         assert np.linalg.norm(alignment.vertices - x, axis=1).max() < 2.0
-        assert (alignment.trust[10:14] == 0.0).all()
-        assert alignment.doubted >= 4 / len(x)
+        assert (alignment.confidence[10:14] == 0.0).all()
+        assert alignment.unreliable >= 4 / len(x)
     _, exact = aligned(3, tracked=True, missing=slice(10, 14))
-    assert (np.delete(exact.trust, range(10, 14)) == 1.0).all()
+    assert (np.delete(exact.confidence, range(10, 14)) == 1.0).all()

@@ -1,4 +1,4 @@
-"""Contract of template: the numerics' graph, whole, in the store's dtypes; nothing at all for fixed connectivity."""
+"""Contract of deformation_graph: the numerics' graph, whole, in the store's dtypes; nothing at all for fixed connectivity."""
 
 from dataclasses import fields
 
@@ -27,7 +27,7 @@ def test_parameters_reach_the_graph() -> None:
     other = deformation_graph(walk().reference, DeformationGraphParams(nodes=200, samples=2, strut=0.0))
     assert len(other.nodes) == 200
     assert len(other.samples) <= 400 < len(walk().deformation_graph.samples)
-    assert len(other.ties) < len(walk().deformation_graph.ties)
+    assert len(other.edges) < len(walk().deformation_graph.edges)
     assert len(deformation_graph(walk().reference, DeformationGraphParams(nodes=50)).nodes) == 50
 
 
@@ -42,4 +42,4 @@ def test_fixed_connectivity_needs_no_graph() -> None:
 def test_mesh_of_few_vertices_has_a_node_on_every_second_and_they_are_tied() -> None:
     made = deformation_graph(walk().reference, DeformationGraphParams(nodes=100_000))
     assert len(made.nodes) == len(made.vertices) // 2
-    assert np.bincount(made.ties.ravel(), minlength=len(made.nodes)).min() > 0
+    assert np.bincount(made.edges.ravel(), minlength=len(made.nodes)).min() > 0

@@ -10,10 +10,10 @@ from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 
 
-def told(uncovered: list[float], doubted: list[float] | None = None, first: int = 10) -> FrameConfidence:
-    shares = doubted or [0.0] * len(uncovered)
+def told(uncovered: list[float], unreliable: list[float] | None = None, first: int = 10) -> FrameConfidence:
+    shares = unreliable or [0.0] * len(uncovered)
     frames: Any = {
-        first + t: SimpleNamespace(uncovered=u, doubted=d, distance=0.01)
+        first + t: SimpleNamespace(uncovered=u, unreliable=d, distance=0.01)
         for t, (u, d) in enumerate(zip(uncovered, shares, strict=True))
     }
     mesh: Any = {frame: SimpleNamespace(cleaning=SimpleNamespace(area=4.0)) for frame in frames}
@@ -34,7 +34,7 @@ def test_frames_that_stand_out_are_told_as_runs() -> None:
 
 
 def test_limb_that_is_not_seen_is_told_where_the_frame_is_trusted() -> None:
-    made = told([0.001] * 5, doubted=[0.0, 0.0, 0.12, 0.1, 0.0])
+    made = told([0.001] * 5, unreliable=[0.0, 0.0, 0.12, 0.1, 0.0])
     expected = "alignment partly unreliable in frames 12–13: up to 12% of the body is hidden or does not fit"
     assert views.remarks(made) == (expected,)
 

@@ -6,7 +6,7 @@ from stepwise import walk
 from kinetree.tasks.registration.pose import graph, pose, target
 
 
-def test_poses_templates_and_targets_may_be_written_to_and_leave_the_artifact_alone() -> None:
+def test_poses_graphs_and_targets_may_be_written_to_and_leave_the_artifact_alone() -> None:
     made = walk()
     here, body, frame = pose(made.tracking[0]), graph(made.deformation_graph), target(made.mesh[0], made.deformation_graph)
     for array in (here.rotation, here.translation, body.V, body.weight, body.edge, frame.V):

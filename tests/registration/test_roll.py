@@ -35,7 +35,7 @@ def test_passes_without_a_search_choose_nothing_and_remember_which_limbs_rolled(
 
 def test_stiffness_of_the_last_pass_is_looser_between_rigid_clusters() -> None:
     made = walk()
-    first, last = made.deformation_graph.ties.T
+    first, last = made.deformation_graph.edges.T
     between = made.stiffness[2].cluster[first] != made.stiffness[2].cluster[last]
     assert (made.roll[2].stiffness[between] < made.stiffness[2].stiffness[between]).all()
     assert np.array_equal(made.roll[2].stiffness[~between], made.stiffness[2].stiffness[~between])

@@ -10,7 +10,7 @@ def test_stiffness_is_above_nothing_and_at_most_one_and_some_edges_bend() -> Non
     made = walk()
     assert len(made.stiffness) == made.deformation_graph.passes
     for learned in made.stiffness:
-        assert len(learned.stiffness) == len(made.deformation_graph.ties)
+        assert len(learned.stiffness) == len(made.deformation_graph.edges)
         assert ((learned.stiffness > 0) & (learned.stiffness <= 1)).all()
         assert learned.stiffness.min() < 0.5 < learned.stiffness.max()
 

@@ -40,7 +40,7 @@ def alignment(source: Source) -> Alignment:
     V, _ = surface(source)
     at = V[np.argsort(order(int(Path(source.path).stem)))]
     n = len(at)
-    return Alignment(vertices=at, residual=np.zeros(n), stretch=np.ones(n), trust=np.ones(n), uncovered=0.0)
+    return Alignment(vertices=at, residual=np.zeros(n), stretch=np.ones(n), confidence=np.ones(n), uncovered=0.0)
 
 
 @task(over="frame")

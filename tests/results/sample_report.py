@@ -56,7 +56,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
         "evaluation": unjudged(skeleton),
         "frame_confidence": confident(frames),
         "alignment": {
-            f: Alignment(vertices=x[t], residual=zero, stretch=one, trust=one, uncovered=0.0) for t, f in enumerate(frames)
+            f: Alignment(vertices=x[t], residual=zero, stretch=one, confidence=one, uncovered=0.0) for t, f in enumerate(frames)
         },
         "projection": {f: _projected(skeleton, order) for f, order in zip(frames, orders, strict=True)},
         "mesh": {
@@ -103,12 +103,12 @@ def judged(skeleton: Skeleton) -> Evaluation:
 
 
 def confident(
-    frames: tuple[int, ...], failed: tuple[int, ...] = (), doubted: dict[int, float] | None = None
+    frames: tuple[int, ...], failed: tuple[int, ...] = (), unreliable: dict[int, float] | None = None
 ) -> FrameConfidence:
     """All frames are trusted but the failed ones; some have a share of the body in doubt."""
     none = np.zeros(len(frames))
     return FrameConfidence(
-        frames=frames, residual=none, uncovered=none, doubted=np.array([(doubted or {}).get(f, 0.0) for f in frames]),
+        frames=frames, residual=none, uncovered=none, unreliable=np.array([(unreliable or {}).get(f, 0.0) for f in frames]),
         trusted=np.array([f not in failed for f in frames]),
     )  # fmt: skip
 

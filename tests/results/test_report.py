@@ -70,7 +70,7 @@ def test_page_without_warnings_has_no_box_for_them() -> None:
 
 def test_box_of_warnings_names_frames_and_joints() -> None:
     content = artifacts()
-    doubt = confident(spider().frames, failed=(3, 4), doubted={9: 0.12})
+    doubt = confident(spider().frames, failed=(3, 4), unreliable={9: 0.12})
     cleaned = Cleaning(components=2, components_kept=1)
     removed = {f: m.model_copy(update={"cleaning": cleaned} if f == 7 else {}) for f, m in content["mesh"].items()}
     body = spider(support=np.full(len(spider().names), 2))
@@ -100,7 +100,7 @@ def test_handle_of_the_surface_and_a_skin_far_from_the_meshes_are_warned_of(plai
     )  # fmt: skip
     one, rest = np.ones(count), skinned(body)
     grows = {
-        f: Alignment(vertices=rest[t] * (1 + 0.1 * t), residual=0 * one, stretch=one, trust=one, uncovered=0.0)
+        f: Alignment(vertices=rest[t] * (1 + 0.1 * t), residual=0 * one, stretch=one, confidence=one, uncovered=0.0)
         for t, f in enumerate(body.frames)
     }
     sentences = warnings(page(skeleton=body, alignment=grows))

@@ -14,7 +14,7 @@ def gathered(shift=0.0):
     n = len(body.vertices)
     zero, one = np.zeros(n), np.ones(n)
     aligned = {
-        frame: Alignment(vertices=V + [shift, 0, 0], residual=zero, stretch=one, trust=one, uncovered=0.0)
+        frame: Alignment(vertices=V + [shift, 0, 0], residual=zero, stretch=one, confidence=one, uncovered=0.0)
         for frame, V in zip(body.frames, skinned(body), strict=True)
     }
     counts = {frame: 2 + frame for frame in body.frames}

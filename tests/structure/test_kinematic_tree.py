@@ -37,7 +37,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
     parts = rigid(body, frames)
     zero, one = np.zeros(len(body.V)), np.ones(len(body.V))
     aligned = {
-        f: Alignment(vertices=x, residual=zero, stretch=one, trust=one if trust is None else trust[k], uncovered=0.0)
+        f: Alignment(vertices=x, residual=zero, stretch=one, confidence=one if trust is None else trust[k], uncovered=0.0)
         for k, (f, x) in enumerate(zip(frames, body.x, strict=True))
     }
     positions = np.broadcast_to(body.V[list(tips), None], (len(tips), count, 3))

@@ -22,7 +22,8 @@ def told(known: Known, rows: tuple[int, ...]) -> PoseRefinement:
     zero, one = np.zeros(len(known.V)), np.ones(len(known.V))
     trust = np.where(known.label == 1, 0.1, 1.0)
     aligned = {
-        FIRST + row: Alignment(vertices=known.x[row], residual=zero, stretch=one, trust=trust, uncovered=0.0) for row in rows
+        FIRST + row: Alignment(vertices=known.x[row], residual=zero, stretch=one, confidence=trust, uncovered=0.0)
+        for row in rows
     }
     return pose_refinement(articulation(known), mesh, aligned)
 

@@ -20,7 +20,8 @@ def told(V: np.ndarray, F: np.ndarray, x: np.ndarray, **params: float) -> RigidP
     )  # fmt: skip
     zero, one = np.zeros(len(V)), np.ones(len(V))
     aligned = {
-        f: Alignment(vertices=y, residual=zero, stretch=one, trust=one, uncovered=0.0) for f, y in zip(frames, x, strict=True)
+        f: Alignment(vertices=y, residual=zero, stretch=one, confidence=one, uncovered=0.0)
+        for f, y in zip(frames, x, strict=True)
     }
     leaves = Leaves(
         frames=frames, rows=np.zeros((0, len(x)), int), positions=np.zeros((0, len(x), 3)), kept=np.ones((1, 0), bool),

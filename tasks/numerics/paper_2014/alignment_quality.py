@@ -44,4 +44,4 @@ def alignment_quality(
         return AlignmentQuality(0.0 * one, stretches(rest, x, F), one, 0.0)
     target = Target.of(frame_V, frame_F, size)
     quality = vertex_confidence(rest, x, smoothed_normals(x, F), F, target, usual=1.0)
-    return AlignmentQuality(quality.residual, quality.stretch, quality.trust, quality.uncovered)
+    return AlignmentQuality(quality.residual, quality.stretch, quality.confidence, quality.uncovered)

@@ -5,13 +5,10 @@ Jacobian is ever formed. All sums run in a fixed order on one thread.
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import distinct
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 def pattern(bound: Ints, edge: Ints, nodes: int) -> tuple[Ints, Ints, Ints]:
@@ -105,6 +102,7 @@ def _add(block: Floats, A: Floats, other: Floats, q: Floats, M: Floats, w: float
 
 @compiled
 def _times(D: Floats, B: Floats, pair: Ints, x: Floats, y: Floats) -> None:
+    """Write the product of the system with x into y."""
     for j in range(len(D)):
         for a in range(6):
             s = 0.0
@@ -123,6 +121,7 @@ def _times(D: Floats, B: Floats, pair: Ints, x: Floats, y: Floats) -> None:
 
 @compiled
 def _precondition(inverse: Floats, r: Floats, z: Floats) -> float:
+    """Write the preconditioned residual into z, and return its product with r."""
     total = 0.0
     for j in range(len(inverse)):
         for a in range(6):

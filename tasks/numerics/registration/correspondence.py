@@ -1,30 +1,38 @@
 """Which point of the body is which point of a frame: nearest neighbours in place and direction, (x, βn).
 
 The direction keeps the two sides of a hand, or two limbs that touch, apart; 2014, §5.2 maps by geodesic coordinates
-instead, which rings of a limb share. A search among the samples starts a fit; after that each match walks over the mesh
-from neighbour to neighbour, which costs a twentieth.
+instead, which all points of a ring around a limb share. The first steps of a fit search among all samples; later ones start
+from the last match and search over the mesh, which costs a twentieth.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.morton_curve import spread_along_curve
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+_STEPS = 64
+"""Safety bound: a match moves over at most so many edges."""
 
-BETA = 0.08  # what a turn of the normal counts against distance, share of the body's size
-COVERED = 0.0135  # a point of the frame is covered by a point of the body this near, share of the body's size
-ALIKE = 0.3  # and whose normal has at least this cosine with its own
-_STEPS = 64  # a walk is never longer
+
+class CorrespondenceSettings(NamedTuple):
+    """How positions and normals are compared, and when a sample of a frame is covered by the body."""
+
+    beta: float = 0.08
+    """β, what a turn of the normal by one radian counts against distance, share of √area. Chosen on: not recorded. With a
+    larger one matches slide along the surface, with a smaller one they jump between limbs that are close."""
+    covered: float = 0.0135
+    """A sample of the frame is covered by a point of the body this near, share of √area. Chosen on: not recorded."""
+    cosine: float = 0.3
+    """A point covers a sample if the cosine between their normals exceeds this. Chosen on: not recorded."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +46,7 @@ class Target:
     sample : (sample,) vertices that stand for the surface
     tree   : search tree of (x, βn) of the samples
     beta   : β, mesh unit
-    size   : of the reference body, mesh unit
+    size   : √area of the reference body, mesh unit
     """
 
     V: Floats
@@ -52,34 +60,48 @@ class Target:
     size: float
 
     @classmethod
-    def of(cls, V: Floats, F: npt.NDArray[np.integer[Any]], size: float, samples: int = 6000) -> "Target":
-        """Prepare a frame.
+    def of(
+        cls,
+        V: Floats,
+        F: npt.NDArray[np.integer[Any]],
+        size: float,
+        samples: int = 6000,
+        settings: CorrespondenceSettings | None = None,
+    ) -> "Target":
+        """Prepare a frame (ours).
 
         V, F    : (vertex, xyz) mesh unit · (face, corner) clean
-        size    : of the reference body, mesh unit; not of this frame, which may lack a limb
+        size    : √area of the reference body, mesh unit; not of this frame, which may lack a limb
         samples : vertices that stand for the surface, all if there are fewer
+        returns : Target
         """
+        settings = settings or CorrespondenceSettings()
+        beta = settings.beta * size
         faces = F.astype(np.int64)
         N = smoothed_normals(V, faces)
         sample = spread_along_curve(V, samples)
-        tree = cKDTree(np.hstack([V[sample], BETA * size * N[sample]]), balanced_tree=False)
-        return cls(np.ascontiguousarray(V), faces, N, *rings(faces, len(V)), sample, tree, BETA * size, size)
+        tree = cKDTree(np.hstack([V[sample], beta * N[sample]]), balanced_tree=False)
+        return cls(np.ascontiguousarray(V), faces, N, *rings(faces, len(V)), sample, tree, beta, size)
 
-    def found(self, x: Floats, n: Floats) -> Ints:
-        """(point,) the sample nearest to each point in (x, βn)."""
+    def nearest(self, x: Floats, n: Floats) -> Ints:
+        """The sample of the frame that is nearest to each point in (x, βn).
+
+        x, n    : (point, xyz) mesh unit · (point, xyz) unit
+        returns : (point,) vertex numbers of the frame
+        """
         return self.sample[self.tree.query(np.hstack([x, self.beta * n]))[1]]
 
 
 @compiled
-def walked(x: Floats, n: Floats, match: Ints, V: Floats, N: Floats, start: Ints, ring: Ints, beta: float) -> Ints:
-    """Each match moved over the mesh, neighbour by neighbour, while that brings it nearer in (x, βn).
+def local_matches(x: Floats, n: Floats, match: Ints, V: Floats, N: Floats, start: Ints, ring: Ints, beta: float) -> Ints:
+    """Local nearest neighbours: each match moves over the mesh, edge by edge, while that brings it nearer in (x, βn) (ours).
 
     x, n        : (point, xyz) mesh unit · (point, xyz) unit
-    match       : (point,) the vertex from which each walk starts
+    match       : (point,) the vertex at which each search starts
     V, N        : (vertex, xyz) mesh unit · (vertex, xyz) unit
-    start, ring : neighbours of the vertices
+    start, ring : (vertex + 1,) · (entry,) neighbours of the vertices, see `rings`
     beta        : mesh unit
-    returns     : (point,) the vertex where each walk ends
+    returns     : (point,) the vertex at which it ends
     """
     out = np.empty_like(match)
     turn = 2.0 * beta * beta  # |n − m|² = 2 − 2 n·m
@@ -99,23 +121,26 @@ def walked(x: Floats, n: Floats, match: Ints, V: Floats, N: Floats, start: Ints,
     return out
 
 
-def covered(x: Floats, n: Floats, F: Ints, target: Target) -> npt.NDArray[np.bool_]:
-    """Which samples of a frame have a point of the body near them that faces the same way.
+def covered_samples(x: Floats, n: Floats, F: Ints, target: Target, settings: CorrespondenceSettings | None = None) -> Flags:
+    """Which samples of a frame have a point of the body near them whose normal agrees with theirs (ours).
 
     x, n    : (vertex, xyz) the body in this frame, mesh unit · (vertex, xyz) its unit normals
     F       : (face, corner) of the body
+    target  : the frame
     returns : (sample,) True where covered
     """
+    settings = settings or CorrespondenceSettings()
     on = projected(target.V[target.sample], x, F)
-    alike = np.einsum("pk,pkx,px->p", on.share, n[F[on.face]], target.N[target.sample])
-    return (on.distance < COVERED * target.size) & (alike > ALIKE)
+    cosine = np.einsum("pk,pkx,px->p", on.share, n[F[on.face]], target.N[target.sample])
+    return (on.distance < settings.covered * target.size) & (cosine > settings.cosine)
 
 
 def uncovered(x: Floats, n: Floats, F: Ints, target: Target) -> float:
-    """Share of a frame's surface that no point of the body explains: near 0, unless a limb sits on the wrong limb.
+    """Share of a frame's surface that the body does not explain: near 0, unless a limb lies on the wrong limb (ours).
 
     x, n    : (vertex, xyz) the body in this frame, mesh unit · (vertex, xyz) its unit normals
     F       : (face, corner) of the body
+    target  : the frame
     returns : 0 to 1
     """
-    return 1.0 - float(covered(x, n, F, target).mean())
+    return 1.0 - float(covered_samples(x, n, F, target).mean())

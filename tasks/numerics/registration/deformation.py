@@ -1,31 +1,34 @@
 """The reference mesh bent onto one frame by turning and shifting the nodes of its graph: Gauss–Newton (for 2014, §5.3).
 
 x(v) = Σ_j w_vj [R_j (v − g_j) + p_j]  (Sumner 2007, Eq. 1). The energy is Σ a [(n·(x − y))² + b |x − y|²] over matches
-both ways, plus λ Σ s_jk |R_j (g_k − g_j) + p_j − p_k|² over ties both ways. The data count one per node in all, so that
-λ does not depend on how many samples or nodes there are.
+both ways, plus λ Σ s_jk |R_j (g_k − g_j) + p_j − p_k|² over both ends of every edge. The data count one per node in all, so
+that λ does not depend on how many samples or nodes there are.
 """
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.block_system import add_data, conjugate_gradients
-from kinetree.tasks.numerics.registration.correspondence import BETA, Target, walked
+from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, local_matches
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
-from kinetree.tasks.numerics.registration.ties import add_ties, tie_energy
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-_Pair = tuple[Ints, Ints]  # of the body and of the frame
+_Pair = tuple[Ints, Ints]
+"""Of the body and of the frame."""
 
-_ALIKE = 0.5  # matches whose normals have a smaller cosine do not count
-_DAMPING = 1e-4  # of the mean diagonal
-_TOLERANCE = 1e-2  # of conjugate gradients: the next step has other matches anyway
+_LEAST_COSINE = 0.5
+"""Matches whose normals have a smaller cosine do not count; with 0.3 a dancer and a wolf keep the same turning."""
+_DAMPING = 1e-4
+"""Added to the diagonal, share of its mean."""
+_TOLERANCE = 1e-2
+"""Of conjugate gradients: the next step has other matches anyway."""
 _HALVINGS = 3
+"""Times a step that raises the energy is halved before it is left out."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +37,13 @@ class FitSettings:
 
     steps     : Gauss–Newton steps
     stiffness : λ
-    reach     : matches further apart do not count, share of the body's size
-    scale     : distance from the plane at which a match counts a quarter, share of the body's size
+    reach     : matches farther apart do not count, share of √area
+    scale     : distance from the plane at which a match counts a quarter, share of √area
     point     : b, what distance counts beside distance from the plane
-    searches  : so many steps search for matches among all samples, later ones walk
+    searches  : so many steps search for matches among all samples, later ones start from the last matches
     solves    : conjugate-gradient steps at most
     thin      : of the samples of both surfaces every so many are used
-    beta      : what a turn of the normal counts against distance while matches walk, share of the body's size
+    beta      : what a turn of the normal by one radian counts against distance in local searches, share of √area
     """
 
     steps: int = 10
@@ -51,7 +54,7 @@ class FitSettings:
     searches: int = 3
     solves: int = 30
     thin: int = 2
-    beta: float = BETA
+    beta: float = CorrespondenceSettings().beta
 
 
 class Pose(NamedTuple):
@@ -86,65 +89,70 @@ class _Rows(NamedTuple):
     nearness: Floats
 
 
-def at_rest(template: DeformationGraph) -> Pose:
-    """The pose in which the body is its reference."""
-    return Pose(np.tile(np.eye(3), (len(template.node), 1, 1)), template.g)
+def at_rest(graph: DeformationGraph) -> Pose:
+    """The pose in which the body is its reference: no node turned, each at its rest position."""
+    return Pose(np.tile(np.eye(3), (len(graph.node), 1, 1)), graph.g)
 
 
-def shape(template: DeformationGraph, pose: Pose) -> tuple[Floats, Floats]:
-    """The body in a pose: (vertex, xyz) in the mesh's unit · (vertex, xyz) unit normals."""
-    x = deformed(template.V, template.bound, template.weight, template.g, *pose)
-    return x, turned(template.N, template.bound, template.weight, pose.rotation)
+def shape(graph: DeformationGraph, pose: Pose) -> tuple[Floats, Floats]:
+    """The body in a pose (Sumner 2007, Eq. 1).
+
+    returns : (vertex, xyz) mesh unit · (vertex, xyz) unit normals
+    """
+    x = deformed(graph.V, graph.bound, graph.weight, graph.g, *pose)
+    return x, turned(graph.N, graph.bound, graph.weight, pose.rotation)
 
 
 def fit(
-    template: DeformationGraph,
+    graph: DeformationGraph,
     start: Pose,
     target: Target,
     settings: FitSettings | None = None,
     stiffness: Floats | None = None,
 ) -> Fitted:
-    """Bend the reference onto a frame.
+    """Bend the reference onto a frame by Gauss–Newton steps (ours, for 2014, Sec. 5.3).
 
+    graph     : of the reference mesh
     start     : the pose to begin with, of a frame nearby or of this frame from an earlier pass
+    target    : the frame
     stiffness : (edge,) s, 1 everywhere if not given
     returns   : Fitted; a step that would raise the energy is halved, and left out if that does not help
     """
     settings = settings or FitSettings()
-    s = np.ones(len(template.edge)) if stiffness is None else stiffness
+    s = np.ones(len(graph.edge)) if stiffness is None else stiffness
     pose, energy, match = start, np.zeros((settings.steps, 2)), None
-    samples = template.sample[:: settings.thin], target.sample[:: settings.thin]
+    samples = graph.sample[:: settings.thin], target.sample[:: settings.thin]
     for i in range(settings.steps):
         share = i / max(settings.steps - 1, 1)
         lam, reach, scale, b = (
             first * (last / first) ** share
             for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point)
         )
-        x, n = shape(template, pose)
-        match = _matches(template, target, samples, x, n, None if i < settings.searches else match, settings.beta * target.size)
-        rows = _rows(template, target, samples, x, n, match, (reach * template.size, scale * template.size, b))
-        pose, energy[i] = _step(template, pose, rows, lam * s, settings.solves)
-    return Fitted(pose, energy / template.size**2)
+        x, n = shape(graph, pose)
+        match = _matches(graph, target, samples, x, n, None if i < settings.searches else match, settings.beta * target.size)
+        rows = _rows(graph, target, samples, x, n, match, (reach * graph.size, scale * graph.size, b))
+        pose, energy[i] = _step(graph, pose, rows, lam * s, settings.solves)
+    return Fitted(pose, energy / graph.size**2)
 
 
 def _matches(
-    template: DeformationGraph, target: Target, samples: _Pair, x: Floats, n: Floats, last: _Pair | None, beta: float
+    graph: DeformationGraph, target: Target, samples: _Pair, x: Floats, n: Floats, last: _Pair | None, beta: float
 ) -> _Pair:
     """(sample,) the frame's vertex for each of the body's samples · (sample,) the body's vertex for each of the frame's.
 
-    x, n : the body now · last : matches to walk from, or None to search · beta : β of the walk, mesh unit
+    x, n : the body now · last : matches to start from, or None to search · beta : β of the local search, mesh unit
     """
-    mine, theirs = samples
-    y, m = target.V[theirs], target.N[theirs]
+    body_sample, frame_sample = samples
+    y, m = target.V[frame_sample], target.N[frame_sample]
     if last is None:
-        tree = cKDTree(np.hstack([x[mine], target.beta * n[mine]]), balanced_tree=False)
-        last = target.found(x[mine], n[mine]), mine[tree.query(np.hstack([y, target.beta * m]))[1]]
-    there = walked(x[mine], n[mine], last[0], target.V, target.N, target.start, target.ring, beta)
-    return there, walked(y, m, last[1], x, n, template.start, template.ring, beta)
+        tree = cKDTree(np.hstack([x[body_sample], target.beta * n[body_sample]]), balanced_tree=False)
+        last = target.nearest(x[body_sample], n[body_sample]), body_sample[tree.query(np.hstack([y, target.beta * m]))[1]]
+    there = local_matches(x[body_sample], n[body_sample], last[0], target.V, target.N, target.start, target.ring, beta)
+    return there, local_matches(y, m, last[1], x, n, graph.start, graph.ring, beta)
 
 
 def _rows(
-    template: DeformationGraph,
+    graph: DeformationGraph,
     target: Target,
     samples: _Pair,
     x: Floats,
@@ -161,39 +169,37 @@ def _rows(
     vertex, other = np.concatenate([samples[0], match[1]]), np.concatenate([match[0], samples[1]])
     r, m = x[vertex] - target.V[other], target.N[other]
     alike = np.einsum("rx,rx->r", n[vertex], m)
-    near = (alike > _ALIKE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
+    near = (alike > _LEAST_COSINE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
     halfway = m + n[vertex]
     halfway /= np.maximum(np.linalg.norm(halfway, axis=1, keepdims=True), np.finfo(float).tiny)
     off = np.einsum("rx,rx->r", r, halfway)
-    a = len(template.node) / len(vertex) * alike / (1.0 + (off / scale) ** 2) ** 2
+    a = len(graph.node) / len(vertex) * alike / (1.0 + (off / scale) ** 2) ** 2
     return _Rows(vertex[near], target.V[other[near]], halfway[near], a[near], b * a[near])
 
 
-def _energy(template: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats) -> tuple[float, Floats]:
+def _energy(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats) -> tuple[float, Floats]:
     """The energy with these matches, mesh unit² · (row, xyz) x − y."""
     v = rows.vertex
-    r = deformed(template.V[v], template.bound[v], template.weight[v], template.g, *pose) - rows.point
+    r = deformed(graph.V[v], graph.bound[v], graph.weight[v], graph.g, *pose) - rows.point
     off = np.einsum("rx,rx->r", r, rows.normal)
     data = (rows.plane * off**2).sum() + (rows.nearness * np.einsum("rx,rx->r", r, r)).sum()
-    return float(data) + tie_energy(template.edge, stiffness, *pose, template.g), r
+    return float(data) + edge_energy(graph.edge, stiffness, *pose, graph.g), r
 
 
-def _step(
-    template: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats, solves: int
-) -> tuple[Pose, tuple[float, float]]:
+def _step(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats, solves: int) -> tuple[Pose, tuple[float, float]]:
     """One Gauss–Newton step with fixed matches, and the energy before and after."""
-    before, r = _energy(template, pose, rows, stiffness)
-    nodes, g = len(template.node), template.g
-    D, B, b = np.zeros((nodes, 6, 6)), np.zeros((len(template.pair), 6, 6)), np.zeros((nodes, 6))
-    body = (template.V, template.bound, template.weight)
-    add_data(D, B, b, *body, template.of_vertex, pose.rotation, g, rows.vertex, r, rows.normal, rows.plane, rows.nearness)
-    add_ties(D, B, b, template.edge, template.of_edge, stiffness, *pose, g)
+    before, r = _energy(graph, pose, rows, stiffness)
+    nodes, g = len(graph.node), graph.g
+    D, B, b = np.zeros((nodes, 6, 6)), np.zeros((len(graph.pair), 6, 6)), np.zeros((nodes, 6))
+    body = (graph.V, graph.bound, graph.weight)
+    add_data(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, r, rows.normal, rows.plane, rows.nearness)
+    add_edges(D, B, b, graph.edge, graph.of_edge, stiffness, *pose, g)
     D[:, range(6), range(6)] += _DAMPING * np.einsum("jaa->ja", D).mean(axis=0)
     inverse = np.linalg.inv(D).astype(np.float64)
-    step = conjugate_gradients(D, inverse, B, template.pair, b, solves, _TOLERANCE)
+    step = conjugate_gradients(D, inverse, B, graph.pair, b, solves, _TOLERANCE)
     for halving in range(_HALVINGS):
         moved = Pose(*stepped(*pose, step, 0.5**halving))
-        after = _energy(template, moved, rows, stiffness)[0]
+        after = _energy(graph, moved, rows, stiffness)[0]
         if after <= before:
             return moved, (before, after)
     return pose, (before, before)

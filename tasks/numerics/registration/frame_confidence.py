@@ -1,19 +1,24 @@
-"""What an alignment knows about itself: how far it is from each frame, how much it stretches, which frames to trust."""
+"""Distance of an alignment to each frame, its stretch, and which frames it explains (ours)."""
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.registration.recovery import failures
-from kinetree.tasks.numerics.registration.tracking import LOST
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
-_FAR = 3.0  # medians of the sequence: a frame whose residual exceeds this is not trusted
+class FrameConfidenceSettings(NamedTuple):
+    """From which values on a frame is not trusted, besides those that stand out (`recovery.failures`)."""
+
+    residual: float = 3.0
+    """Residual in medians of the sequence. Chosen on: not recorded."""
+    uncovered: float = 0.04
+    """Share of a frame uncovered, even if all frames leave as much. Chosen on: not recorded."""
 
 
 def residuals(x: Floats, V: Floats, F: npt.NDArray[np.integer]) -> Floats:
@@ -29,26 +34,29 @@ def residuals(x: Floats, V: Floats, F: npt.NDArray[np.integer]) -> Floats:
 def stretches(rest: Floats, x: Floats, F: Ints) -> Floats:
     """Mean length of the edges around each vertex against their length at rest.
 
-    rest, x : (vertex, xyz) the reference · the body in this frame
+    rest, x : (vertex, xyz) the reference · the body in this frame, mesh unit
     F       : (face, corner) of both
-    returns : (vertex,) 1 where nothing is stretched; 1 for a vertex without edges or with edges of no length
+    returns : (vertex,) without unit, 1 where nothing is stretched; 1 for a vertex without edges or with edges of no length
     """
     start, ring = rings(F, len(rest))
     return _stretches(rest, x, start, ring)
 
 
-def trusted(uncovered: Floats, residual: Floats) -> Flags:
-    """Frames to believe: no more uncovered than the others, and no further away.
+def trusted(uncovered: Floats, residual: Floats, settings: FrameConfidenceSettings | None = None) -> Flags:
+    """Frames that the alignment explains: no more uncovered than the others, and no farther away (ours).
 
     uncovered : (frame,) share of each frame that the body does not explain
-    residual  : (frame,) mean residual, any unit
+    residual  : (frame,) median distance of the body to each frame's surface, any unit
     returns   : (frame,) False for frames that stand out
     """
-    return ~failures(uncovered) & (residual <= _FAR * np.median(residual)) & (uncovered <= 10 * LOST)
+    settings = settings or FrameConfidenceSettings()
+    near = residual <= settings.residual * np.median(residual)
+    return ~failures(uncovered) & near & (uncovered <= settings.uncovered)
 
 
 @compiled
 def _stretches(rest: Floats, x: Floats, start: Ints, ring: Ints) -> Floats:
+    """Stretch of every vertex, from the neighbours of each as `rings` gives them."""
     out = np.ones(len(rest))
     for v in range(len(rest)):
         before = after = 0.0

@@ -1,12 +1,9 @@
 """Where points go when the nodes of a deformation graph turn and shift (Sumner 2007, Eq. 1)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @compiled

@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.tracking import Tracked, tracked
+from kinetree.tasks.numerics.registration.tracking import Tracking, tracking
 
 
 class RecoverySettings(NamedTuple):
@@ -34,7 +34,7 @@ class Recovery(NamedTuple):
 
     failed: Flags
     usual: float
-    recovered: dict[int, Tracked]
+    recovered: dict[int, Tracking]
 
 
 def recovery(
@@ -57,12 +57,12 @@ def recovery(
     others = np.arange(len(uncovered)) != reference
     failed = failures(uncovered, settings) & others
     usual = float(uncovered[others].min(initial=1.0))
-    recovered: dict[int, Tracked] = {}
+    recovered: dict[int, Tracking] = {}
     for at, beyond in _inwards(failed, reference):
         there = recovered.get(beyond)
         if (there.uncovered if there else uncovered[beyond]) >= uncovered[at]:
             continue
-        again = tracked(graph, None, there.pose if there else pose(beyond), target(at), usual=usual)
+        again = tracking(graph, None, there.pose if there else pose(beyond), target(at), usual=usual)
         if again.uncovered < uncovered[at]:
             recovered[at] = again
     return Recovery(failed, usual, recovered)

@@ -2,7 +2,7 @@
 
 Where limbs touch, a reconstruction fuses them: leaves and Euler characteristic fall, and the surface that lies between
 is lost to the area. A reference with a fused hand can never open it, so contact frames come last; among the others a pose
-amid the others' poses leaves less to bend, and a place in the middle of the sequence fewer frames to go through.
+near the others' poses leaves less to bend, and a frame in the middle of the sequence has fewer frames to track through.
 """
 
 from typing import NamedTuple
@@ -10,16 +10,29 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
+from kinetree.tasks.numerics.arrays import Floats
 
-HANDLE = 0.01  # of the area: fingers fuse and part at the resolution of the grid, so one handle is weak evidence
-POSE = 0.08  # of the area: for a pose as far from all others as is usual in the sequence
-FOREIGN = 5.0  # times as far from all others as is usual: another body, or none
-ASIDE = 0.05  # of the area: for a frame a whole sequence, or SHORT frames, away from its middle
-SHORT = 20
-LIMB = 0.02  # of the area: what skin stretches from pose to pose counts less than itself, what a limb loses more
-STEADY = 2  # frames on either side that should be as free of contact
+
+class ReferenceSettings(NamedTuple):
+    """What lowers the score of a frame, and by how much; a missing leaf lowers it by 1.
+
+    Which quantities count was chosen on nine sequences with truth; how their weights were chosen is not recorded.
+    """
+
+    handle: float = 0.01
+    """For every handle: fingers fuse and part at the resolution of the grid, so one handle is weak evidence of contact."""
+    pose: float = 0.08
+    """For a pose as far from all others as the median of the sequence."""
+    foreign: float = 5.0
+    """A frame farther than this from all others by μ, in medians of the sequence, shows another body, or none."""
+    aside: float = 0.05
+    """For a frame a whole sequence, or `short` frames, away from the middle."""
+    short: int = 20
+    """Frames below which a sequence counts as this long."""
+    area: float = 0.02
+    """The square of the share of area that is missing is divided by this: skin stretches by 1 %, a forearm is 5 %."""
+    steady: int = 2
+    """Frames on either side that should be as free of contact."""
 
 
 class Reference(NamedTuple):
@@ -35,30 +48,37 @@ class Reference(NamedTuple):
     score: Floats
 
 
-def reference(leaves: npt.ArrayLike, euler: npt.ArrayLike, area: npt.ArrayLike, profile: Floats, stems: Floats) -> Reference:
-    """The frame with most leaves, and among those one of large area, few handles, a pose amid all others, in the middle.
+def reference(
+    leaves: npt.ArrayLike,
+    euler: npt.ArrayLike,
+    area: npt.ArrayLike,
+    profile: Floats,
+    stems: Floats,
+    settings: ReferenceSettings | None = None,
+) -> Reference:
+    """The frame with most leaves; among those one of large area, few handles, a pose near all others, in the middle (ours).
 
     Leaves, area and handles count as in the worst of a frame and its neighbours, so that frames just before or after
-    contact, or beside one that lacks part of a limb, lose against frames amid freedom; where no frame is free, the least
-    bad one is taken.
+    contact, or beside one that lacks part of a limb, score lower; where no frame is free of contact, the best of them is taken.
 
     leaves  : (frame,) number of leaves
     euler   : (frame,) vertices − edges + faces of the frame's clean mesh
     area    : (frame,) mesh unit²
-    profile : (frame, quantile) quantiles over the surface of μ / area^1.5, which tell another body
-    stems   : (leaf, frame, station, xyz) points along the limbs, mesh unit, which tell how they are bent; NaN where not seen
+    profile : (frame, quantile) quantiles over the surface of μ / area^1.5, by which another body is recognised
+    stems   : (leaf, frame, station, xyz) points along the limbs, mesh unit, which show how limbs are bent; NaN where not seen
     returns : Reference; ties go to the frame nearest to the middle, then to the earlier one
     """
+    settings = settings or ReferenceSettings()
     count, characteristic, surface = (np.asarray(x, np.float64) for x in (leaves, euler, area))
     far = remoteness(unlikeness(profile))
-    own = far <= FOREIGN
-    missing = _worst_around(np.where(own, count[own].max() - count, count.max()))
-    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0)
+    own = far <= settings.foreign
+    missing = _worst_around(np.where(own, count[own].max() - count, count.max()), settings.steady)
+    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, settings.steady)
     distance = np.abs(np.arange(len(count)) - (len(count) - 1) / 2.0)
-    lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0))
-    pose = POSE * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
-    aside = ASIDE * distance / max(len(count), SHORT)
-    score = 1.0 - missing - lack**2 / LIMB - HANDLE * handles - pose - aside - np.where(own, 0.0, far)
+    lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0), settings.steady)
+    pose = settings.pose * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
+    aside = settings.aside * distance / max(len(count), settings.short)
+    score = 1.0 - missing - lack**2 / settings.area - settings.handle * handles - pose - aside - np.where(own, 0.0, far)
     frame = int(np.lexsort((distance, -np.round(score, 9)))[0])
     return Reference(frame, bool(missing[frame] == 0), score)
 
@@ -119,6 +139,6 @@ def remoteness(distance: Floats) -> Floats:
     return mean / middle if middle > 0.0 else np.zeros(len(mean))
 
 
-def _worst_around(lack: Floats) -> Floats:
+def _worst_around(lack: Floats, steady: int) -> Floats:
     """(frame,) a frame's own lack or that of its neighbours, whichever is worse."""
-    return np.array([lack[max(t - STEADY, 0) : t + STEADY + 1].max() for t in range(len(lack))])
+    return np.array([lack[max(t - steady, 0) : t + steady + 1].max() for t in range(len(lack))])

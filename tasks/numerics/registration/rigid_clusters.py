@@ -1,6 +1,6 @@
-"""Pieces of the deformation graph that have moved as one: nodes merged pairwise, always the two that cost the least.
+"""Nodes of the deformation graph that have moved as one: clusters merged in pairs, always the two that cost the least.
 
-The cost of a piece is what is left when one rigid motion a frame carries all its nodes, Σ_j m_j |R g_j + c − p_j|² with
+The cost of a cluster is the residual if one rigid motion in each frame carries all its nodes, Σ_j m_j |R g_j + c − p_j|² with
 m = 1/spacing²: relative bending, so that a finger counts as much as a thigh. After Ward 1963; the residual is closed form.
 """
 
@@ -9,25 +9,30 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.rigid_fit import rotation_gain
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
-ONE = 1.0  # two pieces stay two if together they cost more than this a frame, spacings squared
-_AROUND = 4  # nearest nodes that tell the spacing
-_EXTENT = 0.5  # a node stands for points this many spacings around it, which turn with it
-_FAR = 2.5  # ties longer than so many spacings join no pieces
+class RigidClustersSettings(NamedTuple):
+    """How much a cluster may bend, and how far a node reaches."""
+
+    cost: float = 1.0
+    """Two clusters stay two if merging them costs more than this in a frame, spacings². Chosen on: not recorded."""
+    neighbours: int = 4
+    """Nearest nodes whose mean distance is the spacing around a node. Chosen on: not recorded."""
+    extent: float = 0.5
+    """A node stands for points this far from it on three axes, spacings; so its rotation counts. Chosen on: not recorded."""
+    longest: float = 2.5
+    """Longer edges, such as those through the body, merge no clusters, spacings. Chosen on: not recorded."""
 
 
 class _Moments(NamedTuple):
-    """Of every piece: mass, Σ m g, Σ m |g|², (piece, frame, …) Σ m p, Σ m |p|², Σ m p gᵀ."""
+    """Moments of every cluster: mass m, Σ m g, Σ m |g|², and in every frame Σ m p, Σ m |p|², Σ m p gᵀ."""
 
     M: Floats
     G: Floats
@@ -37,34 +42,35 @@ class _Moments(NamedTuple):
     C: Floats
 
 
-def rigid_clusters(template: DeformationGraph, poses: Sequence[Pose], limit: float = ONE) -> Ints:
-    """Which nodes have moved as one piece in all frames.
+def rigid_clusters(graph: DeformationGraph, poses: Sequence[Pose], settings: RigidClustersSettings | None = None) -> Ints:
+    """Which nodes have moved as one rigid body in all frames (ours, after Ward 1963).
 
-    poses   : one a frame, in any order; at least one
-    limit   : cost above which pieces are not merged
-    returns : (node,) number of the piece, in the order of each piece's first node
+    graph   : of the reference mesh
+    poses   : (frame,) in any order; at least one
+    returns : (node,) number of the cluster, in the order of each cluster's first node
     """
-    spacing = _spacing(template.g)
-    moments = _moments(template, poses, spacing)
-    length = np.linalg.norm(template.g[template.edge[:, 0]] - template.g[template.edge[:, 1]], axis=1)
-    near = template.edge[length < _FAR * spacing[template.edge].max(axis=1)]
-    label = _merged(moments, near, limit)
+    settings = settings or RigidClustersSettings()
+    spacing = _spacing(graph.g, settings.neighbours)
+    moments = _moments(graph, poses, spacing, settings.extent)
+    length = np.linalg.norm(graph.g[graph.edge[:, 0]] - graph.g[graph.edge[:, 1]], axis=1)
+    near = graph.edge[length < settings.longest * spacing[graph.edge].max(axis=1)]
+    label = _merged(moments, near, settings.cost)
     return np.unique(label, return_inverse=True)[1].astype(np.int64)
 
 
-def _spacing(g: Floats) -> Floats:
+def _spacing(g: Floats, neighbours: int) -> Floats:
     """(node,) mean distance to the nearest nodes; 1 for a node alone or in one place with them."""
-    count = min(_AROUND + 1, len(g))
+    count = min(neighbours + 1, len(g))
     distance = cKDTree(g).query(g, count)[0].reshape(len(g), count)[:, 1:]
     mean = distance.mean(axis=1) if count > 1 else np.ones(len(g))
     return np.where(mean > 0, mean, 1.0)
 
 
-def _moments(template: DeformationGraph, poses: Sequence[Pose], spacing: Floats) -> _Moments:
-    """Of every node by itself; places are taken from the middle of the body, against cancellation."""
-    middle = template.g.mean(axis=0)
-    g = template.g - middle
-    m, spread = 1.0 / spacing**2, (_EXTENT * spacing) ** 2
+def _moments(graph: DeformationGraph, poses: Sequence[Pose], spacing: Floats, extent: float) -> _Moments:
+    """Moments of single nodes; positions are relative to the middle of the body, against cancellation."""
+    middle = graph.g.mean(axis=0)
+    g = graph.g - middle
+    m, spread = 1.0 / spacing**2, (extent * spacing) ** 2
     P = np.stack([pose.translation - middle for pose in poses], axis=1)
     R = np.stack([pose.rotation for pose in poses], axis=1)
     own = 3.0 * spread
@@ -74,18 +80,18 @@ def _moments(template: DeformationGraph, poses: Sequence[Pose], spacing: Floats)
 
 
 def _merged(moments: _Moments, edge: Ints, limit: float) -> Ints:
-    """(node,) the first node of its piece; `moments` is changed in place."""
+    """(node,) the first node of its cluster; `moments` is changed in place."""
     nodes = len(moments.M)
     label, own, version = np.arange(nodes), np.zeros(nodes), np.zeros(nodes, np.int64)
     around: list[set[int]] = [set() for _ in range(nodes)]
     for a, b in edge.tolist():
         around[a].add(b)
         around[b].add(a)
-    waiting = [(_joined(a, b, *moments), a, b, 0, 0) for a, b in edge.tolist()]
+    waiting = [(_merged_cost(a, b, *moments), a, b, 0, 0) for a, b in edge.tolist()]
     heapq.heapify(waiting)
     while waiting:
-        cost, a, b, seen_a, seen_b = heapq.heappop(waiting)
-        if version[a] != seen_a or version[b] != seen_b:
+        cost, a, b, version_a, version_b = heapq.heappop(waiting)
+        if version[a] != version_a or version[b] != version_b:
             continue
         if cost > limit:
             break
@@ -98,27 +104,27 @@ def _merged(moments: _Moments, edge: Ints, limit: float) -> Ints:
         for k in sorted(around[a]):
             around[k] = (around[k] - {b}) | {a}
             first, second = min(a, k), max(a, k)
-            more = _joined(first, second, *moments) - own[a] - own[k]
+            more = _merged_cost(first, second, *moments) - own[a] - own[k]
             heapq.heappush(waiting, (more, first, second, int(version[first]), int(version[second])))
     return label
 
 
 @compiled
-def _joined(a: int, b: int, M: Floats, G: Floats, gg: Floats, P: Floats, pp: Floats, C: Floats) -> float:
-    """What is left, a frame, when a and b move as one piece; sorted, so that the order of frames does not matter."""
-    left = np.empty(P.shape[1])
+def _merged_cost(a: int, b: int, M: Floats, G: Floats, gg: Floats, P: Floats, pp: Floats, C: Floats) -> float:
+    """Mean residual over frames if a and b move as one; summed in sorted order, so that the order of frames does not matter."""
+    residual = np.empty(P.shape[1])
     H = np.empty((3, 3))
     mass = M[a] + M[b]
     rest = gg[a] + gg[b]
     for x in range(3):
         rest -= (G[a, x] + G[b, x]) ** 2 / mass
-    for t in range(len(left)):
+    for t in range(len(residual)):
         posed = pp[a, t] + pp[b, t]
         for x in range(3):
             shift = (P[a, t, x] + P[b, t, x]) / mass
             posed -= shift * shift * mass
             for y in range(3):
                 H[x, y] = C[a, t, x, y] + C[b, t, x, y] - shift * (G[a, y] + G[b, y])
-        left[t] = max(rest + posed - 2.0 * rotation_gain(H), 0.0)
-    left.sort()
-    return left.mean()
+        residual[t] = max(rest + posed - 2.0 * rotation_gain(H), 0.0)
+    residual.sort()
+    return residual.mean()

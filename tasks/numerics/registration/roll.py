@@ -1,67 +1,81 @@
-"""How limbs really turned about their own axis: of every frame's candidates, those that make one likely way (Viterbi 1967).
+"""How limbs rolled about their own axis: one likely path through every limb's candidates of all frames (Viterbi 1967).
 
-In one frame noise picks a turn, and neighbouring frames have other noise. A twist that tracking lost is none in the
-reference, grows from frame to frame, and fits better all the while, than no turn and than any other: on a round limb,
-whatever turn noise picks, another does as well. Measured, the mean of both: lost forearms 0.057 and more, round limbs 0.035
-at most.
+In one frame noise picks a roll, and neighbouring frames have other noise. Roll that tracking lost is zero in the reference,
+changes slowly from frame to frame, and fits better in all these frames than no roll and than any other roll; on a round limb
+other rolls fit as well. Measured, the mean of both differences: lost forearms 0.057 and more, round limbs 0.035 at most.
 """
 
+from typing import NamedTuple
+
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-CLEARLY = 0.045  # misfit that a way must save where it turns, against no turn and against all turns elsewhere, the mean of both
-EITHER = 0.025  # and than either of the two
-FEWEST = 3  # frames in which it must turn clearly
-_ELSEWHERE = np.radians(50.0)  # from the way
-_CLEAR, _LEAST = np.radians(20.0), np.radians(10.0)  # what counts as turned clearly, and at all
-_UNIT = np.radians(30.0)  # turning so far between two frames costs
-_PRICE = 0.05  # this share of the usual misfit
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
-def choices(angle: Floats, misfit: Floats, reference: int) -> Ints:
-    """Which turn every limb takes in every frame.
+class RollSettings(NamedTuple):
+    """When a path of roll is clear enough to be taken, and what changes of roll cost."""
 
-    angle     : (frame, limb, turn) from where the limb was, radians; of the first turn nearly 0
-    misfit    : (frame, limb, turn) 0 to 1, see `turns`
-    reference : position of the frame in which every limb is as it is
-    returns   : (frame, limb) turns, −1 where the limb stays; a limb stays everywhere unless much speaks against that
+    saved: float = 0.045
+    """Misfit that a path must save where it rolls, against no roll and against all rolls elsewhere, mean of the two. Chosen
+    between lost forearms (0.057 and more) and round limbs (0.035 at most)."""
+    saved_each: float = 0.025
+    """Misfit that it must save against each of the two. Chosen on the same limbs."""
+    frames: int = 3
+    """Frames in which the limb must roll clearly. Chosen on: not recorded."""
+    elsewhere: float = float(np.radians(50.0))
+    """Roll elsewhere is farther than this from the path, radians. Chosen on: not recorded."""
+    clear: float = float(np.radians(20.0))
+    """Roll that counts as clear, radians. Chosen on: not recorded."""
+    least: float = float(np.radians(10.0))
+    """Smaller roll, radians, is left as it is. Chosen on: not recorded."""
+    change: float = float(np.radians(30.0))
+    """Change of roll between two frames that costs `price`, radians. Chosen on: not recorded."""
+    price: float = 0.05
+    """Cost of that change, share of the usual misfit. Chosen on: not recorded."""
+
+
+def chosen_rolls(angle: Floats, misfit: Floats, reference: int, settings: RollSettings | None = None) -> Ints:
+    """Which candidate every limb takes in every frame (ours).
+
+    angle     : (frame, limb, candidate) roll from where the limb was, radians; of the first candidate nearly 0
+    misfit    : (frame, limb, candidate) 0 to 1, see `roll_candidates`
+    reference : position of the reference frame, in which no limb rolls
+    returns   : (frame, limb) candidates, −1 where the limb stays; a limb stays in all frames unless its path is clearly better
     """
+    settings = settings or RollSettings()
     out = np.full(angle.shape[:2], -1, dtype=np.int64)
     for k in range(angle.shape[1]):
-        way = _way(angle[:, k], misfit[:, k], reference)
-        rows = np.arange(len(way))
-        turned = np.where(rows == reference, 0.0, np.abs(angle[rows, k, way]))
-        clear = turned > _CLEAR
-        if clear.sum() >= FEWEST and _clearly(angle[clear, k], misfit[clear, k], way[clear]):
-            out[:, k] = np.where(turned > _LEAST, way, -1)
+        path = _path(angle[:, k], misfit[:, k], reference, settings)
+        rows = np.arange(len(path))
+        roll = np.where(rows == reference, 0.0, np.abs(angle[rows, k, path]))
+        clear = roll > settings.clear
+        if clear.sum() >= settings.frames and _is_clearly_better(angle[clear, k], misfit[clear, k], path[clear], settings):
+            out[:, k] = np.where(roll > settings.least, path, -1)
     return out
 
 
-def _clearly(angle: Floats, misfit: Floats, way: Ints) -> bool:
-    """Whether a way fits better than no turn and than the best of all turns elsewhere; what is round fits as well there."""
-    rows = np.arange(len(way))
-    here = misfit[rows, way]
-    apart = np.abs(np.angle(np.exp(1j * (angle - angle[rows, way][:, None]))))
-    elsewhere = np.where(apart > _ELSEWHERE, misfit, 1.0).min(axis=1)
-    better = (misfit[:, 0] - here).mean(), (elsewhere - here).mean()
-    return bool(np.mean(better) > CLEARLY and min(better) > EITHER)
+def _is_clearly_better(angle: Floats, misfit: Floats, path: Ints, settings: RollSettings) -> bool:
+    """Whether a path fits better than no roll and than the best of all rolls elsewhere; a round limb fits as well there."""
+    rows = np.arange(len(path))
+    here = misfit[rows, path]
+    apart = np.abs(np.angle(np.exp(1j * (angle - angle[rows, path][:, None]))))
+    elsewhere = np.where(apart > settings.elsewhere, misfit, 1.0).min(axis=1)
+    saved = (misfit[:, 0] - here).mean(), (elsewhere - here).mean()
+    return bool(np.mean(saved) > settings.saved and min(saved) > settings.saved_each)
 
 
-def _way(angle: Floats, misfit: Floats, reference: int) -> Ints:
-    """(frame,) the turns that cost the least: Σ misfit / usual + price · (change of angle / 30°)², the first at `reference`."""
+def _path(angle: Floats, misfit: Floats, reference: int, settings: RollSettings) -> Ints:
+    """(frame,) candidates of least Σ misfit / usual + price · (change of roll / 30°)², the first one at the reference."""
     usual = max(float(np.median(misfit.min(axis=1))), np.finfo(float).tiny)
     cost = misfit / usual
     cost[reference, 1:] = np.inf
     total, back = cost[0], np.zeros(angle.shape, dtype=np.int64)
     for t in range(1, len(angle)):
         change = np.angle(np.exp(1j * (angle[t - 1][:, None] - angle[t])))
-        step = total[:, None] + _PRICE * (change / _UNIT) ** 2
+        step = total[:, None] + settings.price * (change / settings.change) ** 2
         back[t] = step.argmin(axis=0)
         total = step.min(axis=0) + cost[t]
-    way = [int(total.argmin())]
+    path = [int(total.argmin())]
     for t in range(len(angle) - 1, 0, -1):
-        way.append(int(back[t, way[-1]]))
-    return np.array(way[::-1])
+        path.append(int(back[t, path[-1]]))
+    return np.array(path[::-1])

@@ -1,52 +1,57 @@
-"""Frames in which the body lost a limb: found by what it leaves uncovered, tried again otherwise and from the other side.
+"""One frame of the chain outwards from the reference: the graph fitted from its neighbour's pose, in several ways if needed.
 
-A paw that moves further than the distance to the next paw is matched to the wrong leg, and every later frame inherits
-that. The share of the frame that no point of the body explains tells such a frame from a good one by a factor of ten.
+A paw that moves farther than the distance to the next paw is matched to the wrong leg, and every later frame inherits
+that. The share of the frame that the body leaves uncovered is then about ten times as large as in a good frame.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.registration.correspondence import COVERED, Target, uncovered
+from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, uncovered
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
-Floats = npt.NDArray[np.float64]
 
-LOST = 0.004  # share of a frame that may stay uncovered without a second look
-LIMB = 0.003  # share of a frame this far from the body that is a lost limb; folds of cloth stay uncovered, but near it
-AWAY = 3.0 * COVERED  # share of the body's size
+class TrackingSettings(NamedTuple):
+    """When a frame is fitted again in another way, and how the other ways differ from the usual one."""
+
+    uncovered: float = 0.004
+    """Share of a frame that may stay uncovered beyond the usual; above it other ways are tried. Chosen on: not recorded."""
+    distant: float = 0.003
+    """Share of a frame far from the body that counts as a lost limb: lost limbs leave 0.006 and more, folds of cloth that
+    open 0.0025 at most, on one clothed and four other captures."""
+    distance: float = 3.0 * CorrespondenceSettings().covered
+    """From which distance to the body a sample is far, share of √area; chosen together with `distant`."""
+    reach: float = 0.16
+    """Reach of matches in the first step of the wide ways, share of √area. Chosen on: not recorded."""
+    scale: float = 0.08
+    """Distance from the plane at which a match counts a quarter in that step, share of √area. Chosen on: not recorded."""
+    steps: int = 24
+    """Gauss–Newton steps of the stiff ways. Chosen on: not recorded."""
+    stiffness: float = 1.0
+    """λ of the first step of the stiff ways. Chosen on: not recorded."""
+    solves: int = 60
+    """Conjugate-gradient steps in each step of the stiff ways, at most. Chosen on: not recorded."""
 
 
-@dataclass(frozen=True)
-class Attempt:
-    """One way to fit a frame that the usual way lost.
+class Attempt(NamedTuple):
+    """One way to fit a frame.
 
     settings  : of the fit
-    predicted : whether to start where the body would be if it moved on as before
+    predicted : whether it starts where the body would be if it moved on as before
     """
 
     settings: FitSettings
     predicted: bool = False
 
 
-def attempts(settings: FitSettings) -> tuple[Attempt, ...]:
-    """The usual way, then from a predicted pose, with a wide reach, and stiff with many steps, still and predicted."""
-    wide = replace(settings, reach=(0.16, settings.reach[1]), scale=(0.08, settings.scale[1]))
-    stiff = replace(wide, steps=24, stiffness=(1.0, settings.stiffness[1]), solves=60)
-    return Attempt(settings), Attempt(settings, True), Attempt(wide), Attempt(stiff), Attempt(stiff, True)
-
-
-class Tracked(NamedTuple):
+class Tracking(NamedTuple):
     """A frame of the chain.
 
     pose      : Pose
-    uncovered : share of the frame that the body does not explain
-    attempt   : which way was taken
+    uncovered : share of the frame's surface that the body does not explain, 0 to 1
+    attempt   : number of the way that was taken, 0 for the usual one
     """
 
     pose: Pose
@@ -54,47 +59,71 @@ class Tracked(NamedTuple):
     attempt: int
 
 
-def tracked(
-    template: DeformationGraph,
-    before: Pose | None,
-    last: Pose,
+def tracking(
+    graph: DeformationGraph,
+    earlier: Pose | None,
+    neighbour: Pose,
     target: Target,
-    settings: FitSettings | None = None,
     usual: float = 0.0,
-) -> Tracked:
-    """Fit a frame from its neighbour's pose; if a limb stays uncovered, try the other ways and take what covers most.
+    settings: TrackingSettings | None = None,
+) -> Tracking:
+    """Fit a frame from its neighbour's pose; if a limb stays uncovered, try other ways and take what covers most (ours).
 
-    before  : the pose of the neighbour's neighbour, from which to predict; None where there is none
-    last    : the pose of the neighbouring frame
-    usual   : the least that any frame on the way here left uncovered: holes of a capture, which no way would cover
-    returns : Tracked; the first way that leaves no more than LOST beyond the usual uncovered, or no more than LIMB of the
-              frame AWAY from the body, else the best of all
+    graph     : of the reference mesh
+    earlier   : pose of the neighbour's own neighbour, from which to predict; None where there is none
+    neighbour : pose of the neighbouring frame
+    target    : the frame
+    usual     : smallest share that any frame between the reference and this one leaves uncovered: holes of a capture
+    returns   : Tracking of the first way that leaves little uncovered, or little of the frame far from the body; where no way
+                does, of the one that covers most
     """
-    ways = attempts(settings or FitSettings())
-    best = _taken(template, last, target, ways[0].settings, 0)
+    settings = settings or TrackingSettings()
+    ways = attempts(FitSettings(), settings)
+    best = _attempted(graph, neighbour, target, ways[0].settings, 0)
     for number, way in enumerate(ways[1:], start=1):
-        if best.uncovered <= usual + LOST or strayed(template, best.pose, target) <= LIMB:
+        is_covered = best.uncovered <= usual + settings.uncovered
+        if is_covered or distant_share(graph, best.pose, target, settings.distance) <= settings.distant:
             break
-        if way.predicted and before is None:
+        if way.predicted and earlier is None:
             continue
-        start = last if before is None or not way.predicted else predicted(before, last)
-        best = min(best, _taken(template, start, target, way.settings, number), key=lambda found: found.uncovered)
+        start = neighbour if earlier is None or not way.predicted else predicted(earlier, neighbour)
+        best = min(best, _attempted(graph, start, target, way.settings, number), key=lambda attempt: attempt.uncovered)
     return best
 
 
-def strayed(template: DeformationGraph, pose: Pose, target: Target) -> float:
-    """Share of a frame further than AWAY from the body: a lost limb, where what is merely uncovered may be a fold."""
-    distance = projected(target.V[target.sample], shape(template, pose)[0], template.F).distance
-    return float((distance > AWAY * target.size).mean())
+def attempts(usual: FitSettings, settings: TrackingSettings | None = None) -> tuple[Attempt, ...]:
+    """The ways to fit a frame, in the order in which they are tried (ours).
+
+    usual   : settings of the usual way
+    returns : the usual way · from a predicted pose · with a wide reach · stiff with many steps · stiff and predicted
+    """
+    s = settings or TrackingSettings()
+    wide = replace(usual, reach=(s.reach, usual.reach[1]), scale=(s.scale, usual.scale[1]))
+    stiff = replace(wide, steps=s.steps, stiffness=(s.stiffness, usual.stiffness[1]), solves=s.solves)
+    return Attempt(usual), Attempt(usual, True), Attempt(wide), Attempt(stiff), Attempt(stiff, True)
 
 
-def predicted(before: Pose, last: Pose) -> Pose:
-    """Every node turned and shifted once more as from `before` to `last`."""
-    turn = last.rotation @ before.rotation.transpose(0, 2, 1)
-    return Pose(turn @ last.rotation, 2.0 * last.translation - before.translation)
+def distant_share(graph: DeformationGraph, pose: Pose, target: Target, distance: float | None = None) -> float:
+    """Share of a frame's samples farther from the body than a distance: a lost limb has many, a fold of cloth few (ours).
+
+    graph    : of the reference mesh
+    pose     : of the body in this frame
+    target   : the frame
+    distance : share of √area of the reference, that of `TrackingSettings` if not given
+    returns  : 0 to 1
+    """
+    limit = TrackingSettings().distance if distance is None else distance
+    to_body = projected(target.V[target.sample], shape(graph, pose)[0], graph.F).distance
+    return float((to_body > limit * target.size).mean())
 
 
-def _taken(template: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracked:
-    """One attempt and what it leaves uncovered."""
-    pose = fit(template, start, target, settings).pose
-    return Tracked(pose, uncovered(*shape(template, pose), template.F, target), number)
+def predicted(earlier: Pose, last: Pose) -> Pose:
+    """The pose after `last` if every node turns and shifts once more as from `earlier` to `last`."""
+    turn = last.rotation @ earlier.rotation.transpose(0, 2, 1)
+    return Pose(turn @ last.rotation, 2.0 * last.translation - earlier.translation)
+
+
+def _attempted(graph: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracking:
+    """The result of one way of fitting."""
+    pose = fit(graph, start, target, settings).pose
+    return Tracking(pose, uncovered(*shape(graph, pose), graph.F, target), number)

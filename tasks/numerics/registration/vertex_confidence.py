@@ -1,63 +1,82 @@
-"""How far each vertex of an aligned body is to be believed in one frame, from what the alignment can see of itself."""
+"""How reliable each vertex of an aligned body is in one frame, from the alignment and the frame alone (ours)."""
 
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.registration.correspondence import ALIKE, COVERED, Target
+from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target
 from kinetree.tasks.numerics.registration.frame_confidence import stretches
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
-RETURN = 0.04  # a way there and back that ends this far from where it began halves belief, share of the body's size
-STRETCH = float(np.log(2.0))  # edges twice or half as long as at rest halve it
-LEFT = 0.04  # this share of a frame uncovered, beyond what is usual, halves it everywhere
+class VertexConfidenceSettings(NamedTuple):
+    """At which value each factor of the confidence is a half."""
+
+    residual: float = CorrespondenceSettings().covered
+    """Distance to the frame's surface, share of √area: that at which a vertex no longer covers a sample."""
+    stretch: float = float(np.log(2.0))
+    """Logarithm of the stretch: edges twice or half as long as at rest. Chosen on: not recorded."""
+    round_trip: float = 0.04
+    """Distance at rest after mapping to the frame and back, share of √area. Chosen on: not recorded."""
+    uncovered: float = 0.04
+    """Share of a frame uncovered beyond the usual; lowers the confidence of all vertices. Chosen on: not recorded."""
 
 
 class VertexConfidence(NamedTuple):
-    """What an aligned body knows about itself in one frame.
+    """Confidence of every vertex in one frame and what it is made of.
 
-    residual  : (vertex,) distance to the frame's surface, point to triangle, mesh unit
-    stretch   : (vertex,) mean length of the edges around, against their length at rest
-    wander    : (vertex,) from each vertex to the frame and back to the body: how far from it at rest, mesh unit
-    trust     : (vertex,) 0 to 1
-    uncovered : share of the frame's vertices that the body does not explain
+    residual   : (vertex,) distance to the frame's surface, point to triangle, mesh unit
+    stretch    : (vertex,) mean length of the edges around, against their length at rest
+    round_trip : (vertex,) distance at rest between a vertex and its image after mapping to the frame and back, mesh unit
+    confidence : (vertex,) 0 to 1
+    uncovered  : share of the frame's vertices that the body does not explain, 0 to 1
     """
 
     residual: Floats
     stretch: Floats
-    wander: Floats
-    trust: Floats
+    round_trip: Floats
+    confidence: Floats
     uncovered: float
 
 
-def vertex_confidence(rest: Floats, x: Floats, n: Floats, F: Ints, target: Target, usual: float = 0.0) -> VertexConfidence:
-    """Trust of every vertex, h(residual) h(log stretch) h(wander) h(uncovered) with h(y) = 1 / (1 + (y / scale)²).
+def vertex_confidence(
+    rest: Floats,
+    x: Floats,
+    n: Floats,
+    F: Ints,
+    target: Target,
+    usual: float = 0.0,
+    settings: VertexConfidenceSettings | None = None,
+) -> VertexConfidence:
+    """Confidence of every vertex, h(residual) h(log stretch) h(round trip) h(uncovered), h(y) = 1 / (1 + (y / scale)²) (ours).
 
     rest, x : (vertex, xyz) the body at rest · in this frame, mesh unit
     n       : (vertex, xyz) its unit normals in this frame
     F       : (face, corner) of the body
     target  : the frame
-    usual   : share that no frame covers, such as holes
+    usual   : share that no frame covers, such as holes of the capture, 0 to 1
+    returns : VertexConfidence
     """
+    settings = settings or VertexConfidenceSettings()
     there = projected(x, target.V, target.F)
     back = projected(target.V, x, F)
     origin = np.einsum("pk,pkx->px", back.share, rest[F[back.face]])
-    wander = np.linalg.norm(np.einsum("vk,vkx->vx", there.share, origin[target.F[there.face]]) - rest, axis=1)
-    alike = np.einsum("pk,pkx,px->p", back.share, n[F[back.face]], target.N)
-    uncovered = 1.0 - float(((back.distance < COVERED * target.size) & (alike > ALIKE)).mean())
+    round_trip = np.linalg.norm(np.einsum("vk,vkx->vx", there.share, origin[target.F[there.face]]) - rest, axis=1)
+    cosine = np.einsum("pk,pkx,px->p", back.share, n[F[back.face]], target.N)
+    coverage = CorrespondenceSettings()
+    covered = (back.distance < coverage.covered * target.size) & (cosine > coverage.cosine)
+    uncovered = 1.0 - float(covered.mean())
     stretch = stretches(rest, x, F)
-    trust = (
-        _half(there.distance, COVERED * target.size)
-        * _half(np.log(np.maximum(stretch, np.finfo(float).tiny)), STRETCH)
-        * _half(wander, RETURN * target.size)
-        * float(_half(np.array(max(uncovered - usual, 0.0)), LEFT))
+    confidence = (
+        _half_at(there.distance, settings.residual * target.size)
+        * _half_at(np.log(np.maximum(stretch, np.finfo(float).tiny)), settings.stretch)
+        * _half_at(round_trip, settings.round_trip * target.size)
+        * float(_half_at(np.array(max(uncovered - usual, 0.0)), settings.uncovered))
     )
-    return VertexConfidence(there.distance, stretch, wander, trust, uncovered)
+    return VertexConfidence(there.distance, stretch, round_trip, confidence, uncovered)
 
 
-def _half(y: Floats, scale: float) -> Floats:
+def _half_at(y: Floats, scale: float) -> Floats:
+    """1 / (1 + (y / scale)²): 1 at 0, a half at the scale."""
     return 1.0 / (1.0 + (y / scale) ** 2)

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.registration.correspondence import COVERED, Target, walked
+from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, local_matches
 from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, surface
 
 
@@ -64,13 +64,13 @@ def searched(body: SkinnedBody, pose: FramePose, target: Target) -> Matches:
     x, n = surface(body, pose)
     s = body.sample
     tree = cKDTree(np.hstack([x[s], target.beta * n[s]]), balanced_tree=False)
-    forward = target.found(x[s], n[s])
-    forward = walked(x[s], n[s], forward, target.V, target.N, target.start, target.ring, target.beta)
+    forward = target.nearest(x[s], n[s])
+    forward = local_matches(x[s], n[s], forward, target.V, target.N, target.start, target.ring, target.beta)
     both = np.concatenate([forward, target.sample])
     back = s[tree.query(np.hstack([target.V[both], target.beta * target.N[both]]))[1]]
     mutual = body.meets[body.label[s], body.label[back[: len(forward)]]]
     V, N = target.V[target.sample], target.N[target.sample]
-    backward = walked(V, N, back[len(forward) :], x, n, body.start, body.ring, target.beta)
+    backward = local_matches(V, N, back[len(forward) :], x, n, body.start, body.ring, target.beta)
     return Matches(x, n, forward, mutual, backward)
 
 
@@ -78,9 +78,9 @@ def followed(body: SkinnedBody, pose: FramePose, target: Target, last: Matches) 
     """The matches after a small step, each followed from neighbour to neighbour; which of them count stays."""
     x, n = surface(body, pose)
     s = body.sample
-    forward = walked(x[s], n[s], last.forward, target.V, target.N, target.start, target.ring, target.beta)
+    forward = local_matches(x[s], n[s], last.forward, target.V, target.N, target.start, target.ring, target.beta)
     V, N = target.V[target.sample], target.N[target.sample]
-    backward = walked(V, N, last.backward, x, n, body.start, body.ring, target.beta)
+    backward = local_matches(V, N, last.backward, x, n, body.start, body.ring, target.beta)
     return Matches(x, n, forward, last.mutual, backward)
 
 
@@ -120,13 +120,13 @@ def equations(
 def uncovered(body: SkinnedBody, target: Target, found: Matches, settings: SurfaceMatchesSettings | None = None) -> Floats:
     """How far each sample of a frame is from being a point of the body.
 
-    returns : (frame sample,) 0 to 1, 1 from `COVERED` on, and where the body faces another way
+    returns : (frame sample,) 0 to 1, 1 from `CorrespondenceSettings.covered` on, and where the body faces another way
     """
     chosen = settings or SurfaceMatchesSettings()
     s = target.sample
     d = target.V[s] - found.x[found.backward]
     across = np.einsum("sx,sx->s", d, found.n[found.backward])
-    away = (across**2 + chosen.along_covered * (d**2).sum(axis=1)) / (COVERED * target.size) ** 2
+    away = (across**2 + chosen.along_covered * (d**2).sum(axis=1)) / (CorrespondenceSettings().covered * target.size) ** 2
     alike = np.einsum("sx,sx->s", found.n[found.backward], target.N[s]) > chosen.least_cosine
     return np.where(alike, np.minimum(away, 1.0), 1.0)
 
@@ -137,7 +137,7 @@ def visible_share(body: SkinnedBody, target: Target, found: Matches, settings: S
     b = body.sample
     d = target.V[found.forward] - found.x[b]
     across = np.einsum("sx,sx->s", d, target.N[found.forward])
-    away = (across**2 + chosen.along_covered * (d**2).sum(axis=1)) / (COVERED * target.size) ** 2
+    away = (across**2 + chosen.along_covered * (d**2).sum(axis=1)) / (CorrespondenceSettings().covered * target.size) ** 2
     alike = np.einsum("sx,sx->s", found.n[b], target.N[found.forward]) > chosen.least_cosine
     count = len(body.parents)
     seen = np.bincount(body.label[b], body.mass * (found.mutual & alike) / (1.0 + away**2), count)

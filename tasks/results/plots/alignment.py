@@ -47,7 +47,7 @@ def alignment(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         lw=1,
         label="surface of the frame that is uncovered",
     )
-    unreliable = [100 * (1 - float(np.mean(a.trust))) for a in alignments.values()]
+    unreliable = [100 * (1 - float(np.mean(a.confidence))) for a in alignments.values()]
     below.plot(t, unreliable, "--", color="black", lw=1, label="body that is unreliable")
     below.set(xlabel="frame", ylabel="%", ylim=(0, None))
     below.legend(fontsize=7, ncols=2)

@@ -7,7 +7,12 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.registration.correspondence import Target, covered, uncovered, walked
+from kinetree.tasks.numerics.registration.correspondence import (
+    Target,
+    covered_samples,
+    local_matches,
+    uncovered,
+)
 
 
 @pytest.fixture(scope="module")
@@ -19,8 +24,8 @@ def test_a_walk_over_a_convex_body_ends_where_a_search_of_all_vertices_does(fram
     x, _ = tube(around=19, along=37, start=0.1)
     n = smoothed_normals(*tube(around=19, along=37, start=0.1))
     tree = cKDTree(np.hstack([frame.V, frame.beta * frame.N]))
-    near = frame.found(x, n)
-    ended = walked(x, n, near, frame.V, frame.N, frame.start, frame.ring, frame.beta)
+    near = frame.nearest(x, n)
+    ended = local_matches(x, n, near, frame.V, frame.N, frame.start, frame.ring, frame.beta)
     distance, best = tree.query(np.hstack([x, frame.beta * n]))
     mine = np.linalg.norm(np.hstack([x - frame.V[ended], frame.beta * (n - frame.N[ended])]), axis=1)
     assert (ended == best).mean() > 0.95
@@ -36,7 +41,7 @@ def test_no_walk_ends_further_away_than_it_began(frame):
     def distance(m):
         return ((x - frame.V[m]) ** 2).sum(1) + frame.beta**2 * ((n - frame.N[m]) ** 2).sum(1)
 
-    ended = walked(x, n, match, frame.V, frame.N, frame.start, frame.ring, frame.beta)
+    ended = local_matches(x, n, match, frame.V, frame.N, frame.start, frame.ring, frame.beta)
     assert (distance(ended) <= distance(match) + 1e-12).all()
 
 
@@ -45,7 +50,7 @@ def test_the_direction_tells_the_two_sides_of_a_sheet_apart():
     thin = Target.of(V, F, size=7.0, samples=len(V))
     top = np.flatnonzero((np.abs(V[:, 2]) < 3) & (thin.N[:, 1] > 0.9))
     shifted = V[top] - [0.0, 0.1, 0.0]
-    assert (thin.N[thin.found(shifted, thin.N[top]), 1] > 0).all()
+    assert (thin.N[thin.nearest(shifted, thin.N[top]), 1] > 0).all()
 
 
 def test_neighbours_are_mutual_and_six_on_a_regular_part():
@@ -62,7 +67,7 @@ def test_a_body_covers_itself_and_a_missing_half_is_uncovered(frame):
     assert uncovered(V, N, F, frame) == 0.0
     half = F[(V[F, 2] < 0).all(axis=1)]
     assert uncovered(V, N, half, frame) == pytest.approx(0.5, abs=0.03)
-    seen = covered(V, N, half, frame)
+    seen = covered_samples(V, N, half, frame)
     assert (frame.V[frame.sample][seen, 2] < 0.3).all()
 
 

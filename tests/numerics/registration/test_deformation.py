@@ -10,8 +10,8 @@ from kinetree.tasks.numerics.registration.block_system import add_data, conjugat
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy, strains
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
-from kinetree.tasks.numerics.registration.ties import add_ties, strains, tie_energy
 
 FEW = DeformationGraphSettings(nodes=80)
 
@@ -152,7 +152,7 @@ def _system(body, pose, vertex, point, normal):
     plane, near = np.full(len(vertex), 0.7), np.full(len(vertex), 0.2)
     graph = (body.V, body.bound, body.weight, body.of_vertex)
     add_data(D, B, b, *graph, pose.rotation, body.g, vertex, x - point, normal, plane, near)
-    add_ties(D, B, b, body.edge, body.of_edge, np.full(len(body.edge), 0.3), *pose, body.g)
+    add_edges(D, B, b, body.edge, body.of_edge, np.full(len(body.edge), 0.3), *pose, body.g)
     A = np.zeros((nodes, 6, nodes, 6))
     A[np.arange(nodes), :, np.arange(nodes), :] = D
     for block, (j, k) in zip(B, body.pair, strict=True):
@@ -162,8 +162,8 @@ def _system(body, pose, vertex, point, normal):
 
 def _energy(body, pose, vertex, point, normal):
     r = deformed(body.V, body.bound, body.weight, body.g, *pose)[vertex] - point
-    ties = tie_energy(body.edge, np.full(len(body.edge), 0.3), *pose, body.g)
-    return 0.7 * (np.einsum("rx,rx->r", r, normal) ** 2).sum() + 0.2 * (r**2).sum() + ties
+    edges = edge_energy(body.edge, np.full(len(body.edge), 0.3), *pose, body.g)
+    return 0.7 * (np.einsum("rx,rx->r", r, normal) ** 2).sum() + 0.2 * (r**2).sum() + edges
 
 
 def test_blocks_are_the_normal_equations_of_the_energy_and_cg_solves_them():

@@ -8,8 +8,9 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.recovery import failures, recovery
-from kinetree.tasks.numerics.registration.tracking import LOST, tracked
+from kinetree.tasks.numerics.registration.tracking import TrackingSettings, tracking
 
+SETTINGS = TrackingSettings()
 ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
 
 
@@ -28,20 +29,20 @@ def test_failures_stand_out_from_the_sequence():
     share = np.array([0.001, 0.002, 0.001, 0.03, 0.002, 0.001])
     np.testing.assert_array_equal(failures(share), share > 0.02)
     assert not failures(np.full(9, 0.02)).any()
-    assert not failures(np.array([0.0, 0.0, LOST / 2])).any()
+    assert not failures(np.array([0.0, 0.0, SETTINGS.uncovered / 2])).any()
 
 
 def test_a_lost_frame_is_found_again_from_the_frame_beyond_it(body, targets):
     good, last = [], at_rest(body)
     for target in targets:
-        good.append(tracked(body, None, last, target))
+        good.append(tracking(body, None, last, target))
         last = good[-1].pose
     lost = Pose(np.tile(rotation((1, 0, 0), np.pi / 2), (len(body.node), 1, 1)), body.g @ rotation((1, 0, 0), np.pi / 2).T)
     poses = [*(frame.pose for frame in good[:3]), lost, good[4].pose]
     share = np.array([*(frame.uncovered for frame in good[:3]), 0.3, good[4].uncovered])
     found = recovery(body, share, poses.__getitem__, targets.__getitem__, 0)
     assert list(found.recovered) == [3]
-    assert found.recovered[3].uncovered <= LOST
+    assert found.recovered[3].uncovered <= SETTINGS.uncovered
     true = bent(body.V, ANGLES[3])
     assert np.linalg.norm(shape(body, found.recovered[3].pose)[0] - true, axis=1).mean() < 0.01 * LENGTH
 

@@ -1,4 +1,4 @@
-"""Laws of pieces that move as one, on a tube with one joint and on matrices whose gain is known."""
+"""Laws of nodes that move as one, on a tube with one joint and on matrices whose gain is known."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from limbs import LENGTH, rotation, tube
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
+from kinetree.tasks.numerics.registration.rigid_clusters import RigidClustersSettings, rigid_clusters
 
 ANGLES = (0.3, 0.6, 0.9)
 
@@ -24,20 +24,20 @@ def folded(body, angle):
     return Pose(R, np.einsum("jxy,jy->jx", R, body.g))
 
 
-def test_two_bones_are_two_pieces(body):
+def test_two_bones_are_two_clusters(body):
     label = rigid_clusters(body, [folded(body, angle) for angle in ANGLES])
     upper = body.g[:, 2] > 0
     assert len(np.unique(label)) == 2
     assert len(np.unique(label[upper])) == len(np.unique(label[~upper])) == 1
 
 
-def test_a_body_that_never_bends_is_one_piece(body):
+def test_a_body_that_never_bends_is_one_cluster(body):
     R = rotation((1, 2, 3), 1.0)
     turned = Pose(np.tile(R, (len(body.g), 1, 1)), body.g @ R.T + LENGTH)
     assert rigid_clusters(body, [at_rest(body), turned]).max() == 0
 
 
-def test_a_twist_about_its_own_axis_parts_a_tube_too(body):
+def test_roll_about_its_own_axis_parts_a_tube_too(body):
     upper = body.g[:, 2] > 0
     R = np.tile(np.eye(3), (len(body.g), 1, 1))
     R[upper] = rotation((0, 0, 1), 1.2)
@@ -46,7 +46,7 @@ def test_a_twist_about_its_own_axis_parts_a_tube_too(body):
 
 
 def test_no_cost_allowed_leaves_every_node_of_a_bending_tube_to_itself(body):
-    assert len(np.unique(rigid_clusters(body, [folded(body, 0.5)], limit=-1.0))) == len(body.g)
+    assert len(np.unique(rigid_clusters(body, [folded(body, 0.5)], RigidClustersSettings(cost=-1.0)))) == len(body.g)
 
 
 def test_the_order_of_frames_and_the_scale_change_nothing(body):

@@ -1,8 +1,8 @@
-"""Laws of the way a limb takes through its turns: evidence of many frames moves it, noise does not."""
+"""Laws of the path of a limb through its candidates: evidence of many frames moves it, noise does not."""
 
 import numpy as np
 
-from kinetree.tasks.numerics.registration.roll import choices
+from kinetree.tasks.numerics.registration.roll import chosen_rolls
 
 FRAMES, TURNS, REFERENCE = 20, 12, 4
 
@@ -17,13 +17,13 @@ def told(true, depth, noise=0.0, seed=0):
 
 
 def grown():
-    """A twist that is none at the reference and grows to a third of a turn."""
+    """Roll that is zero at the reference and grows to a third of a turn."""
     return np.clip((np.arange(FRAMES) - REFERENCE) * np.radians(15.0), 0.0, np.radians(120.0))
 
 
-def test_a_twist_that_grows_is_followed():
+def test_roll_that_grows_is_followed():
     angle, misfit = told(grown(), 0.1, noise=0.02)
-    turn = choices(angle, misfit, REFERENCE)[:, 0]
+    turn = chosen_rolls(angle, misfit, REFERENCE)[:, 0]
     found = np.where(turn >= 0, angle[np.arange(FRAMES), 0, turn], 0.0)
     assert np.degrees(np.abs(found - grown())).max() < 31.0
     assert (turn[: REFERENCE + 1] == -1).all()
@@ -32,31 +32,31 @@ def test_a_twist_that_grows_is_followed():
 def test_noise_moves_no_limb():
     for seed in range(20):
         angle, misfit = told(np.zeros(FRAMES), 0.0, noise=0.06, seed=seed)
-        assert (choices(angle, misfit, REFERENCE) == -1).all()
+        assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_two_turns_that_fit_alike_leave_the_limb_where_it_is():
     angle, misfit = told(grown(), 0.1)
     opposite = told(grown() + np.pi, 0.1)[1]
-    assert (choices(angle, misfit, REFERENCE) >= 0).any()
-    assert (choices(angle, np.minimum(misfit, opposite), REFERENCE) == -1).all()
+    assert (chosen_rolls(angle, misfit, REFERENCE) >= 0).any()
+    assert (chosen_rolls(angle, np.minimum(misfit, opposite), REFERENCE) == -1).all()
 
 
 def test_one_frame_alone_moves_no_limb():
     true = np.zeros(FRAMES)
     true[10] = np.radians(120.0)
     angle, misfit = told(true, 0.2)
-    assert (choices(angle, misfit, REFERENCE) == -1).all()
+    assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_a_limb_that_fits_where_it_is_stays():
     angle, misfit = told(np.zeros(FRAMES), 0.2, noise=0.05)
-    assert (choices(angle, misfit, REFERENCE) == -1).all()
+    assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_the_reference_is_never_turned_whatever_it_says():
     angle, misfit = told(np.full(FRAMES, np.radians(90.0)), 0.2)
-    turn = choices(angle, misfit, REFERENCE)[:, 0]
+    turn = chosen_rolls(angle, misfit, REFERENCE)[:, 0]
     assert turn[REFERENCE] == -1
     assert (turn[REFERENCE + 4 :] == 3).all()
 
@@ -64,13 +64,13 @@ def test_the_reference_is_never_turned_whatever_it_says():
 def test_time_may_run_either_way_and_limbs_do_not_know_each_other():
     angle, misfit = told(grown(), 0.1, noise=0.02)
     still = told(np.zeros(FRAMES), 0.1)
-    both = choices(np.concatenate([angle, still[0]], axis=1), np.concatenate([misfit, still[1]], axis=1), REFERENCE)
-    np.testing.assert_array_equal(both[:, :1], choices(angle, misfit, REFERENCE))
+    both = chosen_rolls(np.concatenate([angle, still[0]], axis=1), np.concatenate([misfit, still[1]], axis=1), REFERENCE)
+    np.testing.assert_array_equal(both[:, :1], chosen_rolls(angle, misfit, REFERENCE))
     assert (both[:, 1] == -1).all()
-    back = choices(angle[::-1], misfit[::-1], FRAMES - 1 - REFERENCE)
+    back = chosen_rolls(angle[::-1], misfit[::-1], FRAMES - 1 - REFERENCE)
     np.testing.assert_array_equal(back[::-1], both[:, :1])
 
 
 def test_a_body_without_limbs_and_one_frame_alone_are_served():
-    assert choices(np.zeros((FRAMES, 0, TURNS)), np.zeros((FRAMES, 0, TURNS)), REFERENCE).shape == (FRAMES, 0)
-    assert (choices(np.zeros((1, 2, TURNS)), np.ones((1, 2, TURNS)), 0) == -1).all()
+    assert chosen_rolls(np.zeros((FRAMES, 0, TURNS)), np.zeros((FRAMES, 0, TURNS)), REFERENCE).shape == (FRAMES, 0)
+    assert (chosen_rolls(np.zeros((1, 2, TURNS)), np.ones((1, 2, TURNS)), 0) == -1).all()

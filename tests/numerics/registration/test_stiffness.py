@@ -7,8 +7,15 @@ from limbs import bent, rotation, tube
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.stiffness import FREED, LOOSE, PASSES, YIELD, freed, learned, loosened
+from kinetree.tasks.numerics.registration.stiffness import (
+    PASSES,
+    StiffnessSettings,
+    learned_stiffness,
+    loose_between_clusters,
+    loose_limb_ends,
+)
 
+SETTINGS = StiffnessSettings()
 ANGLES = (0.2, 0.4, 0.6)
 
 
@@ -29,12 +36,12 @@ def sequence(body):
 
 
 def middle(body):
-    """(edge,) how far from the joint the middle of each tie lies, along the tube."""
+    """(edge,) how far from the joint the middle of each edge lies, along the tube."""
     return np.abs(body.g[body.edge, 2].mean(axis=1))
 
 
 def test_stiffness_is_low_at_the_bend_and_high_elsewhere(body, sequence):
-    s = learned(body, sequence[1])
+    s = learned_stiffness(body, sequence[1])
     bend, bone = s[middle(body) < 0.7], s[middle(body) > 2.0]
     assert bend.mean() < 0.5 * bone.mean()
     assert np.median(bend) < np.quantile(bone, 0.1)
@@ -42,27 +49,27 @@ def test_stiffness_is_low_at_the_bend_and_high_elsewhere(body, sequence):
 
 def test_a_body_that_only_moves_as_a_whole_is_stiff_everywhere(body):
     poses = [Pose(np.tile(R, (len(body.node), 1, 1)), body.g @ R.T + 1.0) for R in (rotation((1, 1, 0), a) for a in ANGLES)]
-    np.testing.assert_allclose(learned(body, poses), 1.0, atol=1e-12)
+    np.testing.assert_allclose(learned_stiffness(body, poses), 1.0, atol=1e-12)
 
 
-def test_a_tie_that_bends_as_much_as_the_yield_counts_half(body):
+def test_an_edge_that_bends_by_the_bound_counts_half(body):
     pose = at_rest(body)
-    stretched = Pose(pose.rotation, pose.translation * (1 + YIELD))
-    np.testing.assert_allclose(learned(body, [stretched]), 0.5, atol=1e-12)
+    stretched = Pose(pose.rotation, pose.translation * (1 + SETTINGS.bending))
+    np.testing.assert_allclose(learned_stiffness(body, [stretched]), 0.5, atol=1e-12)
 
 
 def test_the_order_of_frames_does_not_matter_to_the_last_bit(body, sequence):
     poses = sequence[1]
-    np.testing.assert_array_equal(learned(body, poses[::-1]), learned(body, poses))
+    np.testing.assert_array_equal(learned_stiffness(body, poses[::-1]), learned_stiffness(body, poses))
 
 
 def test_a_frame_at_rest_makes_nothing_softer(body, sequence):
-    assert (learned(body, [*sequence[1], at_rest(body)]) >= learned(body, sequence[1])).all()
+    assert (learned_stiffness(body, [*sequence[1], at_rest(body)]) >= learned_stiffness(body, sequence[1])).all()
 
 
 def test_a_refit_with_learned_stiffness_is_no_worse_and_keeps_the_turning(body, sequence):
     targets, poses = sequence
-    s = learned(body, poses)
+    s = learned_stiffness(body, poses)
     for angle, target, pose in zip(ANGLES, targets, poses, strict=True):
         again = fit(body, pose, target, PASSES[-1].fit, s).pose
         true = bent(body.V, angle)
@@ -77,17 +84,17 @@ def test_a_limb_that_turned_is_rigid_and_loose_at_its_ends(body):
     s = np.full(len(body.edge), 0.5)
     limb = np.where(body.g[:, 2] > 0, 3, -1)
     ends = limb[body.edge]
-    found = freed(body, s, limb)
+    found = loose_limb_ends(body, s, limb)
     assert (found[(ends == 3).all(axis=1)] == 1.0).all()
     assert (found[(ends == -1).all(axis=1)] == 0.5).all()
-    assert (found[ends[:, 0] != ends[:, 1]] == FREED * 0.5).all()
-    np.testing.assert_array_equal(freed(body, s, np.full(len(limb), -1)), s)
+    assert (found[ends[:, 0] != ends[:, 1]] == SETTINGS.limb_ends * 0.5).all()
+    np.testing.assert_array_equal(loose_limb_ends(body, s, np.full(len(limb), -1)), s)
 
 
-def test_ties_between_two_pieces_are_loosened_and_no_others(body):
+def test_edges_between_two_clusters_are_loosened_and_no_others(body):
     s = np.full(len(body.edge), 0.5)
-    piece = (body.g[:, 2] > 0).astype(np.int64)
-    apart = piece[body.edge[:, 0]] != piece[body.edge[:, 1]]
-    found = loosened(body, s, piece)
-    assert (found[apart] == LOOSE * 0.5).all()
+    cluster = (body.g[:, 2] > 0).astype(np.int64)
+    apart = cluster[body.edge[:, 0]] != cluster[body.edge[:, 1]]
+    found = loose_between_clusters(body, s, cluster)
+    assert (found[apart] == SETTINGS.between_clusters * 0.5).all()
     assert (found[~apart] == 0.5).all()

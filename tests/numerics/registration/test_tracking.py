@@ -4,18 +4,19 @@ import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
 
-from kinetree.tasks.numerics.registration import tracking as repair
+from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.tracking import (
-    LOST,
+    TrackingSettings,
     attempts,
+    distant_share,
     predicted,
-    strayed,
-    tracked,
+    tracking,
 )
 
+SETTINGS = TrackingSettings()
 ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
 
 
@@ -35,8 +36,8 @@ def rigid(body, R, t):
 
 
 def test_a_frame_that_is_followed_is_covered_at_the_first_attempt(body, targets):
-    found = tracked(body, None, at_rest(body), targets[1])
-    assert (found.attempt, found.uncovered) == (0, pytest.approx(0.0, abs=LOST))
+    found = tracking(body, None, at_rest(body), targets[1])
+    assert (found.attempt, found.uncovered) == (0, pytest.approx(0.0, abs=SETTINGS.uncovered))
 
 
 def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
@@ -44,8 +45,8 @@ def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
     step = 0.9
     before, last = (rigid(body, rotation((1, 0, 0), k * step), np.zeros(3)) for k in (1, 2))
     target = Target.of(V @ rotation((1, 0, 0), 3 * step).T, F, body.size)
-    alone, led = (tracked(body, b, last, target) for b in (None, before))
-    assert led.uncovered <= min(LOST, alone.uncovered)
+    alone, led = (tracking(body, b, last, target) for b in (None, before))
+    assert led.uncovered <= min(SETTINGS.uncovered, alone.uncovered)
     x = shape(body, led.pose)[0]
     assert np.linalg.norm(x - body.V @ rotation((1, 0, 0), 3 * step).T, axis=1).mean() < 0.01 * LENGTH
 
@@ -53,14 +54,14 @@ def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
 def test_a_missing_half_is_reported_as_uncovered(body):
     V, F = tube(around=29, along=57)
     longer = V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH]
-    found = tracked(body, None, at_rest(body), Target.of(longer, F, body.size))
+    found = tracking(body, None, at_rest(body), Target.of(longer, F, body.size))
     assert found.uncovered > 0.1
 
 
 def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
     V, F = tube(around=29, along=57)
     longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
-    assert tracked(body, None, at_rest(body), longer, usual=1.0).attempt == 0
+    assert tracking(body, None, at_rest(body), longer, usual=1.0).attempt == 0
 
 
 def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, monkeypatch):
@@ -68,18 +69,18 @@ def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, 
     inner = F[V[F, 2].max(axis=1) < V[:, 2].min() + 0.3 * LENGTH][:, ::-1]
     folded = Target.of(np.concatenate([V, 0.97 * V]), np.concatenate([F, inner + len(V)]), body.size)
     fits = []
-    monkeypatch.setattr(repair, "fit", lambda *a: fits.append(a) or fit(*a))
-    found = tracked(body, None, at_rest(body), folded)
-    assert found.uncovered > 2 * LOST
-    assert strayed(body, found.pose, folded) == 0
+    monkeypatch.setattr(module, "fit", lambda *a: fits.append(a) or fit(*a))
+    found = tracking(body, None, at_rest(body), folded)
+    assert found.uncovered > 2 * SETTINGS.uncovered
+    assert distant_share(body, found.pose, folded) == 0
     assert len(fits) == 1
 
 
-def test_what_strays_is_the_share_of_a_frame_far_from_the_body(body):
+def test_the_distant_share_is_the_share_of_a_frame_far_from_the_body(body):
     V, F = tube(around=29, along=57)
     there = Target.of(V, F, body.size)
-    assert strayed(body, at_rest(body), there) == 0
-    assert strayed(body, rigid(body, np.eye(3), np.array([10 * LENGTH, 0, 0])), there) == 1
+    assert distant_share(body, at_rest(body), there) == 0
+    assert distant_share(body, rigid(body, np.eye(3), np.array([10 * LENGTH, 0, 0])), there) == 1
 
 
 def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):

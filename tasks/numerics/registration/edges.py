@@ -1,23 +1,20 @@
-"""What holds the nodes of a deformation graph together: every tie should look the same from both its ends.
+"""Energy of the edges of a deformation graph: every edge should have the same shape seen from both its ends.
 
 |R_j (g_k − g_j) + p_j − p_k|² is how far node k is from where node j would carry it (Sumner 2007, Eq. 7; as rigid as
 possible, Sorkine and Alexa 2007, on the graph).
 """
 
 import numpy as np
-import numpy.typing as npt
 
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @compiled
-def add_ties(
+def add_edges(
     D: Floats, B: Floats, b: Floats, edge: Ints, of_edge: Ints, stiffness: Floats, R: Floats, p: Floats, g: Floats
 ) -> None:
-    """Add s |R_j (g_k − g_j) + p_j − p_k|² for both ends j of every tie.
+    """Add s |R_j (g_k − g_j) + p_j − p_k|² for both ends j of every edge.
 
     D, B, b   : (node, 6, 6), (block, 6, 6), (node, 6) changed in place
     edge      : (edge, 2) · of_edge : (edge,) the block of each · stiffness : (edge,) λ s
@@ -28,7 +25,7 @@ def add_ties(
         s, block = stiffness[e], B[of_edge[e]]
         for end in range(2):
             j, k = edge[e, end], edge[e, 1 - end]
-            _tie(j, k, R, p, g, q, r)
+            _edge(j, k, R, p, g, q, r)
             T[0, 1], T[0, 2], T[1, 2] = -s * q[2], s * q[1], -s * q[0]
             T[1, 0], T[2, 0], T[2, 1] = s * q[2], -s * q[1], s * q[0]
             square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
@@ -52,31 +49,31 @@ def add_ties(
 
 
 @compiled
-def tie_energy(edge: Ints, stiffness: Floats, R: Floats, p: Floats, g: Floats) -> float:
-    """Σ s |R_j (g_k − g_j) + p_j − p_k|² over both ends of every tie, mesh unit²."""
+def edge_energy(edge: Ints, stiffness: Floats, R: Floats, p: Floats, g: Floats) -> float:
+    """Σ s |R_j (g_k − g_j) + p_j − p_k|² over both ends of every edge, mesh unit²."""
     total = 0.0
     q, r = np.empty(3), np.empty(3)
     for e in range(len(edge)):
         for end in range(2):
-            _tie(edge[e, end], edge[e, 1 - end], R, p, g, q, r)
+            _edge(edge[e, end], edge[e, 1 - end], R, p, g, q, r)
             total += stiffness[e] * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
     return total
 
 
 @compiled
 def strains(edge: Ints, R: Floats, p: Floats, g: Floats) -> Floats:
-    """How far each tie is from being rigid, the mean over its ends of |R_j (g_k − g_j) + p_j − p_k|² / |g_k − g_j|².
+    """How far each edge is from being rigid, the mean over its ends of |R_j (g_k − g_j) + p_j − p_k|² / |g_k − g_j|².
 
     edge    : (edge, 2)
     R, p, g : (node, 3, 3) · (node, xyz) · (node, xyz) at rest
-    returns : (edge,) without unit; 0 for a tie without length
+    returns : (edge,) without unit; 0 for an edge without length
     """
     out = np.zeros(len(edge))
     q, r = np.empty(3), np.empty(3)
     for e in range(len(edge)):
         length = 0.0
         for end in range(2):
-            _tie(edge[e, end], edge[e, 1 - end], R, p, g, q, r)
+            _edge(edge[e, end], edge[e, 1 - end], R, p, g, q, r)
             out[e] += 0.5 * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
             length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
         out[e] = out[e] / length if length > 0.0 else 0.0
@@ -84,8 +81,8 @@ def strains(edge: Ints, R: Floats, p: Floats, g: Floats) -> Floats:
 
 
 @compiled
-def _tie(j: int, k: int, R: Floats, p: Floats, g: Floats, q: Floats, r: Floats) -> None:
-    """Into q the tie turned with j, into r what is missing to k."""
+def _edge(j: int, k: int, R: Floats, p: Floats, g: Floats, q: Floats, r: Floats) -> None:
+    """Writes into q the edge turned with j, into r the vector from node k to where node j would carry it."""
     for x in range(3):
         q[x] = 0.0
         for y in range(3):
