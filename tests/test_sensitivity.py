@@ -148,15 +148,8 @@ def test_rows_are_sorted_by_effect_and_say_what_was_not_varied(bench: ModuleType
         row("lost", default, default._replace(joints=still[:, :0], found=0)),
         row("broken", default, default._replace(why="it broke")),
     ]
-    assert [group[0].setting.field for group in bench.by_setting(rows)] == [
-        "broken",
-        "lost",
-        "judged",
-        "moved",
-        "idle",
-        "half",
-        "fixed",
-    ]
+    order = [group[0].setting.field for group in bench.by_setting(rows)]
+    assert order == ["broken", "judged", "lost", "moved", "idle", "half", "fixed"]
     text = bench.markdown(rows, ["structure/m.C.late on none"])
     assert "moved no joint at all (1):\n\n- structure/m.C.idle\n" in text
     assert "not both, moved no joint at all (1):\n\n- structure/m.C.half\n" in text
