@@ -17,8 +17,9 @@ as a whole; zero and infinity have no half. Shares, confidences and cosines are 
 always gives, or that was fixed when its module was imported, is reported as not varied, since its default is never asked.
 
 Columns: found of scored joints / mean error of those found in % of the height / spurious joints, at half the default, at the
-default and at twice the default, summed (error: averaged) over the bodies; joints that appeared or vanished, and the largest
-movement of a joint in any frame, in % of the height, both against the run with defaults, the larger of half and double.
+default and at twice the default, summed (error: averaged) over the bodies; joints that appeared or vanished or, if more, by how
+many the found and the spurious ones changed; and the largest movement of a joint in any frame, in % of the height, both against
+the run with defaults, the larger of half and double.
 Sorted by the last two. Joints of two runs are paired by least total distance.
 """
 
@@ -300,7 +301,7 @@ class Effect(NamedTuple):
     """What halving and doubling a setting did, over all bodies that were measured.
 
     failed   : runs that failed
-    changed  : joints that appeared or vanished, the most of any run
+    changed  : joints that appeared or vanished, or the change of found ones and of spurious ones, the most of any run
     movement : largest movement of a joint, % of the height
     runs     : runs that were compared with the default
     """
@@ -315,9 +316,10 @@ def effect(rows: Sequence[Row]) -> Effect:
     """The effect of one setting from its rows."""
     sides = [(row.default, side) for row in rows for side in (row.half, row.double) if isinstance(side, Outcome)]
     moved = [movement(default, side) for default, side in sides if not side.why]
+    judged = [abs(a.found - b.found) + abs(a.spurious - b.spurious) for a, b in sides if not b.why]
     return Effect(
         failed=sum(bool(side.why) for _, side in sides),
-        changed=max((changed for changed, _ in moved), default=0),
+        changed=max((*judged, *(changed for changed, _ in moved)), default=0),
         movement=max((distance for _, distance in moved), default=0.0),
         runs=len(sides),
     )

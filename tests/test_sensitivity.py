@@ -143,11 +143,13 @@ def test_rows_are_sorted_by_effect_and_say_what_was_not_varied(bench: ModuleType
         row("idle", default, default),
         row("half", default, "twice that is no share"),
         row("fixed", "because", "because"),
+        row("judged", default, default._replace(spurious=1, joints=still + 0.05)),
         row("moved", default, default._replace(joints=still + 0.1)),
         row("lost", default, default._replace(joints=still[:, :0], found=0)),
         row("broken", default, default._replace(why="it broke")),
     ]
-    assert [group[0].setting.field for group in bench.by_setting(rows)] == ["broken", "lost", "moved", "idle", "half", "fixed"]
+    order = [group[0].setting.field for group in bench.by_setting(rows)]
+    assert order == ["broken", "judged", "lost", "moved", "idle", "half", "fixed"]
     text = bench.markdown(rows, ["structure/m.C.late on none"])
     assert "moved no joint at all (1):\n\n- structure/m.C.idle\n" in text
     assert "not both, moved no joint at all (1):\n\n- structure/m.C.half\n" in text
