@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from kinetree.pipeline import execute, schedule
-from kinetree.tasks.numerics.registration import frame_confidence, stiffness, tracking
 from kinetree.tasks.numerics.registration.deformation import FitSettings
+from kinetree.tasks.numerics.structure import rotation_centres
 from kinetree.tasks.numerics.structure.part_tree import PartTreeSettings
 from kinetree.tasks.numerics.topology.extrema import ExtremaSettings
 
@@ -160,14 +160,9 @@ def test_rows_are_sorted_by_effect_and_say_what_was_not_varied(bench: ModuleType
 
 def test_constants_that_are_fixed_when_compiled_or_imported_are_told_apart(bench: ModuleType) -> None:
     every = {setting.name: setting for setting in bench.constants()}
-    assert bench.fixed_uses(every["registration/roll_candidates._ALIKE"]) == ["roll_candidates._normal_equations"]
-    assert bench.fixed_uses(every["registration/correspondence.BETA"]) == ["deformation.FitSettings"]
-    loose = every["registration/stiffness.LOOSE"]
-    assert bench.fixed_uses(loose) == []
-    with bench.varied(loose, 0.3):
-        assert stiffness.LOOSE == 0.3
-    assert loose.default == stiffness.LOOSE
-    shared = every["registration/tracking.LOST"]
-    with bench.varied(shared, 0.3):
-        assert (tracking.LOST, frame_confidence.LOST) == (0.3, 0.3)
-    assert (shared.default, shared.default) == (tracking.LOST, frame_confidence.LOST)
+    assert bench.fixed_uses(every["registration/correspondence._STEPS"]) == ["correspondence.local_matches"]
+    slender = every["structure/rotation_centres.SLENDER"]
+    assert bench.fixed_uses(slender) == []
+    with bench.varied(slender, 0.3):
+        assert rotation_centres.SLENDER == 0.3
+    assert slender.default == rotation_centres.SLENDER
