@@ -54,7 +54,7 @@ def _axis(up: str | None, fetch: "Fetch") -> int:
 
     if up is None:
         try:
-            return int(fetch("upright").axis)
+            return int(fetch("up_direction").axis)
         except KinetreeError:  # a run that did not come so far
             return 1
     try:

@@ -9,7 +9,8 @@ from results.rigged_bodies import spider
 from results.sample_derivation import parts_of, tree_of
 from results.sample_report import artifacts, judged, unjudged
 
-from kinetree.errors import ConfigError
+from kinetree.errors import ConfigError, UnknownNodeError
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.commands import plot
 from kinetree.tasks.results.plots import PLOTS, PLOTS_OF_METHOD, draw
 from kinetree.tasks.results.plots.drawing import view
@@ -83,3 +84,17 @@ def test_turning_of_a_hinge_is_the_angle_it_was_turned_by() -> None:
     rotation = np.array(body.rotation)
     rotation[:, arm] = rotation[:, 0] @ np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
     np.testing.assert_allclose(joint_angles(spider(rotation=rotation))[:, arm], np.degrees(angle), atol=1e-5)
+
+
+def test_pictures_stand_as_the_run_says_and_else_along_y() -> None:
+    def fetch(name: str) -> UpDirection:
+        if name != "up_direction":
+            raise UnknownNodeError(name)
+        return UpDirection(up="-z", confidence=0.9)
+
+    def nothing(name: str) -> UpDirection:
+        raise UnknownNodeError(name)
+
+    assert plot._axis(None, fetch) == ~2
+    assert plot._axis("x", fetch) == 0
+    assert plot._axis(None, nothing) == 1
