@@ -26,7 +26,7 @@ from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.page.chapters import sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.scene import Limits, scene
-from kinetree.tasks.results.page.warnings import LIMITS, counted, skin_distance, warnings
+from kinetree.tasks.results.page.warnings import WarningLimits, counted, skin_distance, warnings
 from kinetree.tasks.results.plots.alignment import alignment as alignment_figure
 from kinetree.tasks.results.plots.alignment import reference_frame
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
@@ -130,7 +130,7 @@ def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> st
     """The intervals in which the mean confidence of a joint is not low."""
     spans = zip(intervals.begin, intervals.end, strict=True)
     means = [float(skeleton.confidence[int(a) : int(b) + 1, j].mean()) for a, b in spans]
-    confident = [str(number) for number, mean in enumerate(means) if mean >= LIMITS.confidence]
+    confident = [str(number) for number, mean in enumerate(means) if mean >= WarningLimits().confidence]
     return "all" if len(confident) == len(means) else ", ".join(confident) or "none"
 
 

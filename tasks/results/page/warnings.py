@@ -34,9 +34,6 @@ class WarningLimits(NamedTuple):
     """Most joints or frames that one sentence names."""
 
 
-LIMITS = WarningLimits()
-
-
 def warnings(
     skeleton: Skeleton,
     intervals: Intervals,
@@ -59,7 +56,7 @@ def skin_distance(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> fl
     returns    : share of the diagonal of the body's bounding box
     """
     size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
-    compared = evenly_spread(len(skeleton.frames), LIMITS.compared)
+    compared = evenly_spread(len(skeleton.frames), WarningLimits().compared)
     squared = [
         np.sum((skinned(skeleton, int(t)) - alignments[skeleton.frames[t]].vertices) ** 2, axis=1).mean() for t in compared
     ]
@@ -76,10 +73,10 @@ def _of_skeleton(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> Ite
     turning = [j for j, kind in enumerate(skeleton.kinds) if kind == "joint"]
     if not turning:
         yield from skeleton_remarks(skeleton)
-    if len(skeleton.frames) < LIMITS.short:
+    if len(skeleton.frames) < WarningLimits().short:
         yield f"only {counted(len(skeleton.frames), 'frame')}: joints are found by motion, more frames show more of them"
     distance = skin_distance(skeleton, alignments)
-    if distance > LIMITS.skin_distance:
+    if distance > WarningLimits().skin_distance:
         yield (
             f"the skeleton does not explain the motion: its skin is {100 * distance:.2g} % of the body's diagonal away from the"
             " aligned meshes; the body is not rigid there, or some of its joints are missing"
@@ -89,10 +86,10 @@ def _of_skeleton(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> Ite
             f"the surface has {counted(handles, 'handle')}, where limbs touch or the body forms a ring;"
             " a tree of joints cannot represent a closed loop"
         )
-    weak = [skeleton.names[j] for j in turning if skeleton.support[j] < LIMITS.short]
+    weak = [skeleton.names[j] for j in turning if skeleton.support[j] < WarningLimits().short]
     if weak:
-        yield f"supported by fewer than {LIMITS.short} frames: {_named(weak, 'joint')}"
-    low = [skeleton.names[j] for j in turning if float(skeleton.confidence[:, j].mean()) < LIMITS.confidence]
+        yield f"supported by fewer than {WarningLimits().short} frames: {_named(weak, 'joint')}"
+    low = [skeleton.names[j] for j in turning if float(skeleton.confidence[:, j].mean()) < WarningLimits().confidence]
     if low:
         yield f"low confidence: {_named(low, 'joint')}"
 
@@ -112,7 +109,7 @@ def _of_frames(
     yield from frame_confidence_remarks(frame_confidence)
     yield from leaf_losses(leaves)
     for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
-        if end - begin + 1 < LIMITS.short < len(intervals.frames):
+        if end - begin + 1 < WarningLimits().short < len(intervals.frames):
             first = intervals.frames[int(begin)]
             yield f"interval {number} is short: {counted(end - begin + 1, 'frame')} from frame {first} on"
     removed = [str(frame) for frame, m in meshes.items() if m.cleaning.components > m.cleaning.components_kept]
@@ -122,5 +119,5 @@ def _of_frames(
 
 def _named(names: list[str], noun: str) -> str:
     """The names after their noun; those beyond the limit are only counted."""
-    more = f" and {len(names) - LIMITS.named} more" if len(names) > LIMITS.named else ""
-    return f"{noun}{'s' if len(names) > 1 else ''} {', '.join(names[: LIMITS.named])}{more}"
+    more = f" and {len(names) - WarningLimits().named} more" if len(names) > WarningLimits().named else ""
+    return f"{noun}{'s' if len(names) > 1 else ''} {', '.join(names[: WarningLimits().named])}{more}"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Plots = Mapping[str, Callable[[Fetch, list[int], int], "Figure"]]
 
-PLOTS: Plots = {
+_SHARED: Plots = {
     "correlation": correlation,
     "mu": mu,
     "alignment": alignment,
@@ -31,16 +31,15 @@ PLOTS: Plots = {
     "confidence": confidence,
     "cones": cones,
     "merging": merging,
-    "elimination": elimination,
     "structure": structure,
     "lengths": lengths,
     "angles": angles,
     "errors": evaluation,
 }
+PLOTS: Plots = {**_SHARED, "elimination": elimination}
 """The pictures of the default method by name."""
 
 _OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-_SHARED = {name: plot for name, plot in PLOTS.items() if name != "elimination"}
 PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_SHARED, **_OF_2014}}
 """The pictures of each method."""
 
