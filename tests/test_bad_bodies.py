@@ -53,7 +53,7 @@ def test_ring_is_one_rigid_part_and_the_run_speaks_of_its_loop(tmp_path: Path) -
     rings = [trimesh.creation.torus(4.0, 1.0, major_sections=40 + t, minor_sections=14) for t in range(3)]
     made, told = found(tmp_path, [(ring.vertices + [0, t, 0], ring.faces) for t, ring in enumerate(rings)])
     assert "joint" not in made.kinds
-    assert "it is one rigid part" in told
+    assert "the body is one rigid part" in told
     assert "has a loop" in told
 
 
