@@ -8,7 +8,7 @@ import contextlib
 import importlib
 from collections.abc import Callable, Iterator, Mapping
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
@@ -76,6 +76,8 @@ class Application:
     sections: tuple[Section, ...] = ()
     """The commands, in the order of the help."""
     shortcuts: tuple[Shortcut, ...] = ()
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    """What blocks and parameters (as task.name) of earlier versions are called now; what refuses the old name says so."""
     first_steps: tuple[tuple[str, str], ...] = ()
     """Command lines to begin with and what each does; printed where no command is named."""
 
@@ -107,13 +109,23 @@ def current() -> Application:
 
 def _installed() -> Application:
     points = entry_points(group=ENTRY_POINTS)
-    if len(points) != 1:
-        names = ", ".join(sorted(point.name for point in points)) or "none"
+    if not points:
+        raise ConfigError(
+            f"entry point group {ENTRY_POINTS}: expected one application, found none: the package was installed before it named"
+            " one; install it again (pip install .), delete *.egg-info folders beside its code, or pass one with application=…"
+        )
+    if len(points) > 1:
+        names = ", ".join(sorted(point.name for point in points))
         raise ConfigError(
             f"entry point group {ENTRY_POINTS}: expected one application, found {names}; pass one with application=…"
         )
     (point,) = points
-    application: Application = point.load()
+    try:
+        application: Application = point.load()
+    except (ImportError, AttributeError) as error:
+        raise ConfigError(
+            f"entry point {point.name} = {point.value}: cannot be imported: {error}; install the package again (pip install .)"
+        ) from error
     return application
 
 

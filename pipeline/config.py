@@ -7,7 +7,7 @@ import os
 import re
 import reprlib
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -53,6 +53,26 @@ class Compute(BaseModel):
 
 
 @dataclass(frozen=True)
+class Origins:
+    """Where the values of a configuration come from, as messages name it."""
+
+    file: str
+    """The file, the preset or whatever the blocks were read from."""
+    blocks: frozenset[Any]
+    """The keys at the top of it."""
+    options: Mapping[str, str]
+    """The --set options by the parameter they set."""
+
+    def of(self, *keys: str) -> str:
+        """The option that set the value at the keys, above or below them; where none did, the file."""
+        above = [".".join(keys[:depth]) for depth in range(len(keys), 0, -1)]
+        origin = next((self.options[key] for key in above if key in self.options), None)
+        if origin is None and (len(keys) > 1 or keys[0] not in self.blocks):
+            origin = next((option for key, option in self.options.items() if key.startswith(f"{above[0]}.")), None)
+        return origin or self.file
+
+
+@dataclass(frozen=True)
 class Config:
     """A checked configuration; `params` has an entry for every task that has parameters."""
 
@@ -84,20 +104,25 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
     reading = Reading.of(methods, application.presets)
     blocks, where = blocks_at(target, reading)
     sets = tuple(sets)
+    origins = Origins(where, frozenset(blocks), {text.partition("=")[0].strip(): f"--set {text}" for text in sets})
     for text in sets:
         override(blocks, text, reading.paths)
-    options = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
+    method = _method(blocks, methods, origins)
+    known = {task.name: task.params for task in methods[method].tasks if task.params is not None}
+    _refuse_unknown(blocks, {*known, *RUN_KEYS}, application.renamed, origins)
+    params = {name: checked(cls, block(blocks, name), name, origins, application.renamed) for name, cls in known.items()}
+    output = _folder(blocks, "output", origins) or Path(f"{application.name}-output").absolute()
+    store = _folder(blocks, "store", origins) or output / "store"
+    _refuse_own_input(params, output, where)
+    return Config(method, params, output, store, checked(Compute, compute_block(blocks, reading), "compute", origins))
+
+
+def _method(blocks: Mapping[str, Any], methods: Iterable[str], origins: Origins) -> str:
+    """The method that the blocks name, or the first there is."""
     method = blocks.get("method", next(iter(methods)))
     if not isinstance(method, str) or method not in methods:
-        raise ConfigError(f"{where}: method {method!r}: no such method; {nearest(str(method), methods)}")
-    graph = methods[method]
-    known = {task.name: task.params for task in graph.tasks if task.params is not None}
-    _refuse_unknown(blocks, {*known, *RUN_KEYS}, where)
-    params = {name: checked(cls, block(blocks, name), f"{where}: {name}", options) for name, cls in known.items()}
-    output = _folder(blocks, "output", where) or Path(f"{application.name}-output").absolute()
-    store = _folder(blocks, "store", where) or output / "store"
-    _refuse_own_input(params, output, where)
-    return Config(method, params, output, store, checked(Compute, compute_block(blocks, reading), f"{where}: compute", options))
+        raise ConfigError(f"{origins.of('method')}: method {method!r}: no such method; {nearest(str(method), methods)}")
+    return method
 
 
 def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) -> None:
@@ -119,37 +144,38 @@ def with_compute(config: Config, **changes: Any) -> Config:
     return replace(config, compute=checked(Compute, {**config.compute.model_dump(), **given}, "compute"))
 
 
-def checked(cls: type[M], values: Any, where: str, options: Mapping[str, str] = MappingProxyType({})) -> M:
+def checked(
+    cls: type[M], values: Any, name: str, origins: Origins | None = None, renamed: Mapping[str, str] = MappingProxyType({})
+) -> M:
     """The values as a model of `cls`; raises ConfigError that names the key, what was given and the nearest known key.
 
-    where   : the file and the block, which the message names
-    options : --set options by the parameter they set; the message names one of these where it set the wrong value
+    name    : of the block
+    origins : where its values come from; None where only the name is to stand in the message
+    renamed : what parameters that have another name now are called, as task.name
     """
+
+    def at(*keys: str) -> str:
+        return name if origins is None else f"{origins.of(name, *keys)}: {name}"
+
     if not isinstance(values, Mapping):
-        raise ConfigError(f"{where}: expected keys with values, got {_short(values)}")
+        raise ConfigError(f"{at()}: expected keys with values, got {_short(values)}")
     try:
         return cls.model_validate(dict(values))
     except ValidationError as error:
-        lines = [_message(_origin(where, fault, options), cls, fault) for fault in error.errors()]
+        lines = []
+        for fault in error.errors():
+            keys = [str(part) for part in fault["loc"]]
+            new_name = renamed.get(".".join([name, *keys]), "")
+            lines.append(f"{at(*keys)}.{'.'.join(keys)}: {_fault(cls, fault, new_name)}")
         raise ConfigError("\n".join(lines)) from None
 
 
-def _origin(where: str, fault: Any, options: Mapping[str, str]) -> str:
-    """The option of the command line that set the faulty key, or the file."""
-    name = where.rpartition(": ")[2]
-    keys = [str(part) for part in fault["loc"]]
-    prefixes = [".".join([name, *keys[:depth]]) for depth in range(len(keys), -1, -1)]
-    origin = next((options[prefix] for prefix in prefixes if prefix in options), None)
-    origin = origin or next((text for key, text in options.items() if key.startswith(prefixes[0] + ".")), None)
-    return where if origin is None else f"{origin}: {name}"
-
-
-def _message(where: str, cls: type[BaseModel], fault: Any) -> str:
-    key = ".".join(str(part) for part in fault["loc"])
+def _fault(cls: type[BaseModel], fault: Any, new_name: str) -> str:
+    """What is wrong with a key and what to do; `new_name` is what it is called now, "" where it was never renamed."""
     if fault["type"] == "extra_forbidden":
-        return f"{where}.{key}: no such key; {nearest(str(fault['loc'][-1]), _keys_at(cls, fault['loc'][:-1]))}"
+        return f"no such key; {_instead(str(fault['loc'][-1]), _keys_at(cls, fault['loc'][:-1]), new_name)}"
     what = fault["msg"].removeprefix("Value error, ")
-    return f"{where}.{key}: {what[:1].lower()}{what[1:]}, got {_short(fault['input'])}"
+    return f"{what[:1].lower()}{what[1:]}, got {_short(fault['input'])}"
 
 
 def _keys_at(cls: type[BaseModel], place: Iterable[str | int]) -> Iterable[str]:
@@ -165,8 +191,8 @@ def _keys_at(cls: type[BaseModel], place: Iterable[str | int]) -> Iterable[str]:
     return cls.model_fields
 
 
-def _folder(blocks: Mapping[str, Any], key: str, where: str) -> Path | None:
-    path = blocks.get(key)
+def _folder(blocks: Mapping[str, Any], key: str, origins: Origins) -> Path | None:
+    path, where = blocks.get(key), origins.of(key)
     if path is None:
         return None
     if not isinstance(path, str) or not path:
@@ -183,7 +209,14 @@ def _short(value: Any) -> str:
     return quoting.repr(value)
 
 
-def _refuse_unknown(blocks: Mapping[str, Any], known: Iterable[str], where: str) -> None:
+def _refuse_unknown(blocks: Mapping[str, Any], known: Collection[str], renamed: Mapping[str, str], origins: Origins) -> None:
     for key in blocks:
         if key not in known:
-            raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), known)}")
+            new_name = renamed.get(str(key), "")
+            new_name = new_name if new_name in known else ""  # of another method
+            raise ConfigError(f"{origins.of(str(key))}: no such key {key!r}; {_instead(str(key), known, new_name)}")
+
+
+def _instead(name: str, known: Iterable[str], new_name: str) -> str:
+    """What to write in place of an unknown key."""
+    return f"it is now {new_name!r}" if new_name else nearest(name, known)

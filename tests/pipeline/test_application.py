@@ -152,11 +152,34 @@ def test_the_product_whose_command_line_runs_comes_before_the_one_installed(addi
     assert current() is APPLICATION
 
 
-@pytest.mark.parametrize(("names", "words"), [([], "found none"), (["one", "two"], "found one, two")])
-def test_without_exactly_one_product_installed_it_has_to_be_passed(monkeypatch, names, words):
-    points = tuple(EntryPoint(name, "nowhere:NOTHING", application.ENTRY_POINTS) for name in names)
-    monkeypatch.setattr(application, "entry_points", lambda group: points)
-    with pytest.raises(ConfigError, match=f"expected one application, {words}; pass one with application=…"):
+@pytest.fixture
+def installed(monkeypatch):
+    """Replaces the entry points that are installed."""
+
+    def replaced(*points):
+        entries = tuple(EntryPoint(name, value, application.ENTRY_POINTS) for name, value in points)
+        monkeypatch.setattr(application, "entry_points", lambda group: entries)
+
+    return replaced
+
+
+def test_where_the_installation_names_no_product_it_is_to_be_made_again(installed):
+    installed()
+    with pytest.raises(ConfigError, match=r"expected one application, found none: .*install it again \(pip install \.\)"):
+        Pipeline.of()
+
+
+def test_of_several_installed_products_one_has_to_be_passed(installed):
+    installed(("one", "nowhere:NOTHING"), ("two", "nowhere:NOTHING"))
+    with pytest.raises(ConfigError, match="expected one application, found one, two; pass one with application=…"):
+        Pipeline.of()
+
+
+@pytest.mark.parametrize("value", ["kinetree.nowhere:NOTHING", "kinetree.tasks.application:NOTHING"])
+def test_an_installation_older_than_the_code_is_to_be_made_again(installed, value):
+    installed(("kinetree", value))
+    message = rf"entry point kinetree = {value}: cannot be imported: .*; install the package again \(pip install \.\)"
+    with pytest.raises(ConfigError, match=message):
         Pipeline.of()
 
 

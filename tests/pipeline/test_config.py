@@ -260,18 +260,58 @@ def test_set_that_sets_nothing_says_how_it_is_written(text):
     ("text", "told"),
     [
         ("mesh.mrge=1", "--set mesh.mrge=1: mesh.mrge: no such key; did you mean 'merge'?"),
-        ("mseh.merge=1", "config: no such key 'mseh'; did you mean 'mesh'?"),
+        ("mseh.merge=1", "--set mseh.merge=1: no such key 'mseh'; did you mean 'mesh'?"),
+        ("unknown.task=1", "--set unknown.task=1: no such key 'unknown'; "),
+        ("method=fly", "--set method=fly: method 'fly': no such method; "),
         ("mesh.=1", "--set mesh.=1: mesh.: no such key; there are: "),
         ("mesh.merge.x=1", "--set mesh.merge.x=1: mesh.merge: input should be a valid number, got {'x': 1}"),
         ("mesh.merge=[1", "--set mesh.merge=[1, line 1: not valid YAML: "),
         ("mesh.merge=!!python/object:os.system {}", "--set mesh.merge=!!python/object:os.system {}, line 1: not valid YAML: "),
         ("source.frames=2001-13-45", "--set source.frames=2001-13-45: not valid YAML: month must be in 1..12"),
-        ("output.x=1", "config: output: expected the path of a folder, got {'x': 1}"),
-        ("mesh=3", "config: mesh: expected keys with values, got 3"),
+        ("output.x=1", "--set output.x=1: output: expected the path of a folder, got {'x': 1}"),
+        ("mesh=3", "--set mesh=3: mesh: expected keys with values, got 3"),
     ],
 )
 def test_wrong_set_is_refused_in_words(text, told):
     assert refusal(None, text).startswith(told)
+
+
+def test_option_and_file_are_each_blamed_for_their_own(write):
+    path = write("walk.yaml", "mseh: {merge: 1}\noutput: x")
+    assert refusal(path, "mesh.merge=0.1").startswith(f"{path}: no such key 'mseh'; ")
+    assert refusal(path, "mseh.merge=0.1").startswith(f"{path}: no such key 'mseh'; ")
+    path = write("right.yaml", "mesh: {merge: 0.1}\noutput: x")
+    assert refusal(path, "mseh.merge=0.1").startswith("--set mseh.merge=0.1: no such key 'mseh'; ")
+
+
+# ── names of earlier versions ───────────────────────────────────────────────────────────────────────────────────────
+
+
+def preset_with(task):
+    """A preset whose method has the block."""
+    return "default" if task in of().params else "paper-2014"
+
+
+@pytest.mark.parametrize(("old", "new"), APPLICATION.renamed.items())
+def test_an_old_name_is_refused_with_the_one_it_has_now(old, new, write):
+    task, _, name = old.partition(".")
+    preset = preset_with(new.partition(".")[0])
+    words = f"{old}: no such key; it is now {new!r}" if name else f"no such key {task!r}; it is now {new!r}"
+    path = write("old.yaml", f"extends: {preset}\n{task}: {{{name or 'x'}: 1}}")
+    assert refusal(path) == f"{path}: {words}"
+    assert refusal(preset, f"{task}.{name or 'x'}=1") == f"--set {task}.{name or 'x'}=1: {words}"
+
+
+@pytest.mark.parametrize("new", sorted(set(APPLICATION.renamed.values())))
+def test_every_new_name_can_be_set(new):
+    task, _, name = new.partition(".")
+    params = of(preset_with(task)).params[task]
+    assert not name or name in type(params).model_fields
+
+
+def test_a_name_of_another_method_is_not_offered(write):
+    path = write("old.yaml", "extends: paper-2014\ntemplate: {nodes: 100}")
+    assert refusal(path).startswith(f"{path}: no such key 'template'; there are: ")
 
 
 def test_set_into_what_has_no_keys_is_refused():
