@@ -1,7 +1,8 @@
 """A configuration before it is checked: blocks of keys from files, presets and overrides, with their paths made absolute."""
 
 import importlib.resources
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -64,13 +65,18 @@ def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -
     if path.is_dir():
         if not (path / SAVED).is_file():
             raise ConfigError(f"{path}: no {SAVED} in this folder, so it is not the output of a run; give a YAML file")
-        path = path / SAVED
+        return _moved(*_file(path / SAVED, (), reading), path.absolute())
     if path.is_file():
         return _file(path, (), reading)
     preset = reading.preset(str(target))
     if preset is not None:
         return _file(preset, (), reading)
     raise ConfigError(f"{target}: no such file, output folder or preset; presets: {', '.join(reading.preset_names) or 'none'}")
+
+
+def is_output(target: object) -> bool:
+    """Whether a target names the output folder of a run."""
+    return isinstance(target, str | Path) and (expanded(target) / SAVED).is_file()
 
 
 def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
@@ -90,6 +96,20 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
     blocks[task] = _merged(block or {}, _absolute({task: given}, Path.cwd(), paths)[task])
+
+
+def portable(blocks: Mapping[str, Any], folder: Path, paths: Paths) -> dict[str, Any]:
+    """The blocks with their absolute paths made relative to a folder, for a file in it that moves with what it names.
+
+    Below the folder and beside it paths become relative; those that lead elsewhere stay as they are.
+    """
+
+    def relative(path: str) -> str:
+        way = os.path.relpath(path, folder)
+        is_near = Path(path).is_relative_to(folder.parent) and (folder / way).resolve() == Path(path).resolve()
+        return path if not is_near else f"./{way}" if way.startswith("~") else way
+
+    return _with_paths(blocks, paths, relative)
 
 
 def block(blocks: Mapping[str, Any], name: str) -> Any:
@@ -152,25 +172,38 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
     return merged
 
 
-def _absolute(blocks: dict[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
+def _moved(blocks: dict[str, Any], where: str, folder: Path) -> tuple[dict[str, Any], str]:
+    """The blocks that lie in an output folder: it is the output wherever it was moved, and a store in it moved with it."""
+    was, store = blocks.get("output"), blocks.get("store")
+    if isinstance(was, str) and isinstance(store, str) and Path(store).is_relative_to(was):
+        blocks["store"] = str(folder / Path(store).relative_to(was))
+    return {**blocks, "output": str(folder)}, where
+
+
+def _absolute(blocks: Mapping[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
     """Paths are relative to the file that names them."""
-    absolute = dict(blocks)
-    for key in ("output", "store"):
-        path = absolute.get(key)
-        if isinstance(path, str) and path and "://" not in path:
-            absolute[key] = str(base / expanded(path))
-    for task, fields in paths.items():
-        for keys in fields:
-            absolute = _with_path(absolute, (task, *keys), base)
-    return absolute
+
+    def absolute(path: str) -> str:
+        way = base / expanded(path)
+        plain = Path(os.path.normpath(way))
+        return str(plain if plain.resolve() == way.resolve() else way)  # a link may lead elsewhere than its name says
+
+    return _with_paths(blocks, paths, absolute)
 
 
-def _with_path(blocks: Mapping[str, Any], keys: Sequence[str], base: Path) -> dict[str, Any]:
-    """The blocks with the path at the end of the keys, if there is one, made absolute."""
-    absolute = dict(blocks)
-    value = absolute.get(keys[0])
+def _with_paths(blocks: Mapping[str, Any], paths: Paths, change: Callable[[str], str]) -> dict[str, Any]:
+    """The blocks with every path in them changed; the address of a service is none."""
+    changed = dict(blocks)
+    for keys in [("output",), ("store",), *((task, *keys) for task, fields in paths.items() for keys in fields)]:
+        changed = _with_path(changed, keys, change)
+    return changed
+
+
+def _with_path(blocks: Mapping[str, Any], keys: Sequence[str], change: Callable[[str], str]) -> dict[str, Any]:
+    changed = dict(blocks)
+    value = changed.get(keys[0])
     if len(keys) > 1 and isinstance(value, Mapping):
-        absolute[keys[0]] = _with_path(value, keys[1:], base)
-    elif len(keys) == 1 and isinstance(value, str) and value:
-        absolute[keys[0]] = str(base / expanded(value))
-    return absolute
+        changed[keys[0]] = _with_path(value, keys[1:], change)
+    elif len(keys) == 1 and isinstance(value, str) and value and "://" not in value:
+        changed[keys[0]] = change(value)
+    return changed

@@ -134,6 +134,8 @@ def _print_summary(summary: dict[str, Any], pipeline: "Pipeline") -> None:
     counts = summary["nodes"]
     line = ", ".join(f"{count} {name}" for name, count in counts.items() if count or name in ("ran", "fresh"))
     _print_failures(summary)
+    for note in summary.get("notes", ()):
+        err.print(printable(note), markup=False)
     out.print(f"{summary['status']}: {line} in {clock(summary['seconds'])}")
     remarks = pipeline.remarks()
     for node, text in remarks[:REMARKS_PRINTED]:

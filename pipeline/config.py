@@ -8,7 +8,7 @@ import re
 import reprlib
 import typing
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar
@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
-from kinetree.pipeline.blocks import Reading, block, blocks_at, compute_block, expanded, override
+from kinetree.pipeline.blocks import Reading, block, blocks_at, compute_block, expanded, is_output, override, portable
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 
@@ -81,6 +81,8 @@ class Config:
     output: Path
     store: Path
     compute: Compute
+    is_left: bool = field(default=False, compare=False)
+    """Whether an earlier run left it in its output folder, which was named."""
 
     def saved(self) -> dict[str, Any]:
         """What differs from the defaults, as the YAML a run leaves in its output folder; paths are absolute."""
@@ -91,6 +93,10 @@ class Config:
                 saved[name] = changed
         compute = self.compute.model_dump(mode="json", exclude_defaults=True)
         return {**saved, "compute": compute} if compute else saved
+
+    def portable(self) -> dict[str, Any]:
+        """The same with the paths below and beside the output folder relative to it, so that they may move together."""
+        return portable(self.saved(), self.output, {name: params.path_fields() for name, params in self.params.items()})
 
 
 def load(target: str | Path | Mapping[str, Any] | None, application: Application, sets: Iterable[str] = ()) -> Config:
@@ -114,7 +120,8 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
     output = _folder(blocks, "output", origins) or Path(f"{application.name}-output").absolute()
     store = _folder(blocks, "store", origins) or output / "store"
     _refuse_own_input(params, output, where)
-    return Config(method, params, output, store, checked(Compute, compute_block(blocks, reading), "compute", origins))
+    compute = checked(Compute, compute_block(blocks, reading), "compute", origins)
+    return Config(method, params, output, store, compute, is_output(target))
 
 
 def _method(blocks: Mapping[str, Any], methods: Iterable[str], origins: Origins) -> str:

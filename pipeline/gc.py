@@ -5,8 +5,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kinetree.pipeline.history import ABANDONED_SECONDS, is_under_way
+from kinetree.pipeline.heartbeat import lives
 from kinetree.pipeline.store import Store, artifact_path
+
+LEFTOVER_SECONDS = 24 * 3600.0
+"""After this nobody is writing what lies half-written."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,9 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     for name in keep:
         store.run(name)
     count = last if last is not None else (0 if keep else 1)
-    unfinished = [run for run in _latest(runs) if not run["nodes"]] + [run for run in runs.values() if is_under_way(run)]
+    unfinished = [run for run in _latest(runs) if not run["nodes"]] + [
+        run for run in runs.values() if run["status"] == "running" and lives(run, store)
+    ]
     needed = {*keep, *_last(runs, count), *(run["name"] for run in unfinished)}
     keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
@@ -88,7 +93,7 @@ def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], since: 
             if digest not in needed and store.place.modified(artifact_path(digest)) < since:
                 artifacts.append(digest)
                 freed += sum(store.place.tree(artifact_path(digest)).values())
-    old = time.time() - ABANDONED_SECONDS
+    old = time.time() - LEFTOVER_SECONDS
     leftovers = tuple(name for name in store.place.names("tmp") if store.place.modified(f"tmp/{name}") < min(old, since))
     freed += sum(sum(store.place.tree(f"tmp/{name}").values()) for name in leftovers)
     return Garbage(runs, tuple(records), tuple(artifacts), leftovers, freed)

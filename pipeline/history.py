@@ -2,23 +2,22 @@
 
 import os
 import secrets
-import socket
 import time
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.events import Account
 from kinetree.pipeline.execute import versions
+from kinetree.pipeline.heartbeat import identity, lives
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Recalled
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
 
 FORMAT = "kinetree.run/1"
-ABANDONED_SECONDS = 24 * 3600.0
-"""After this a run on another machine, of which nothing is known, counts as killed."""
 LOOKED_BACK = 50
 """Runs whose records a plan reads to say what changed."""
 TASK_FIELDS = ("ran", "fresh", "failed", "seconds")
@@ -31,10 +30,16 @@ class History:
 
     store: Store
     output: str
+    """As `output_name` names it."""
     _nodes: dict[str, Any] | None = None
 
+    @staticmethod
+    def of(store: Store, config: Config) -> "History":
+        """The runs of a store as the output folder of a configuration sees them."""
+        return History(store, output_name(config))
+
     def recall(self, node: str) -> Recalled:
-        """What the node computed in the last run that is on record, of the same output folder if there is one."""
+        """What the node computed in the last run into this folder that computed it."""
         key = (self.last_nodes().get(node) or {}).get("key")
         if not key:
             return "nothing"
@@ -44,19 +49,30 @@ class History:
         """Every run on record without its nodes, oldest first; one that never ended and is not under way was killed."""
         runs = [self.store.run(name) for name in self.store.run_names()]
         for run in runs:
-            if run["status"] == "running" and not is_under_way(run):
+            if run["status"] == "running" and not lives(run, self.store):
                 run["status"] = "killed"
         return [{name: value for name, value in run.items() if name not in ("nodes", "uses")} for run in runs]
 
     def last_nodes(self) -> dict[str, Any]:
-        """Every node that the last runs into this folder computed, as the newest of them did; of any folder if none did."""
+        """Every node that the last runs into this folder computed, as the newest of them did."""
         if self._nodes is None:
             runs = [self.store.run(name) for name in self.store.run_names()[-LOOKED_BACK:]]
-            mine = [run for run in runs if run.get("output") == self.output and run.get("nodes")]
             self._nodes = {}
-            for run in mine or runs:
-                self._nodes |= {name: node for name, node in run.get("nodes", {}).items() if node.get("key")}
+            for run in (run for run in runs if run.get("output") == self.output):
+                self._nodes |= {name: node for name, node in run["nodes"].items() if node.get("key")}
         return self._nodes
+
+    def origin(self, task: str, params: Any) -> dict[str, Any]:
+        """What an origin found in the last run into this folder, its values by node; empty where its parameters differed.
+
+        params : the block of the origin's parameters in the configuration that the run would leave
+        """
+        for name in reversed(self.store.run_names()):
+            run = self.store.run(name)
+            nodes = {n: node["values"] for n, node in run["nodes"].items() if "values" in node and n.partition("[")[0] == task}
+            if nodes and run.get("output") == self.output:
+                return nodes if run["config"].get(task) == params else {}
+        return {}
 
 
 def new_name() -> str:
@@ -65,19 +81,10 @@ def new_name() -> str:
     return f"{now:%Y%m%d-%H%M%S}-{now.microsecond // 1000:03d}{secrets.token_hex(1)}"
 
 
-def is_under_way(run: dict[str, Any]) -> bool:
-    """Whether a run on record is still being computed, as far as this machine can know."""
-    if run["status"] != "running":
-        return False
-    if run["host"] == socket.gethostname():
-        try:
-            os.kill(int(run["pid"]), 0)
-        except ProcessLookupError:
-            return False
-        except PermissionError:
-            return True
-        return True
-    return time.time() - float(run["epoch"]) < ABANDONED_SECONDS
+def output_name(config: Config) -> str:
+    """What a store calls an output folder: by the way to it where the store lies in it and moves with it."""
+    is_inside = config.store.is_relative_to(config.output)
+    return os.path.relpath(config.output, config.store) if is_inside else str(Path(config.output))
 
 
 def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
@@ -88,10 +95,9 @@ def opening(name: str, config: Config, schedule: Schedule) -> dict[str, Any]:
         "status": "running",
         "started": datetime.now(UTC).isoformat(timespec="milliseconds"),
         "epoch": time.time(),
-        "host": socket.gethostname(),
-        "pid": os.getpid(),
-        "output": str(config.output),
-        "config": config.saved(),
+        **identity(),
+        "output": output_name(config),
+        "config": config.portable(),
         "uses": [entry.key for entry in schedule.entries.values() if entry.state == "fresh" and entry.key],
         "nodes": {},
     }

@@ -24,15 +24,16 @@ from kinetree.pipeline.diff import difference
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.heartbeat import beating
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
-from kinetree.pipeline.layout import Given
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.node import Node, label, parse
+from kinetree.pipeline.origins import found
 from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Store
-from kinetree.schemas.array import Artifact, Index
+from kinetree.schemas.array import Artifact
 
 
 @dataclass(frozen=True)
@@ -81,14 +82,15 @@ class Pipeline:
 
     def schedule(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Schedule:
         """The schedule of the named tasks or of all there are, laid out as far as it is known."""
-        return self._schedule(Files.of(self.store), until, force)
+        return self._schedule(Files.of(self.store), until, force)[0]
 
-    def _schedule(self, files: Files, until: Iterable[str], force: Iterable[str]) -> Schedule:
+    def _schedule(self, files: Files, until: Iterable[str], force: Iterable[str]) -> tuple[Schedule, list[str]]:
         wanted = tuple(until)
         graph = self.tasks.until(wanted) if wanted else self.tasks
         forced = [self.tasks.task(name).name for name in force]
-        history = History(self.store, str(self.config.output))
-        return Schedule(graph, self.config.params, self.store, self._given(graph, files), force=forced, recall=history.recall)
+        history = History.of(self.store, self.config)
+        given, notes = found(graph, self.config, files, history)
+        return Schedule(graph, self.config.params, self.store, given, force=forced, recall=history.recall), notes
 
     def run(
         self,
@@ -105,7 +107,7 @@ class Pipeline:
         """
         started = time.perf_counter()
         files = Files.of(self.store)
-        schedule = self._schedule(files, tuple(until) or self.tasks.unasked, force)
+        schedule, notes = self._schedule(files, tuple(until) or self.tasks.unasked, force)
         self.store.create()
         files.save()
         write_config(self.config)
@@ -116,7 +118,8 @@ class Pipeline:
         watch.begin(opened["name"], schedule.entries.values())
         status, left = "interrupted", list[str]()
         try:
-            self._go(schedule, watch, client)
+            with beating(self.store, opened["name"]):
+                self._go(schedule, watch, client)
             left += write_results(self.config.output, schedule) + pages(schedule)
             status = "failed" if account.failures else "done"
         except Exception:
@@ -125,7 +128,7 @@ class Pipeline:
         finally:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
-            summed = {**summary(account, status, seconds), "files": left}
+            summed = {**summary(account, status, seconds), "files": left, **({"notes": notes} if notes else {})}
             self._close(opened, schedule, account, summed)
         write_pages(self.config.output, schedule, {"run": opened["name"], **summed, **self._described()})
         return RunSummary({"run": opened["name"], **summed})
@@ -204,7 +207,7 @@ class Pipeline:
 
     def runs(self) -> RunList:
         """Every run on record in this store, oldest first."""
-        return RunList(History(self.store, str(self.config.output)).runs())
+        return RunList(History.of(self.store, self.config).runs())
 
     def diff(self, run_a: str, run_b: str) -> Difference:
         """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
@@ -220,17 +223,9 @@ class Pipeline:
             run(schedule, launch, watch)
 
     def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, summed: dict[str, Any]) -> None:
-        before = History(self.store, str(self.config.output)).last_nodes()
+        before = History.of(self.store, self.config).last_nodes()
         write_run_json(self.config, summed)
         self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
-
-    def _given(self, graph: Graph, files: Files) -> Given:
-        given: dict[str, dict[Index, Artifact]] = {}
-        for task in graph.tasks:
-            if task.is_origin:
-                listed = task(params=self.config.params[task.name], files=files)
-                given[task.name] = {(member,): value for member, value in listed.items()} if task.over else {(): listed}
-        return given
 
 
 def node_named(schedule: Schedule, text: str) -> Node:

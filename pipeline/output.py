@@ -22,7 +22,7 @@ RUN_JSON = "run.json"
 def write_config(config: Config) -> None:
     """Leaves the configuration, so that every command can name the output folder instead of the file."""
     head = "# The configuration of the last run into this folder; what is not here is the default.\n"
-    _write(config.output, SAVED, head + as_yaml(config.saved()))
+    _write(config.output, SAVED, head + as_yaml(config.portable()))
 
 
 def as_yaml(saved: dict[str, Any]) -> str:

@@ -100,6 +100,18 @@ def test_file_that_was_deleted_or_altered_is_left_again_without_computing(out, c
     assert (out / "segmentation.zarr" / "label" / "zarr.json").is_file()
 
 
+def test_copy_of_a_run_is_exported_where_it_lies_when_the_original_is_gone(out, tmp_path):
+    there = shutil.copytree(out, tmp_path / "colleague" / "out")
+    shutil.rmtree(out)
+    (there / "skeleton.glb").unlink()
+    pipeline = Pipeline.of(there)
+    assert pipeline.plan().is_done
+    assert pipeline.artifact("skeleton_json").content
+    export(str(there))
+    assert (there / "skeleton.glb").is_file()
+    assert not out.exists()
+
+
 def test_option_of_an_export_runs_that_export_alone(out, configured):
     before = {name: (out / name).read_bytes() for name in LEFT[1:]}
     result = Pipeline.of(configured, sets=["glb.up=z"]).run()

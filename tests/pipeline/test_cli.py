@@ -164,7 +164,7 @@ def test_run_leaves_its_account_and_its_configuration(kinetree, walked, tmp_path
     assert left["failures"] == []
     assert {"seconds", "versions"} <= set(left)
     saved = yaml.safe_load((tmp_path / "walk" / "config.yaml").read_text())
-    assert saved["source"] == {"input": str(tmp_path / "scans")}
+    assert saved["source"] == {"input": "../scans"}
 
 
 def test_run_prints_its_account_as_json(kinetree, scans, tmp_path):

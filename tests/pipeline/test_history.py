@@ -94,6 +94,16 @@ def test_reasons_are_told_against_the_last_run_into_the_same_folder(toys, tmp_pa
     assert why(toys, "intervals", **other) == "intervals: stale (params: length 3 → 4)"
 
 
+def test_reasons_are_not_told_against_the_run_of_another_folder(toys, tmp_path):
+    shared = {"store": str(toys.output / "store"), "output": str(tmp_path / "other")}
+    toys.run()
+    assert why(toys, "intervals", **shared, intervals={"length": 4}) == "intervals: stale (never ran)"
+    toys.write(77)
+    toys.run(**shared)
+    toys.write(10)
+    assert why(toys, "points[0]", points={"scale": 2.0}) == "points[frame=0]: stale (params: scale 1.0 → 2.0)"
+
+
 def test_reasons_survive_a_run_that_stopped_early(toys):
     toys.run()
     toys.run(until=("points",))

@@ -24,7 +24,7 @@ def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
     write_config(config)
     text = (config.output / "config.yaml").read_text()
     assert text.startswith("# The configuration of the last run into this folder; what is not here is the default.\n")
-    assert yaml.safe_load(text) == config.saved()
+    assert yaml.safe_load(text) == config.portable()
     assert load(config.output, APPLICATION) == config
 
 

@@ -15,6 +15,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from kinetree.errors import SourceError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import origin, task
@@ -193,6 +194,8 @@ def executed(name: str, number: float) -> None:
 def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     """Lists the files."""
     paths = sorted(Path(params.input).glob("*.txt"))
+    if not paths:
+        raise SourceError(f"no frames in {params.input}")
     found = [Source(content=c, path=str(p)) for c, p in zip(files.digests(paths), paths, strict=True)]
     chosen = range(len(found))[slice(*(int(p) if p else None for p in params.frames.split(":")))]
     return {frame: found[frame] for frame in chosen}
