@@ -8,7 +8,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import AsJson, Force, Output, Set, StoreAt, Target, Until, err, out, pipeline_of, print_json
+from kinetree.pipeline.options import (
+    AsJson,
+    Force,
+    MadeWithOption,
+    Output,
+    Set,
+    StoreAt,
+    Target,
+    Until,
+    err,
+    out,
+    pipeline_of,
+    print_json,
+)
 from kinetree.pipeline.printable import printable
 
 if TYPE_CHECKING:
@@ -28,6 +41,7 @@ def run(
     sets: Set = None,
     until: Until = None,
     force: Force = None,
+    made_with: MadeWithOption = None,
     workers: Annotated[
         int | None, typer.Option("--workers", help="How many nodes to compute at the same time; default: one per core.")
     ] = None,
@@ -52,7 +66,8 @@ def run(
 
     pipeline = pipeline_of(config, output, store, sets)
     compute = configuration.with_compute(pipeline.config, workers=workers, executor=executor, scheduler=scheduler)
-    compute_and_report(Pipeline.of(compute), until=until, force=force, quiet=quiet, log_json=log_json, as_json=as_json)
+    chosen = {"until": until, "force": force, "made_with": made_with}
+    compute_and_report(Pipeline.of(compute), **chosen, quiet=quiet, log_json=log_json, as_json=as_json)
 
 
 def compute_and_report(
@@ -60,6 +75,7 @@ def compute_and_report(
     *,
     until: list[str] | None = None,
     force: list[str] | None = None,
+    made_with: list[str] | None = None,
     quiet: bool = False,
     log_json: Path | None = None,
     as_json: bool = False,
@@ -69,7 +85,7 @@ def compute_and_report(
     raises : typer.Exit with code 1 where nodes failed; what `Pipeline.run` raises; ConfigError where the log cannot be written
     """
     with _progress(pipeline, quiet or as_json, log_json) as listeners:
-        summary = pipeline.run(until=until or (), force=force or (), listeners=listeners)
+        summary = pipeline.run(until=until or (), force=force or (), made_with=made_with or (), listeners=listeners)
     if as_json:
         print_json(summary)
     elif not quiet:

@@ -9,7 +9,8 @@ from kinetree.pipeline.store import Store
 def difference(store: Store, a: dict[str, Any], b: dict[str, Any]) -> dict[str, Any]:
     """Nodes that only one run has, nodes whose artifacts differ, and among those the ones where it begins, with reasons.
 
-    A difference begins at a node whose own parameters or code differ, or at an origin that found other content.
+    A difference begins at a node whose own parameters or code differ, or at an origin that found other content or is found in
+    one of the runs alone (a frame that was added).
     """
     before, after = a["nodes"], b["nodes"]
     changed = [n for n in after if n in before and before[n].get("artifact") != after[n].get("artifact")]
@@ -18,11 +19,14 @@ def difference(store: Store, a: dict[str, Any], b: dict[str, Any]) -> dict[str, 
         reasons = _begins(store, label, before[label], after[label])
         if reasons:
             begins[label] = reasons
+    only_a, only_b = [n for n in before if n not in after], [n for n in after if n not in before]
+    begins |= {n: ["input: removed"] for n in only_a if "values" in before[n]}
+    begins |= {n: ["input: added"] for n in only_b if "values" in after[n]}
     return {
         "a": a["name"],
         "b": b["name"],
-        "only_a": [n for n in before if n not in after],
-        "only_b": [n for n in after if n not in before],
+        "only_a": only_a,
+        "only_b": only_b,
         "changed": changed,
         "begins": begins,
     }

@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
+from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.memory import peak_bytes, reset_peak
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
@@ -60,6 +61,7 @@ class Step:
     key: str | None
     """The planner's key, where it could know it."""
     force: bool
+    distrusted: MadeWith
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,8 @@ def _compute(bench: _Bench, number: int, step: Step) -> Result:
     if step.key is not None and key != step.key:
         raise StaleWorkerError(f"{step.label}: this worker derives another key ({key[:12]}) than was planned ({step.key[:12]})")
     known = None if step.force else bench.store.record(key)
+    if known is not None and step.distrusted(known):
+        known = None
     if known is not None and bench.store.holds(known):
         return Result("fresh", key, known.artifact, 0.0, known)
     return _run(bench, number, step, task, key, inputs)

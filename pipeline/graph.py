@@ -73,6 +73,14 @@ class Graph:
             raise UnknownNodeError(f"no task {name!r}; {nearest(name, self.by_name)}")
         return self.by_name[name]
 
+    def writer(self, what: type[Artifact] | str) -> AnyTask:
+        """The task of that name or the one that writes that artifact class; raises UnknownNodeError."""
+        if isinstance(what, str):
+            return self.task(what)
+        if what not in self.writers:
+            raise UnknownNodeError(f"no task of this graph writes {what.__name__}")
+        return self.writers[what]
+
     def reads(self, task: AnyTask) -> tuple[AnyTask, ...]:
         """Tasks without which this one cannot run or even be laid out, itself left out."""
         return tuple(dict.fromkeys((*self.before(task), *self.behind(task))))

@@ -15,7 +15,7 @@ from kinetree.pipeline.heartbeat import identity, lives
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Recalled
 from kinetree.pipeline.schedule import Schedule
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.store import Record, Store
 
 FORMAT = "kinetree.run/1"
 LOOKED_BACK = 50
@@ -44,6 +44,11 @@ class History:
         if not key:
             return "nothing"
         return self.store.record(key) or "lost"
+
+    def records(self) -> dict[str, Record]:
+        """By label, the records that are still there of the nodes that the last runs computed."""
+        recalled = {label: self.recall(label) for label in self.last_nodes()}
+        return {label: record for label, record in recalled.items() if isinstance(record, Record)}
 
     def runs(self) -> list[dict[str, Any]]:
         """Every run on record without its nodes, oldest first; one that never ended and is not under way was killed."""

@@ -3,7 +3,8 @@
 pipeline = Pipeline.of("walk.yaml")
 pipeline.plan()                           what a run would do; computes nothing
 pipeline.run()                            does it
-pipeline.artifact("task", frame=3)        typed, arrays read when asked for
+pipeline.inspect()                        what there is now, to be asked many things
+pipeline.artifact(Class, frame=3)         typed, arrays read when asked for
 """
 
 import html
@@ -11,29 +12,30 @@ import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
-
-import networkx as nx
+from typing import Any, TypeVar, overload
 
 from kinetree.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline import config as configuration
-from kinetree.pipeline import views
 from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
+from kinetree.pipeline.drawn_graph import DrawnGraph
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.heartbeat import beating
 from kinetree.pipeline.history import History, closing, new_name, opening, summary
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
-from kinetree.pipeline.node import Node, label, parse
+from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.origins import found
 from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.snapshot import Snapshot
 from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact
+
+A = TypeVar("A", bound=Artifact)
 
 
 @dataclass(frozen=True)
@@ -76,21 +78,42 @@ class Pipeline:
         where = html.escape(f"output {self.config.output}, store {self.store.url}")
         return f"<p>{where}</p>{html_table(('task', 'per', 'what', 'paper'), rows)}"
 
-    def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Plan:
+    def inspect(
+        self, *, until: Iterable[str] = (), force: Iterable[str] = (), made_with: Iterable[str] = ()
+    ) -> Snapshot:
+        """What there is now, to be asked many things: plan, why, lineage, artifacts, timings, graphs; computes nothing.
+
+        until     : only these tasks and those they need; none means all
+        force     : tasks that count as out of date
+        made_with : requirements such as "scipy<1.17"; results computed with such a version count as out of date
+        raises    : ConfigError, InputError, UnknownNodeError
+        """
+        return self._snapshot(Files.of(self.store), tuple(until), force, made_with)
+
+    def plan(self, *, until: Iterable[str] = (), force: Iterable[str] = (), made_with: Iterable[str] = ()) -> Plan:
         """Every node with its state and the reason for it; looks at the input, computes nothing."""
-        return Plan.of(self.schedule(until=tuple(until) or self.tasks.unasked, force=force))
+        return self.inspect(until=tuple(until) or self.tasks.unasked, force=force, made_with=made_with).plan
 
     def schedule(self, *, until: Iterable[str] = (), force: Iterable[str] = ()) -> Schedule:
         """The schedule of the named tasks or of all there are, laid out as far as it is known."""
-        return self._schedule(Files.of(self.store), until, force)[0]
+        return self.inspect(until=until, force=force).schedule
 
-    def _schedule(self, files: Files, until: Iterable[str], force: Iterable[str]) -> tuple[Schedule, list[str]]:
-        wanted = tuple(until)
+    def _snapshot(
+        self, files: Files, wanted: tuple[str, ...], force: Iterable[str] = (), made_with: Iterable[str] = ()
+    ) -> Snapshot:
         graph = self.tasks.until(wanted) if wanted else self.tasks
-        forced = [self.tasks.task(name).name for name in force]
         history = History.of(self.store, self.config)
         given, notes = found(graph, self.config, files, history)
-        return Schedule(graph, self.config.params, self.store, given, force=forced, recall=history.recall), notes
+        schedule = Schedule(
+            graph,
+            self.config.params,
+            self.store,
+            given,
+            force=[self.tasks.task(name).name for name in force],
+            recall=history.recall,
+            distrusted=MadeWith.of(made_with),
+        )
+        return Snapshot(schedule, history, tuple(notes))
 
     def run(
         self,
@@ -98,6 +121,7 @@ class Pipeline:
         *,
         until: Iterable[str] = (),
         force: Iterable[str] = (),
+        made_with: Iterable[str] = (),
         listeners: Iterable[Listener] = (),
     ) -> RunSummary:
         """Runs what is out of date; returns the content of run.json and the run's name, in which failed nodes are listed.
@@ -107,7 +131,8 @@ class Pipeline:
         """
         started = time.perf_counter()
         files = Files.of(self.store)
-        schedule, notes = self._schedule(files, tuple(until) or self.tasks.unasked, force)
+        there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
+        schedule = there.schedule
         self.store.create()
         files.save()
         write_config(self.config)
@@ -128,7 +153,7 @@ class Pipeline:
         finally:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
-            summed = {**summary(account, status, seconds), "files": left, **({"notes": notes} if notes else {})}
+            summed = {**summary(account, status, seconds), "files": left, **({"notes": list(there.notes)} if there.notes else {})}
             self._close(opened, schedule, account, summed)
         write_pages(self.config.output, schedule, {"run": opened["name"], **summed, **self._described()})
         return RunSummary({"run": opened["name"], **summed})
@@ -138,72 +163,54 @@ class Pipeline:
         graph = {t.name: {"over": "/".join(t.over), "reads": [r.name for r in self.tasks.reads(t)]} for t in self.tasks.tasks}
         return {"graph": graph, "config": as_yaml(self.config.saved())}
 
-    def computed(self, name: str) -> Schedule:
-        """Computes one task from what is there and nothing else; returns the schedule that has its artifacts.
+    def computed(self, name: str) -> Snapshot:
+        """Computes one task from what is there and nothing else; returns the snapshot that has its artifacts.
 
         raises : UnknownNodeError where something it reads is not there; NodesFailedError where it fails itself
         """
-        schedule = self.schedule(until=[name])
-        reads = {task.name for task in self.tasks.reads(self.tasks.task(name))}
-        todo = [node for node in Plan.of(schedule).nodes if node.task != name and node.state != "fresh"]
-        lacking = [node.node for node in todo if node.task in reads]
-        if lacking:
-            more = f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""
-            first = next((node for node in todo if node.state == "stale"), todo[0])
-            where = f"{name} is made from {lacking[0]}{more}, which has no up-to-date result"
-            raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
+        there = self.inspect(until=[name])
+        self._refuse_missing(there, name)
         account = Account()
-        self._go(schedule, Watch((account,)), None)
+        self._go(there.schedule, Watch((account,)), None)
         if account.failures:
             failure = account.failures[0]
             raise NodesFailedError(f"{failure['node']}: {failure['error']}: {failure['message']}")
-        return schedule
+        return Snapshot(there.schedule, there.history, there.notes)
 
-    def graph(self, *, expanded: bool = False) -> "nx.DiGraph[str]":
+    def _refuse_missing(self, there: Snapshot, name: str) -> None:
+        reads = {task.name for task in self.tasks.reads(self.tasks.task(name))}
+        todo = [node for node in there.plan.nodes if node.task != name and node.state != "fresh"]
+        missing = [node.node for node in todo if node.task in reads]
+        if missing:
+            more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+            first = next((node for node in todo if node.state == "stale"), todo[0])
+            where = f"{name} is made from {missing[0]}{more}, which has no up-to-date result"
+            raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
+
+    def graph(self, *, expanded: bool = False) -> DrawnGraph:
         """The graph of tasks, or expanded of nodes; each node's `data` is a TaskPlan or Planned, edges name arguments."""
-        schedule = self.schedule()
-        if expanded:
-            return _expanded(schedule)
-        drawn = self.tasks.networkx()
-        for row in Plan.of(schedule).tasks:
-            drawn.nodes[row.task]["data"] = row
-        return drawn
+        there = self.inspect()
+        return there.nodes if expanded else there.graph
 
     def why(self, node: str) -> Planned:
-        """The state of one node and the reason for it."""
-        schedule = self.schedule()
-        return Plan.of(schedule)[schedule.entries[node_named(schedule, node)].label]
+        """The state of one node and the reason for it; raises UnknownNodeError."""
+        return self.inspect().why(node)
 
-    def lineage(self, node: str) -> "nx.DiGraph[str]":
-        """The part of the expanded graph from which this node is made and which is made from it."""
-        schedule = self.schedule()
-        nodes = _expanded(schedule)
-        name = schedule.entries[node_named(schedule, node)].label
-        related = nx.ancestors(nodes, name) | nx.descendants(nodes, name) | {name}
-        return nx.DiGraph(nodes.subgraph(related))
+    def lineage(self, node: str) -> DrawnGraph:
+        """The part of the graph of nodes from which this node is made and which is made from it."""
+        return self.inspect().lineage(node)
 
-    def artifact(self, name: str, *, within: Schedule | None = None, **index: int) -> Artifact:
-        """The artifact of a task at an index, with arrays that are read when asked for.
-
-        within : a schedule to ask, for who asks often; None lays out a new one
-        raises : UnknownNodeError where there is no such node or it has not been computed
-        """
-        schedule = within or self.schedule(until=[name])
-        over = self.tasks.task(name).over
-        if set(index) != set(over):
-            given = ", ".join(index) or "no index"
-            raise UnknownNodeError(f"{name} runs over {'/'.join(over) or 'nothing'}; got {given}")
-        node = node_named(schedule, label(Node(name, tuple(index[d] for d in over)), over))
-        if schedule.entries[node].artifact is None:
-            planned = Plan.of(schedule)[schedule.entries[node].label]
-            raise UnknownNodeError(f"{planned}; it has no result until kinetree run computes it")
-        return schedule.value(node)
+    @overload
+    def artifact(self, what: type[A], **index: int) -> A: ...
+    @overload
+    def artifact(self, what: str, **index: int) -> Any: ...
+    def artifact(self, what: type[A] | str, **index: int) -> Any:
+        """One artifact, as `Snapshot.artifact` gives it; who wants several asks `inspect()` once."""
+        return self.inspect(until=[self.tasks.writer(what).name]).artifact(what, **index)
 
     def remarks(self) -> list[tuple[str, str]]:
         """What the results that stand for the whole sequence have to say, as (node, sentence)."""
-        schedule = self.schedule()
-        whole = [e for e in schedule.entries.values() if not e.task.over and e.artifact is not None and not e.task.is_origin]
-        return [(e.label, text) for e in whole for text in views.remarks(schedule.value(e.node))]
+        return self.inspect().remarks()
 
     def runs(self) -> RunList:
         """Every run on record in this store, oldest first."""
@@ -227,25 +234,3 @@ class Pipeline:
         write_run_json(self.config, summed)
         self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
 
-
-def node_named(schedule: Schedule, text: str) -> Node:
-    """The node of a schedule that a text names; raises UnknownNodeError, with what there is."""
-    node = parse(text, schedule.graph)
-    if node not in schedule.entries:
-        unknown = schedule.blocked.get(node.task, ())
-        known = sum(1 for n in schedule.entries if n.task == node.task)
-        later = f"; there may be more once {schedule.entries[unknown[0]].label} is computed" if unknown else ""
-        raise UnknownNodeError(f"{text}: no such node; {node.task} has {known} nodes{later}")
-    return node
-
-
-def _expanded(schedule: Schedule) -> "nx.DiGraph[str]":
-    nodes: nx.DiGraph[str] = nx.DiGraph()
-    for row in Plan.of(schedule).nodes:
-        nodes.add_node(row.node, task=row.task, state=row.state, data=row)
-    for entry in schedule.entries.values():
-        for argument, reads in entry.inputs or ():
-            for node in reads:
-                told = {"argument": argument.name, "form": argument.form, "previous": argument.previous}
-                nodes.add_edge(schedule.entries[node].label, entry.label, **told)
-    return nodes

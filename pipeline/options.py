@@ -36,6 +36,14 @@ Until = Annotated[
 Force = Annotated[
     list[str] | None, typer.Option("--force", metavar="TASK", help="Run this task even if it is up to date; may be repeated.")
 ]
+MadeWithOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--made-with",
+        metavar="LIBRARY<VERSION",
+        help="Count results computed with this library version as out of date, e.g. 'scipy<1.17'; may be repeated.",
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
 err = Console(stderr=True, soft_wrap=True, highlight=False)

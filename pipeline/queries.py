@@ -11,6 +11,7 @@ from kinetree.pipeline.application import current
 from kinetree.pipeline.options import (
     AsJson,
     Force,
+    MadeWithOption,
     Output,
     Set,
     StoreAt,
@@ -39,21 +40,29 @@ def plan(
     sets: Set = None,
     until: Until = None,
     force: Force = None,
+    made_with: MadeWithOption = None,
     nodes: Annotated[bool, typer.Option("--nodes", help="Print one line per node instead of one per task.")] = False,
+    estimate: Annotated[
+        bool, typer.Option("--estimate", help="Say how long a run would compute, from what earlier runs took.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Say what a run would compute and why, without computing anything.
 
     A node is fresh if its result is up to date, stale if a run would compute it, and waits if that depends on other nodes.
     """
-    planned = pipeline_of(config, output, store, sets).plan(until=until or (), force=force or ())
+    pipeline = pipeline_of(config, output, store, sets)
+    there = pipeline.inspect(until=until or pipeline.tasks.unasked, force=force or (), made_with=made_with or ())
+    planned, expected = there.plan, there.estimate() if estimate else None
     if as_json:
-        print_json(planned.json())
+        print_json({**planned.json(), **({"estimate": expected.json()} if expected else {})})
         return
     for row in planned.nodes if nodes else planned.tasks:
         out.print(printable(row), markup=False)
     if planned.is_done:
         out.print("everything is up to date; a run would compute nothing")
+    elif expected:
+        out.print(printable(expected), markup=False)
 
 
 def config(config: Target = None, sets: Set = None, as_json: AsJson = False) -> None:
@@ -73,9 +82,8 @@ def why(node: NodeName, config: Target = None, sets: Set = None, as_json: AsJson
 
     Also what it reads and what reads it.
     """
-    pipeline = pipeline_of(config, sets=sets)
-    planned = pipeline.why(node)
-    lineage = pipeline.lineage(node)
+    there = pipeline_of(config, sets=sets).inspect()
+    planned, lineage = there.why(node), there.lineage(node)
     reads, feeds = sorted(lineage.predecessors(planned.node)), sorted(lineage.successors(planned.node))
     if as_json:
         print_json({"node": planned.node, "state": planned.state, "waits": list(planned.waits),

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from kinetree.pipeline.store import Record
 
-Kind = Literal["never ran", "params", "code", "index", "input", "artifact", "forced"]
+Kind = Literal["never ran", "params", "code", "index", "input", "artifact", "made with", "forced"]
 
 
 @dataclass(frozen=True)

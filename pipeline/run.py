@@ -250,6 +250,7 @@ def _steps(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
             ),
             key=entry.key if entry is parcel[0] else None,
             force=entry.node.task in schedule.force or any(r.kind == "artifact" for r in entry.reasons),
+            distrusted=schedule.distrusted,
         )
         for entry in parcel
     )

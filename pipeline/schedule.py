@@ -15,6 +15,7 @@ from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.layout import Given, Layout, T
+from kinetree.pipeline.made_with import EVERY_VERSION_TRUSTED, MadeWith
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.reason import Reason, Recall, Work, differences, never_ran
 from kinetree.pipeline.store import Record, Store
@@ -66,6 +67,7 @@ class Schedule:
         *,
         force: Iterable[str] = (),
         recall: Recall = lambda _: "nothing",
+        distrusted: MadeWith = EVERY_VERSION_TRUSTED,
     ) -> None:
         self.graph = graph
         self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
@@ -73,6 +75,7 @@ class Schedule:
         self.given = given
         self.force = frozenset(force)
         self.recall = recall
+        self.distrusted = distrusted
         self.entries: dict[Node, Entry] = {}
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
         self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
@@ -337,18 +340,24 @@ class Schedule:
         index = entry.node.at if entry.task.asks_index else None
         entry.key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
         record = self.store.record(entry.key)
-        if record is not None and entry.node.task not in self.force and self.store.holds(record):
+        if record is not None and not self._asked_again(entry, record) and self.store.holds(record):
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
             return True
         entry.state, entry.reasons = "stale", self._reasons(entry, work, record)
         heapq.heappush(self._ready, (-self._rank[entry.node.task], entry.node.at, entry.node))
         return False
 
+    def _asked_again(self, entry: Entry, record: Record) -> bool:
+        """Whether somebody wants this node computed anew though its result is up to date."""
+        return entry.node.task in self.force or self.distrusted(record) is not None
+
     def _reasons(self, entry: Entry, work: Work, record: Record | None) -> tuple[Reason, ...]:
         if record is not None and not self.store.holds(record):
             return (Reason("artifact", "missing or damaged"),)
         if entry.node.task in self.force:
             return (Reason("forced"),)
+        if record is not None and (versions := self.distrusted(record)):
+            return (Reason("made with", versions),)
         then = self.recall(entry.label)
         if then == "nothing":
             return (never_ran(),)

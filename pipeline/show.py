@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline import views
-from kinetree.pipeline.inspect import Pipeline, node_named
-from kinetree.pipeline.plan import Plan
+from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.store import Record
 from kinetree.schemas.array import Artifact
 
@@ -17,13 +16,12 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
 
     raises : UnknownNodeError
     """
-    schedule = pipeline.schedule()
-    entry = schedule.entries[node_named(schedule, node)]
-    planned = Plan.of(schedule)[entry.label]
+    there = pipeline.inspect()
+    entry, planned = there.entry(node), there.why(node)
     content = {"node": entry.label, "state": planned.state, "why": str(planned), "schema": _schema(entry.task.returns)}
     if entry.artifact is None:
         return content
-    artifact = schedule.value(entry.node)
+    artifact = there.schedule.value(entry.node)
     return {
         **content,
         "artifact": entry.artifact,

@@ -269,7 +269,7 @@ def test_place_that_cannot_be_written_is_told_and_nothing_is_half_written(out, t
 
 
 def test_tables_that_cannot_all_be_written_are_not_there_at_all(out, tmp_path, monkeypatch):
-    schedule, whole = Pipeline.of(str(out)).computed("tables"), Path.write_bytes
+    schedule, whole = Pipeline.of(str(out)).computed("tables").schedule, Path.write_bytes
 
     def full(path, data):
         if path.name == "bones.csv":

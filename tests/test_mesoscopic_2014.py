@@ -57,9 +57,9 @@ def test_exports_are_those_of_every_method(human: Pipeline) -> None:
 
 
 def test_pictures_of_cones_merge_errors_and_bones_are_drawn(human: Pipeline, tmp_path: Path) -> None:
-    schedule, named = human.schedule(), {"skeleton": "kinematic_structure"}
+    there, named = human.inspect(), {"skeleton": "kinematic_structure"}
     for name, draw in (("cones", drawn_cones), ("merging", merging), ("structure", structure), ("lengths", lengths)):
-        figure = draw(lambda task, **index: human.artifact(named.get(task, task), within=schedule, **index), [0, 7])
+        figure = draw(lambda task, **index: there.artifact(named.get(task, task), **index), [0, 7])
         figure.savefig(tmp_path / f"{name}.png", dpi=40)
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
 

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -63,12 +63,11 @@ def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list
     changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in paths.items() if path is not None]
     pipeline = pipeline_of(run, sets=[*(sets or ()), *changes])
     try:
-        schedule = pipeline.computed("evaluation")
+        stored = pipeline.computed("evaluation").artifact(Evaluation)
     except NodesFailedError as error:
         if f": {InputError.__name__}: " in str(error):
             raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None
         raise
-    stored: Any = pipeline.artifact("evaluation", within=schedule)
     if stored.summary is None:
         raise ConfigError(f"{run}: its input came without a true skeleton; name one, e.g. kinetree evaluate {run} truth.json")
     return Evaluation.model_validate({**stored.plain(), **stored.arrays()})

@@ -75,7 +75,7 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list
     from kinetree.pipeline import views
     from kinetree.pipeline.output import write_elsewhere, write_result
 
-    schedule = pipeline.computed(task)
+    schedule = pipeline.computed(task).schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
     remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
     if output is not None:

@@ -35,13 +35,13 @@ def plot(
     from kinetree.tasks.results.plots import PLOTS_OF_METHOD, draw
 
     pipeline = pipeline_of(run)
-    schedule = pipeline.schedule()
-    known = sorted(node.at[0] for node in schedule.entries if node.task == "source")
+    there = pipeline.inspect()
+    known = sorted(node.at[0] for node in there.schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
     skeleton = pipeline.tasks.writers[Skeleton].name
 
     def fetch(name: str, **index: int) -> Any:
-        return pipeline.artifact(skeleton if name == "skeleton" else name, within=schedule, **index)
+        return there.artifact(skeleton if name == "skeleton" else name, **index)
 
     draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method])
     typer.echo(str(path))
