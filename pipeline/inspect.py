@@ -153,7 +153,8 @@ class Pipeline:
         finally:
             seconds = time.perf_counter() - started
             watch.end(status, seconds)
-            summed = {**summary(account, status, seconds), "files": left, **({"notes": list(there.notes)} if there.notes else {})}
+            notes = {"notes": list(there.notes)} if there.notes else {}
+            summed = {**summary(account, status, seconds), "files": left, **notes}
             self._close(opened, schedule, account, summed)
         write_pages(self.config.output, schedule, {"run": opened["name"], **summed, **self._described()})
         return RunSummary({"run": opened["name"], **summed})
