@@ -7,6 +7,8 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 LENGTH = 10.0  # half of it on either side of the joint at the origin
 RADIUS = 1.0
+ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
+"""How far the tube is bent in the frames of a sequence, radians."""
 
 
 def tube(around: int = 24, along: int = 48, start: float = 0.0, flat: float = 0.7) -> tuple[Floats, Ints]:

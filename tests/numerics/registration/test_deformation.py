@@ -16,11 +16,6 @@ from kinetree.tasks.numerics.registration.graph_kinematics import deformed, step
 FEW = DeformationGraphSettings(nodes=80)
 
 
-@pytest.fixture(scope="module")
-def body():
-    return deformation_graph(*tube(), FEW)
-
-
 def moved(body, R, t):
     """The pose in which the whole body is turned and shifted."""
     return Pose(np.tile(R, (len(body.node), 1, 1)), body.g @ R.T + t)

@@ -1,28 +1,13 @@
 """Laws of finding frames in which tracking failed and of tracking them again from the frame beyond, on tubes."""
 
 import numpy as np
-import pytest
-from limbs import LENGTH, bent, rotation, tube
+from limbs import ANGLES, LENGTH, bent, rotation
 
-from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.recovery import failures, recovery
 from kinetree.tasks.numerics.registration.tracking import TrackingSettings, tracking
 
 SETTINGS = TrackingSettings()
-ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
-
-
-@pytest.fixture(scope="module")
-def body():
-    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
-
-
-@pytest.fixture(scope="module")
-def targets(body):
-    V, F = tube(around=29, along=57, start=0.07)
-    return [Target.of(bent(V, angle), F, body.size) for angle in ANGLES]
 
 
 def test_failures_stand_out_from_the_sequence():

@@ -6,7 +6,6 @@ from limbs import bent, rotation, tube
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.stiffness import (
     PASSES,
     StiffnessSettings,
@@ -17,11 +16,6 @@ from kinetree.tasks.numerics.registration.stiffness import (
 
 SETTINGS = StiffnessSettings()
 ANGLES = (0.2, 0.4, 0.6)
-
-
-@pytest.fixture(scope="module")
-def body():
-    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
 
 
 @pytest.fixture(scope="module")

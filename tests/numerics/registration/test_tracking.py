@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from limbs import LENGTH, bent, rotation, tube
+from limbs import LENGTH, rotation, tube
 
 from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.tracking import (
     TrackingSettings,
     attempts,
@@ -17,18 +16,6 @@ from kinetree.tasks.numerics.registration.tracking import (
 )
 
 SETTINGS = TrackingSettings()
-ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
-
-
-@pytest.fixture(scope="module")
-def body():
-    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
-
-
-@pytest.fixture(scope="module")
-def targets(body):
-    V, F = tube(around=29, along=57, start=0.07)
-    return [Target.of(bent(V, angle), F, body.size) for angle in ANGLES]
 
 
 def rigid(body, R, t):
