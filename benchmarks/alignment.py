@@ -25,6 +25,7 @@ import trimesh
 from turning import Truth, with_roll
 
 from kinetree.schemas.input.synth import ContactParams, SynthParams
+from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.tasks.input.synth import body as posed
 from kinetree.tasks.input.synth import recipe
 from kinetree.tasks.numerics.geometry.closest_point import projected
@@ -44,7 +45,9 @@ from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.leaves import follow
 from kinetree.tasks.numerics.topology.mu_histogram import dimensionless
+from kinetree.tasks.registration.pose import fit_settings
 
+FITTING = fit_settings(TrackingParams())
 Floats = npt.NDArray[np.float64]
 
 # figure:motion, or random:SEED, and per contact: limb, target, first and last frame
@@ -108,7 +111,7 @@ def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tra
     for step in (1, -1):
         before, t, usual = None, start + step, 0.0
         while 0 <= t < len(targets):
-            out[t] = tracking(body, before, out[t - step].pose, targets[t], usual=usual)
+            out[t] = tracking(body, before, out[t - step].pose, targets[t], FITTING, usual)
             usual = out[t].uncovered if before is None else min(usual, out[t].uncovered)
             before, t = out[t - step].pose, t + step
     return out
@@ -117,12 +120,12 @@ def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tra
 def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationGraph, list[int], list[Pose], Floats, float]:
     """All passes: the graph, the frames kept, their poses, uncovered shares, and seconds a frame."""
     body = deformation_graph(meshes[start].V, meshes[start].F)
-    fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size))
+    fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size), FITTING)
     begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]
     chained = chain(body, targets, start)
     shares = np.array([frame.uncovered for frame in chained])
-    again = recovery(body, shares, lambda t: chained[t].pose, targets.__getitem__, start).recovered
+    again = recovery(body, shares, lambda t: chained[t].pose, targets.__getitem__, start, FITTING).recovered
     found = [again.get(t, frame) for t, frame in enumerate(chained)]
     first = (time.process_time() - begun) / len(meshes)
     kept = sorted({start, *range(0, len(meshes), every)})

@@ -3,14 +3,17 @@
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     python benchmarks/sensitivity.py [--only PATTERN] [--shelves structure registration topology] [--params] [--constants]
                                      [--bodies human quadruped random:0] [--seed 0] [--frames 12] [--vertices 1200]
-                                     [--jobs 1] [--minutes M] [--json FILE] [--markdown FILE] [--list]
+                                     [--jobs 1] [--minutes M] [--work FOLDER] [--json FILE] [--markdown FILE] [--list]
 
 Settings are the numeric defaults of every `…Settings` value (NamedTuple or frozen dataclass) in kinetree.tasks.numerics that
 the default method reaches up to its evaluation. --params adds the numeric parameters of its tasks, --constants the numeric
 constants of modules. PATTERN is a regular expression, searched in `shelf/module.Class.field`. With several bodies the first
 body measures all settings before the second begins; --minutes begins nothing more after that time and lists what is left.
 
-All runs share one temporary store. A default is changed in the process, which the text of the code does not show: while it
+With --work, a second call goes on where an earlier one stopped: FOLDER keeps the store and, in rows.jsonl, every row. It is
+for one state of the code: after an edit, begin with an empty folder.
+
+All runs share one store. A default is changed in the process, which the text of the code does not show: while it
 is changed, every task whose code reaches the setting gets a code digest of its own, so that no result is taken for another
 and nothing is computed again that cannot change. A setting that is an integer stays at least 1; tuples of numbers are scaled
 as a whole; zero and infinity have no half. Shares, confidences and cosines are not doubled past 1. A value that a caller
@@ -60,6 +63,8 @@ FACTORS = {"half": 0.5, "double": 2.0}
 UNIT_RANGE = ("share", "confidence", "cosine")
 """First words of a setting's docstring that say that it lies between 0 and 1."""
 METHOD = next(iter(METHODS))
+ROWS = "rows.jsonl"
+"""The file in the folder of work that keeps every row."""
 Value = Any
 """A number or a tuple of numbers."""
 
@@ -279,7 +284,8 @@ def measured(setting: Setting, body: Body, default: Outcome, work: Path) -> Row:
             sets = [f"{setting.owner}.{setting.field}={list(value)}"]
         with varied(setting, value) as uses:
             one = outcome(body, work, sets)._replace(uses=uses())
-        if setting.kind == "field" and one.uses == 0:
+        # where nothing ran the result is from an earlier call, which was interrupted before it wrote the row
+        if setting.kind == "field" and one.uses == 0 and one.ran:
             told[side] = "the default is never asked for on this body"
         else:
             told[side] = f"invalid: {one.why}" if one.why and not one.ran else one
@@ -334,9 +340,15 @@ def wanted(shelves: Sequence[str], only: str, params: bool, with_constants: bool
     return [s for s in asked if reached[s]], [s for s in asked if not reached[s]]
 
 
-def measure(bodies: Sequence[Body], asked: Sequence[Setting], work: Path, jobs: int, until: float) -> Iterator[Row]:
-    """Rows as they come; nothing begins after the time `until`, seconds of `time.monotonic`."""
+def measure(bodies: Sequence[Body], every: Sequence[Setting], work: Path, jobs: int, until: float) -> Iterator[Row]:
+    """Rows as they come, first those of an earlier call; nothing begins after `until`, seconds of `time.monotonic`."""
+    earlier = stored(work / ROWS, every, bodies)
+    yield from earlier
+    done = {(row.setting, row.body) for row in earlier}
     for body in bodies:
+        asked = [setting for setting in every if (setting, body) not in done]
+        if not asked or time.monotonic() >= until:
+            continue
         default = outcome(body, work)
         if default.why:
             raise SystemExit(f"{body.figure}: the run with defaults failed: {default.why}")
@@ -356,6 +368,34 @@ def measure(bodies: Sequence[Body], asked: Sequence[Setting], work: Path, jobs: 
 def _measured_in_time(setting: Setting, body: Body, default: Outcome, work: Path, until: float) -> Row | None:
     """A row, in another process; None where its time is over."""
     return measured(setting, body, default, work) if time.monotonic() < until else None
+
+
+def line(row: Row) -> str:
+    """A row as one line of JSON, joints and all."""
+
+    def plain(one: Outcome | str) -> Any:
+        return one if isinstance(one, str) else {**one._asdict(), "joints": one.joints.tolist()}
+
+    sides = {side: plain(getattr(row, side)) for side in ("default", "half", "double")}
+    return json.dumps({"setting": [row.setting.name, row.setting.default], "body": row.body, **sides})
+
+
+def stored(path: Path, every: Sequence[Setting], bodies: Sequence[Body]) -> list[Row]:
+    """The rows of a file of such lines that belong to these settings, with the defaults they have now, and these bodies."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    settings_now = {json.dumps([s.name, s.default]): s for s in every}
+
+    def plain(one: Any, frames: int) -> Any:
+        if isinstance(one, str):
+            return one
+        return Outcome(**{**one, "joints": np.reshape(np.array(one["joints"], np.float64), (frames, -1, 3))})
+
+    rows = []
+    for told in map(json.loads, lines):
+        setting, body = settings_now.get(json.dumps(told["setting"])), Body(*told["body"])
+        if setting is not None and body in bodies:
+            rows.append(Row(setting, body, *(plain(told[side], body.frames) for side in ("default", "half", "double"))))
+    return rows
 
 
 HEADS = ("setting", "default", "meaning", "half", "at default", "double", "joints ±", "% moved")
@@ -561,6 +601,7 @@ def main() -> None:
     parser.add_argument("--vertices", type=int, default=1200)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=math.inf)
+    parser.add_argument("--work", type=Path, metavar="FOLDER")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--markdown", type=Path)
     parser.add_argument("--list", action="store_true")
@@ -572,10 +613,16 @@ def main() -> None:
         return
     bodies = [Body(figure, args.frames, args.vertices, args.seed) for figure in args.bodies]
     rows: list[Row] = []
-    with tempfile.TemporaryDirectory() as scratch:
-        for row in measure(bodies, asked, Path(scratch), args.jobs, until):
+    with ExitStack() as stack:
+        work = args.work or Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        work.mkdir(parents=True, exist_ok=True)
+        kept = {(row.setting, row.body) for row in stored(work / ROWS, asked, bodies)}
+        for row in measure(bodies, asked, work, args.jobs, until):
             rows.append(row)
             print(row.body.figure, *cells([row]), sep=" | ", flush=True)
+            if (row.setting, row.body) not in kept:
+                with (work / ROWS).open("a", encoding="utf-8") as file:
+                    file.write(line(row) + "\n")
             if args.json:
                 args.json.write_text(as_json(rows), encoding="utf-8")
     done = {(row.setting, row.body) for row in rows}

@@ -11,6 +11,7 @@ from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
 from kinetree.schemas.registration.roll_candidates import RollCandidates
+from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.schemas.topology.extrema import ExtremaParams
 from kinetree.schemas.topology.geodesics import GeodesicsParams
 from kinetree.schemas.topology.intervals import Intervals
@@ -95,7 +96,9 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
-    made.tracking = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph)
+    made.tracking = along(
+        tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams()
+    )
     made.recovery = recovery(graph, made.tracking, meshes)
     made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
     for number in graph.members("pass", ()):

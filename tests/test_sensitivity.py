@@ -16,6 +16,8 @@ from kinetree.tasks.numerics.structure import rotation_centres
 from kinetree.tasks.numerics.structure.part_tree import PartTreeSettings
 from kinetree.tasks.numerics.topology.extrema import ExtremaSettings
 
+REQUIRED = (10, *[(0.1, 0.01)] * 4, 30)
+"""Values of the fields of FitSettings that have no default."""
 PATH = Path(__file__).resolve().parent.parent / "benchmarks" / "sensitivity.py"
 
 
@@ -38,7 +40,7 @@ def test_settings_are_found_with_their_defaults_and_meanings(bench: ModuleType) 
     field = named(bench, "structure/part_tree.PartTreeSettings.noise")
     assert (field.default, field.shelf) == (0.001, "structure")
     assert field.meaning == "Drift that is none, share of the root of the area"
-    assert named(bench, "registration/deformation.FitSettings.steps").default == 10
+    assert named(bench, "registration/deformation.FitSettings.searches").default == 3
     assert named(bench, "structure/centre_lines.CentreLinesSettings.slender").default == (1.3, 1.7)
     assert not any(setting.field == "fit" for setting in bench.settings()), "a settings value within another is no number"
 
@@ -69,14 +71,14 @@ def test_default_is_put_back_after_a_failure(bench: ModuleType) -> None:
     changed: list[tuple[int, int]] = []
 
     def fails() -> None:
-        with bench.varied(named(bench, "registration/deformation.FitSettings.steps"), 20):
-            changed.append((FitSettings().steps, FitSettings(3).steps))
+        with bench.varied(named(bench, "registration/deformation.FitSettings.searches"), 6):
+            changed.append((FitSettings(*REQUIRED).searches, FitSettings(*REQUIRED, 5).searches))
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
         fails()
-    assert changed == [(20, 3)]
-    assert (PartTreeSettings().noise, FitSettings().steps) == (0.001, 10)
+    assert changed == [(6, 5)]
+    assert (PartTreeSettings().noise, FitSettings(*REQUIRED).searches) == (0.001, 3)
 
 
 def test_varied_setting_changes_results_and_computes_nothing_before_them(bench: ModuleType, tmp_path: Path) -> None:
@@ -156,6 +158,22 @@ def test_rows_are_sorted_by_effect_and_say_what_was_not_varied(bench: ModuleType
     assert "Not varied (1):\n\n- structure/m.C.fixed: because\n" in text
     assert "Not measured (1):\n\n- structure/m.C.late on none\n" in text
     assert "failed: it broke" in text
+
+
+def test_rows_are_read_back_where_an_earlier_call_left_them(bench: ModuleType, tmp_path: Path) -> None:
+    joints = np.random.default_rng(0).normal(size=(3, 4, 3))
+    setting, body = named(bench, "structure/part_tree.PartTreeSettings.noise"), bench.Body("none", 3, 1, 0)
+    found = bench.Outcome(4, 5, math.nan, 1, joints, {"skeleton": 1}, 2)
+    row = bench.Row(setting, body, found, "never asked for", found._replace(joints=joints[:, :0], why="it broke"))
+    file = tmp_path / "rows.jsonl"
+    file.write_text(bench.line(row) + "\n")
+    (again,) = bench.stored(file, [setting], [body])
+    np.testing.assert_array_equal(again.default.joints, joints)
+    assert (again.half, again.double.why, again.double.joints.shape) == ("never asked for", "it broke", (3, 0, 3))
+    assert bench.stored(file, [setting._replace(default=7.0)], [body]) == [], "another default is another setting"
+    assert bench.stored(file, [setting], [body._replace(seed=1)]) == []
+    done = list(bench.measure([body], [setting], tmp_path, 1, math.inf))
+    assert [one.setting for one in done] == [setting], "nothing is measured again"
 
 
 def test_constants_that_are_fixed_when_compiled_or_imported_are_told_apart(bench: ModuleType) -> None:

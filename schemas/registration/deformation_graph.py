@@ -10,7 +10,7 @@ from kinetree.schemas.dims import BLOCK, CORNER, EDGE, END, FACE, INFLUENCE, NEI
 
 
 class DeformationGraphParams(Params):
-    """How finely the reference is covered with nodes."""
+    """How finely the reference is covered with nodes, and how often all frames are fitted again."""
 
     nodes: int = Field(default=900, ge=10, le=100_000)
     """Nodes, at most one for every two vertices."""
@@ -22,6 +22,8 @@ class DeformationGraphParams(Params):
     """Edges link nodes on opposite sides, through the body, up to this thickness, share of the root of the area."""
     samples: int = Field(default=8, ge=1)
     """Vertices per node that stand for the surface in a fit."""
+    passes: int = Field(default=3, ge=1, le=20)
+    """Refits of all frames after tracking, each with the stiffness that the one before taught; the third repeats."""
 
 
 class DeformationGraph(Artifact):

@@ -2,9 +2,31 @@
 
 from typing import Annotated
 
-from kinetree.schemas.array import Array, Floats
+from pydantic import Field
+
+from kinetree.schemas.array import Array, Floats, Params
 from kinetree.schemas.dims import NODE, ROW, XYZ
 from kinetree.schemas.registration.pose import Pose
+
+_Range = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
+"""At the first step and at the last, between them geometric."""
+
+
+class TrackingParams(Params):
+    """How the reference is fitted to a frame; of a pair, the first step takes the first value, the last the second."""
+
+    steps: int = Field(default=10, ge=1, le=1000)
+    """Gauss–Newton steps; of the pairs below the first step takes the first value and the last step the second."""
+    stiffness: _Range = (0.2, 0.002)
+    """Weight λ of the graph's edges against the surface: higher keeps the shape, lower follows the frame."""
+    reach: _Range = (0.08, 0.027)
+    """Matches of points farther apart do not count, share of the root of the area."""
+    scale: _Range = (0.04, 0.008)
+    """Distance from the surface at which a match counts a quarter, share of the root of the area."""
+    point_weight: _Range = (0.05, 0.002)
+    """Weight of the distance between matched points against that from the surface."""
+    solver_steps: int = Field(default=30, ge=1, le=10_000)
+    """Conjugate-gradient steps in each Gauss–Newton step, at most."""
 
 
 class Tracking(Pose):
@@ -22,3 +44,5 @@ class Tracking(Pose):
     """R of the frame before in the chain, from which to predict the next."""
     earlier_translation: Annotated[Floats, Array("float64", NODE, XYZ, unit="length")]
     """p of the frame before."""
+    fitting: TrackingParams = TrackingParams()
+    """How the frame was fitted; a frame that is tracked again is fitted alike."""

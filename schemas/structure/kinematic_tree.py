@@ -22,6 +22,12 @@ class KinematicTreeParams(Params):
     """A joint turns by at least this many degrees between some two frames, or its parts are one."""
     ratio: float = Field(default=0.8, ge=0)
     """Displacement that turning gives a joint's smaller part, in drifts of the joint; below it the part slides, like cloth."""
+    clear_motion: float = Field(default=5.0, ge=0)
+    """Displacement, in roughnesses of its surface, from which on a part moves clearly, so that its joint is not tested."""
+    misfit_ratio: float = Field(default=1.6, ge=0)
+    """A tested joint stays if its two parts as one piece lie this many times farther off the frames' surfaces than as two."""
+    misfit_ratio_if_moving: float = Field(default=1.1, ge=0)
+    """The same where some other joint of the body moves clearly."""
 
 
 class KinematicTree(Skeleton):

@@ -6,7 +6,6 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
 from kinetree.schemas.registration.reference import Reference
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
-from kinetree.tasks.numerics.registration.stiffness import PASSES
 
 
 @task()
@@ -21,7 +20,7 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
     return DeformationGraph(
         frames=reference.frames,
         frame=reference.frame,
-        passes=len(PASSES),
+        passes=params.passes,
         vertices=made.V,
         faces=made.F,
         normals=made.N,

@@ -13,7 +13,7 @@ from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
-from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.tasks.numerics.registration import deformation, roll_candidates
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
@@ -45,6 +45,11 @@ def rolled_pose(
         return before
     fits = roll_candidates.RollCandidates(candidates.angle, candidates.misfit, candidates.rotation, candidates.place)
     return roll_candidates.rolled(graph, before, stiffness.cluster.astype(np.int64), fits, candidate.astype(np.int64))
+
+
+def fit_settings(params: TrackingParams) -> deformation.FitSettings:
+    """How a frame is fitted in tracking."""
+    return deformation.FitSettings(**params.model_dump())
 
 
 def target(mesh: Mesh, stored: DeformationGraph) -> Target:

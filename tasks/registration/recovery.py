@@ -10,7 +10,7 @@ from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration import recovery as numerics
-from kinetree.tasks.registration.pose import graph, pose, target
+from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task()
@@ -26,6 +26,7 @@ def recovery(
         lambda at: pose(tracking[frames[at]]),
         lambda at: target(mesh[frames[at]], deformation_graph),
         frames.index(deformation_graph.frame),
+        fit_settings(tracking[deformation_graph.frame].fitting),
     )
     recovered = sorted(outcome.recovered)
     poses = [outcome.recovered[at].pose for at in recovered]

@@ -11,7 +11,7 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration.deformation import fit
-from kinetree.tasks.numerics.registration.stiffness import PASSES
+from kinetree.tasks.numerics.registration.stiffness import refit_pass
 from kinetree.tasks.registration.pose import graph, rolled_pose, target, tracked_pose
 
 
@@ -35,5 +35,5 @@ def refit(
     else:
         start = rolled_pose(nodes, previous, candidates, stiffness, roll.row(frame))
     if frame != deformation_graph.frame:  # the reference stays what it is
-        start = fit(nodes, start, target(mesh, deformation_graph), PASSES[number].fit, roll.stiffness.copy()).pose
+        start = fit(nodes, start, target(mesh, deformation_graph), refit_pass(number).fit, roll.stiffness.copy()).pose
     return Refit(rotation=start.rotation, translation=start.translation)

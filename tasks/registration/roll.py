@@ -15,7 +15,12 @@ from kinetree.tasks.numerics.arrays import Ints as Longs
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
 from kinetree.tasks.numerics.registration.roll import chosen_rolls
 from kinetree.tasks.numerics.registration.roll_candidates import limbs
-from kinetree.tasks.numerics.registration.stiffness import PASSES, learned_stiffness, loose_between_clusters, loose_limb_ends
+from kinetree.tasks.numerics.registration.stiffness import (
+    learned_stiffness,
+    loose_between_clusters,
+    loose_limb_ends,
+    refit_pass,
+)
 from kinetree.tasks.registration.pose import graph, rolled_pose
 
 
@@ -43,7 +48,7 @@ def roll(
         frames=frames,
         candidate=chosen,
         limb=limb,
-        stiffness=_held(nodes, corrected, limb, cluster, is_loosened=PASSES[index[0]].is_loosened),
+        stiffness=_held(nodes, corrected, limb, cluster, is_loosened=refit_pass(index[0]).is_loosened),
     )
 
 

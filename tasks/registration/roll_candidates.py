@@ -10,7 +10,7 @@ from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.tasks.numerics.registration import roll_candidates as numerics
-from kinetree.tasks.numerics.registration.stiffness import PASSES
+from kinetree.tasks.numerics.registration.stiffness import refit_pass
 from kinetree.tasks.registration.pose import graph, pose, target
 
 
@@ -19,7 +19,7 @@ def roll_candidates(
     mesh: Mesh, deformation_graph: DeformationGraph, stiffness: Stiffness, refit: Refit | None, index: Index
 ) -> RollCandidates:
     """Fits every limb as a rigid body from several rolls about its axis, in passes that search for lost roll (ours)."""
-    if refit is None or not PASSES[index[0]].roll:
+    if refit is None or not refit_pass(index[0]).roll:
         none = (0, numerics.RollCandidatesSettings().starts)
         return RollCandidates(
             angle=np.empty(none), misfit=np.empty(none), rotation=np.empty((*none, 3, 3)), place=np.empty((*none, 3))

@@ -12,7 +12,7 @@ from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
-from kinetree.tasks.numerics.registration.stiffness import PASSES, learned_stiffness
+from kinetree.tasks.numerics.registration.stiffness import learned_stiffness, refit_pass
 from kinetree.tasks.registration.pose import graph, pose, tracked_pose
 
 
@@ -29,6 +29,6 @@ def stiffness(
     nodes = graph(deformation_graph)
     poses = [pose(r) for r in refit] or [tracked_pose(t, recovery, frame) for frame, t in tracking.items()]
     cluster = previous.cluster if previous is not None else np.full(len(nodes.node), -1)
-    if PASSES[index[0]].clusters:
+    if refit_pass(index[0]).clusters:
         cluster = rigid_clusters(nodes, poses)
     return Stiffness(stiffness=learned_stiffness(nodes, poses), cluster=cluster)

@@ -4,29 +4,33 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.reference import Reference
-from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.registration.pose import graph, pose, target
+from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task(over="frame", along=Reference)
-def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None) -> Tracking:
+def tracking(
+    mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None, params: TrackingParams
+) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
     if previous is None:
         rest = at_rest(body)
-        return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0)
+        return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), usual=previous.usual)
+    fitted = numerics.tracking(
+        body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual
+    )
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
-    return _stored(fitted, last, previous.steps + 1, usual)
+    return _stored(fitted, last, previous.steps + 1, usual, params)
 
 
-def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float) -> Tracking:
-    """A fitted frame, with the pose before it and its place in the chain."""
+def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float, params: TrackingParams) -> Tracking:
+    """A fitted frame, with the pose before it, its place in the chain and how it was fitted."""
     return Tracking(
         steps=steps,
         rotation=fitted.pose.rotation,
@@ -34,6 +38,7 @@ def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float) 
         uncovered=fitted.uncovered,
         usual=usual,
         attempt=fitted.attempt,
+        fitting=params,
         earlier_rotation=earlier.rotation,
         earlier_translation=earlier.translation,
     )

@@ -16,7 +16,7 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
 from kinetree.tasks.numerics.structure.given_correspondence import is_given, limited_confidence
-from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, JointEvidenceSettings
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.numerics.structure.pruning import PruningSettings
 
@@ -37,6 +37,7 @@ def kinematic_tree(
         np.stack([a.confidence for a in aligned]),
         np.stack([a.residual for a in aligned]),
         lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),
+        JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving),
     )
     given = is_given(evidence.confidence, evidence.residual)
     V, F = reference.vertices, reference.faces

@@ -3,10 +3,13 @@
 from dataclasses import fields
 
 import numpy as np
+import pytest
+from pydantic import ValidationError
 from stepwise import walk
 
 from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
+from kinetree.tasks.numerics.registration.stiffness import PASSES
 from kinetree.tasks.registration.deformation_graph import deformation_graph
 from kinetree.tasks.registration.pose import graph
 
@@ -29,6 +32,15 @@ def test_parameters_reach_the_graph() -> None:
     assert len(other.samples) <= 400 < len(walk().deformation_graph.samples)
     assert len(other.edges) < len(walk().deformation_graph.edges)
     assert len(deformation_graph(walk().reference, DeformationGraphParams(nodes=50)).nodes) == 50
+
+
+def test_number_of_passes_is_as_asked_for() -> None:
+    one = deformation_graph(walk().reference, DeformationGraphParams(nodes=50, passes=5))
+    assert list(one.members("pass", ())) == [0, 1, 2, 3, 4]
+    assert walk().deformation_graph.passes == DeformationGraphParams().passes == len(PASSES)
+    for wrong in (0, 21):
+        with pytest.raises(ValidationError, match="passes"):
+            DeformationGraphParams(passes=wrong)
 
 
 def test_fixed_connectivity_needs_no_graph() -> None:

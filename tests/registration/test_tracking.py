@@ -1,11 +1,19 @@
 """Contract of tracking: at rest in the reference, on the body in every other frame, and a chain that goes on."""
 
+from typing import Any
+
 import numpy as np
+import pytest
+from pydantic import ValidationError
 from stepwise import along, walk
 
+from kinetree.schemas.registration.tracking import TrackingParams
+from kinetree.tasks.numerics.registration import recovery as numeric_recovery
+from kinetree.tasks.numerics.registration import tracking as numeric_tracking
 from kinetree.tasks.numerics.registration.deformation import shape
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
 from kinetree.tasks.registration.pose import graph, pose
+from kinetree.tasks.registration.recovery import recovery
 from kinetree.tasks.registration.tracking import tracking
 
 
@@ -47,6 +55,47 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
     strange = last - 1
     turned = np.array(meshes[strange].vertices) @ np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
     meshes[strange] = meshes[strange].model_copy(update={"vertices": turned + 0.3 * made.reference.size})
-    again = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=made.deformation_graph)
+    again = along(
+        tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=made.deformation_graph, params=TrackingParams()
+    )
     assert again[strange].uncovered > 0.1
     assert again[last].uncovered < 0.1
+
+
+OTHERS = TrackingParams(
+    steps=2, stiffness=(0.3, 0.1), reach=(0.05, 0.02), scale=(0.03, 0.01), point_weight=(0.04, 0.01), solver_steps=5
+)
+
+
+def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = walk()
+    fits: list[Any] = []
+    fitted = numeric_tracking.tracking
+
+    def listening(body: Any, earlier: Any, neighbour: Any, target: Any, fitting: Any, **usual: float) -> Any:
+        fits.append(fitting)
+        return fitted(body, earlier, neighbour, target, fitting, **usual)
+
+    monkeypatch.setattr(numeric_tracking, "tracking", listening)
+    monkeypatch.setattr(numeric_recovery, "tracking", listening)
+    first = along(
+        tracking, made.reference, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS
+    )
+    assert not np.array_equal(first[0].translation, made.tracking[0].translation)
+    poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.tracking.items()}
+    count, poses[3] = len(fits), poses[3].model_copy(update={"uncovered": 0.9})
+    recovery(made.deformation_graph, poses, made.mesh)
+    assert len(fits) > count > 0
+    for fitting in fits:
+        assert {name: getattr(fitting, name) for name in OTHERS.model_dump()} == OTHERS.model_dump()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"steps": 0}, {"stiffness": (0.0, 0.1)}, {"reach": (0.1, -0.1)}, {"scale": (0.1,)}, {"solver_steps": 0}],
+)
+def test_values_out_of_bounds_are_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        TrackingParams(**wrong)

@@ -1,8 +1,11 @@
 """The articulated body as the task gives it."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from articulated import Known, chain, swings, three_arms
+from pydantic import ValidationError
 
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
@@ -10,6 +13,7 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
 
 FIRST = 10
@@ -78,6 +82,25 @@ def test_what_counts_as_a_joint_can_be_set() -> None:
     body = chain((0.0,), swings(16, 2, 10, axes=1))
     assert told(body).kinds.count("joint") == 1
     assert told(body, degrees=30.0).kinds.count("joint") == 0
+
+
+def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
+    body, asked = chain((0.0,), swings(16, 2)), []
+    made = numerics.kinematic_tree
+
+    def listening(*given: Any) -> Any:
+        asked.append(given[10].settings)
+        return made(*given[:10], None, given[11])
+
+    monkeypatch.setattr(numerics, "kinematic_tree", listening)
+    told(body, np.full(body.x.shape[:2], 0.9), clear_motion=7.0, misfit_ratio=1.5, misfit_ratio_if_moving=1.2)
+    assert [tuple(settings[:3]) for settings in asked] == [(7.0, 1.5, 1.2)]
+
+
+@pytest.mark.parametrize("wrong", ["clear_motion", "misfit_ratio", "misfit_ratio_if_moving"])
+def test_values_out_of_bounds_are_refused(wrong: str) -> None:
+    with pytest.raises(ValidationError, match=wrong):
+        KinematicTreeParams(**{wrong: -0.1})
 
 
 def test_frame_that_is_not_trusted_has_a_pose_without_confidence() -> None:

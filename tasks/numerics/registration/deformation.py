@@ -35,24 +35,24 @@ _HALVINGS = 3
 class FitSettings:
     """How one frame is fitted; of a pair, the first step takes the first value, the last the second, between geometric.
 
-    steps     : Gauss–Newton steps
-    stiffness : λ
-    reach     : matches farther apart do not count, share of √area
-    scale     : distance from the plane at which a match counts a quarter, share of √area
-    point     : b, what distance counts beside distance from the plane
-    searches  : so many steps search for matches among all samples, later ones start from the last matches
-    solves    : conjugate-gradient steps at most
-    thin      : of the samples of both surfaces every so many are used
-    beta      : what a turn of the normal by one radian counts against distance in local searches, share of √area
+    steps        : Gauss–Newton steps
+    stiffness    : λ
+    reach        : matches farther apart do not count, share of √area
+    scale        : distance from the plane at which a match counts a quarter, share of √area
+    point_weight : b, what distance counts beside distance from the plane
+    solver_steps : conjugate-gradient steps in each Gauss–Newton step, at most
+    searches     : so many steps search for matches among all samples, later ones start from the last matches
+    thin         : of the samples of both surfaces every so many are used
+    beta         : what a turn of the normal by one radian counts against distance in local searches, share of √area
     """
 
-    steps: int = 10
-    stiffness: tuple[float, float] = (0.2, 0.002)
-    reach: tuple[float, float] = (0.08, 0.027)
-    scale: tuple[float, float] = (0.04, 0.008)
-    point: tuple[float, float] = (0.05, 0.002)
+    steps: int
+    stiffness: tuple[float, float]
+    reach: tuple[float, float]
+    scale: tuple[float, float]
+    point_weight: tuple[float, float]
+    solver_steps: int
     searches: int = 3
-    solves: int = 30
     thin: int = 2
     beta: float = CorrespondenceSettings().beta
 
@@ -107,7 +107,7 @@ def fit(
     graph: DeformationGraph,
     start: Pose,
     target: Target,
-    settings: FitSettings | None = None,
+    settings: FitSettings,
     stiffness: Floats | None = None,
 ) -> Fitted:
     """Bend the reference onto a frame by Gauss–Newton steps (ours, for 2014, Sec. 5.3).
@@ -115,10 +115,10 @@ def fit(
     graph     : of the reference mesh
     start     : the pose to begin with, of a frame nearby or of this frame from an earlier pass
     target    : the frame
+    settings  : how it is fitted
     stiffness : (edge,) s, 1 everywhere if not given
     returns   : Fitted; a step that would raise the energy is halved, and left out if that does not help
     """
-    settings = settings or FitSettings()
     s = np.ones(len(graph.edge)) if stiffness is None else stiffness
     pose, energy, match = start, np.zeros((settings.steps, 2)), None
     samples = graph.sample[:: settings.thin], target.sample[:: settings.thin]
@@ -126,12 +126,12 @@ def fit(
         share = i / max(settings.steps - 1, 1)
         lam, reach, scale, b = (
             first * (last / first) ** share
-            for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point)
+            for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point_weight)
         )
         x, n = shape(graph, pose)
         match = _matches(graph, target, samples, x, n, None if i < settings.searches else match, settings.beta * target.size)
         rows = _rows(graph, target, samples, x, n, match, (reach * graph.size, scale * graph.size, b))
-        pose, energy[i] = _step(graph, pose, rows, lam * s, settings.solves)
+        pose, energy[i] = _step(graph, pose, rows, lam * s, settings.solver_steps)
     return Fitted(pose, energy / graph.size**2)
 
 

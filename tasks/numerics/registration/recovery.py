@@ -10,7 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import Pose
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 from kinetree.tasks.numerics.registration.tracking import Tracking, tracking
 
@@ -43,6 +43,7 @@ def recovery(
     pose: Callable[[int], Pose],
     target: Callable[[int], Target],
     reference: int,
+    fitting: FitSettings,
     settings: RecoverySettings | None = None,
 ) -> Recovery:
     """Track failed frames again, each from the frame beyond it, the outermost first, and keep what covers more (ours).
@@ -52,6 +53,7 @@ def recovery(
     pose      : gives the tracked pose at a position; called only for frames beyond failed ones
     target    : gives the frame at a position; called only for failed ones
     reference : position of the reference frame, which never fails
+    fitting   : how frames were tracked
     returns   : Recovery
     """
     others = np.arange(len(uncovered)) != reference
@@ -62,7 +64,7 @@ def recovery(
         there = recovered.get(beyond)
         if (there.uncovered if there else uncovered[beyond]) >= uncovered[at]:
             continue
-        again = tracking(graph, None, there.pose if there else pose(beyond), target(at), usual=usual)
+        again = tracking(graph, None, there.pose if there else pose(beyond), target(at), fitting, usual=usual)
         if again.uncovered < uncovered[at]:
             recovered[at] = again
     return Recovery(failed, usual, recovered)

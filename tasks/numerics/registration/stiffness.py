@@ -46,17 +46,22 @@ class Pass(NamedTuple):
 # every pass starts from the pose of the pass before, so it searches near and once; the first still roughly, the second so
 # finely that a section which is not quite round holds its roll
 PASSES = (
-    Pass(FitSettings(4, (0.24, 0.12), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), searches=1, thin=1)),
+    Pass(FitSettings(4, (0.24, 0.12), (0.05, 0.027), (0.02, 0.008), (0.01, 0.001), 30, searches=1, thin=1)),
     Pass(
-        FitSettings(4, (0.16, 0.08), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+        FitSettings(4, (0.16, 0.08), (0.05, 0.027), (0.008, 0.004), (0.01, 0.001), 30, searches=1, thin=1, beta=0.04),
         clusters=True,
         roll=True,
     ),
     Pass(
-        FitSettings(4, (0.06, 0.03), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), searches=1, thin=1, beta=0.04),
+        FitSettings(4, (0.06, 0.03), (0.05, 0.027), (0.008, 0.008), (0.01, 0.001), 30, searches=1, thin=1, beta=0.04),
         is_loosened=True,
     ),
 )
+
+
+def refit_pass(number: int) -> Pass:
+    """What a pass does, numbered from 0; passes beyond the last of `PASSES` do as that one."""
+    return PASSES[min(number, len(PASSES) - 1)]
 
 
 def learned_stiffness(graph: DeformationGraph, poses: Sequence[Pose], settings: StiffnessSettings | None = None) -> Floats:

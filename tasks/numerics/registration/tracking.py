@@ -31,7 +31,7 @@ class TrackingSettings(NamedTuple):
     """Gauss–Newton steps of the stiff ways. Chosen on: not recorded."""
     stiffness: float = 1.0
     """λ of the first step of the stiff ways. Chosen on: not recorded."""
-    solves: int = 60
+    solver_steps: int = 60
     """Conjugate-gradient steps in each step of the stiff ways, at most. Chosen on: not recorded."""
 
 
@@ -64,6 +64,7 @@ def tracking(
     earlier: Pose | None,
     neighbour: Pose,
     target: Target,
+    fitting: FitSettings,
     usual: float = 0.0,
     settings: TrackingSettings | None = None,
 ) -> Tracking:
@@ -73,12 +74,13 @@ def tracking(
     earlier   : pose of the neighbour's own neighbour, from which to predict; None where there is none
     neighbour : pose of the neighbouring frame
     target    : the frame
+    fitting   : of the usual way
     usual     : smallest share that any frame between the reference and this one leaves uncovered: holes of a capture
     returns   : Tracking of the first way that leaves little uncovered, or little of the frame far from the body; where no way
                 does, of the one that covers most
     """
     settings = settings or TrackingSettings()
-    ways = attempts(FitSettings(), settings)
+    ways = attempts(fitting, settings)
     best = _attempted(graph, neighbour, target, ways[0].settings, 0)
     for number, way in enumerate(ways[1:], start=1):
         is_covered = best.uncovered <= usual + settings.uncovered
@@ -99,7 +101,7 @@ def attempts(usual: FitSettings, settings: TrackingSettings | None = None) -> tu
     """
     s = settings or TrackingSettings()
     wide = replace(usual, reach=(s.reach, usual.reach[1]), scale=(s.scale, usual.scale[1]))
-    stiff = replace(wide, steps=s.steps, stiffness=(s.stiffness, usual.stiffness[1]), solves=s.solves)
+    stiff = replace(wide, steps=s.steps, stiffness=(s.stiffness, usual.stiffness[1]), solver_steps=s.solver_steps)
     return Attempt(usual), Attempt(usual, True), Attempt(wide), Attempt(stiff), Attempt(stiff, True)
 
 

@@ -26,13 +26,13 @@ NEAREST = 1e-6
 class JointEvidenceSettings(NamedTuple):
     """What makes a joint evident."""
 
-    clear_motion: float = 5.0
+    clear_motion: float
     """Displacement, in roughnesses of its surface, from which on a part moves without a test. Roughness is noise and the height
     of edges. Chosen on still bodies and bodies with one joint of 20°; a twist that slides farther than that would stay."""
-    needed: float = 1.6
+    misfit_ratio: float
     """How many times farther one piece is off the surface than two, at least. Chosen on such bodies: made-up joints had 0.9 to
     1.5 (one 2.2), elbows that turn by 20° 1.5 to 3.8."""
-    needed_if_moving: float = 1.1
+    misfit_ratio_if_moving: float
     """The same where another joint moves clearly. Chosen on a walking body of 1,000 vertices, whose elbows, wrists and ankles
     have 1.1 to 1.6."""
     least_vertices: int = 12
@@ -55,32 +55,28 @@ class FrameEvidence(NamedTuple):
     confidence : (frame, vertex) 0 to 1
     residual   : (frame, vertex) distance to the frame's surface as aligned, mesh unit
     surface    : gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner), by its place among the frames
+    settings   : what makes a joint evident in them
     """
 
     confidence: Floats
     residual: Floats
     surface: Callable[[int], tuple[Floats, Ints]]
+    settings: JointEvidenceSettings
 
 
-def least_evident_joint(
-    body: MovingSurface,
-    parts: MovingParts,
-    tree: PartTree,
-    evidence: FrameEvidence,
-    settings: JointEvidenceSettings | None = None,
-) -> int:
+def least_evident_joint(body: MovingSurface, parts: MovingParts, tree: PartTree, evidence: FrameEvidence) -> int:
     """The smaller part at the joint that the frames show least; −1 where they show all joints.
 
     body, parts, tree : the reference and its vertices in all frames · its rigid parts · their tree
     """
-    chosen = settings or JointEvidenceSettings()
+    chosen = evidence.settings
     roughness = _roughness(body)
     mass = np.bincount(parts.label, body.area, parts.R.shape[1])
     order, parents = tree.tree.order, tree.tree.parents
     sides = [(int(order[k]), int(order[parents[k]])) for k in range(1, len(mass))]
     pairs = [sorted(both, key=lambda p: (mass[p], p)) for both in sides]
     scores = np.array([_score(body, parts, evidence, roughness, small, large, chosen) for small, large in pairs])
-    needed = chosen.needed_if_moving if np.isinf(scores).any() else chosen.needed
+    needed = chosen.misfit_ratio_if_moving if np.isinf(scores).any() else chosen.misfit_ratio
     return pairs[int(scores.argmin())][0] if (scores < needed).any() else -1
 
 

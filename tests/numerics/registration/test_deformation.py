@@ -1,14 +1,16 @@
 """Laws of bending a reference onto a frame, on tubes whose every point's way is known."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
+from shipped import FITTING
 
 from kinetree.tasks.numerics.registration.block_system import add_data, conjugate_gradients
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy, strains
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
@@ -40,7 +42,7 @@ def test_nodes_that_move_as_one_move_the_body_rigidly(body):
 
 
 def test_a_frame_that_is_the_reference_leaves_it_where_it_is(body):
-    found = fit(body, at_rest(body), framed(body, body.V, body.F)).pose
+    found = fit(body, at_rest(body), framed(body, body.V, body.F), FITTING).pose
     np.testing.assert_allclose(shape(body, found)[0], body.V, atol=1e-9 * body.size)
 
 
@@ -48,7 +50,7 @@ def test_a_frame_that_is_the_reference_leaves_it_where_it_is(body):
 def test_a_rigid_motion_is_reproduced_to_a_millionth_of_the_size(body, angle):
     R, t = rotation((1, 0, 0.5), angle), np.array([0.2, 0.1, -0.1])
     V = body.V @ R.T + t
-    many = FitSettings(steps=30, point=(0.05, 0.05), searches=8, solves=100)
+    many = replace(FITTING, steps=30, point_weight=(0.05, 0.05), searches=8, solver_steps=100)
     found = fit(body, at_rest(body), framed(body, V, body.F), many).pose
     assert np.abs(shape(body, found)[0] - V).max() < 1e-6 * body.size
 
@@ -58,7 +60,7 @@ def test_a_bent_tube_cut_otherwise_is_followed_within_a_hundredth_of_its_length(
     other, F = tube(around=29, along=57, start=0.07)
     pose = at_rest(body)
     for part in (angle / 2, angle):
-        pose = fit(body, pose, framed(body, bent(other, part), F)).pose
+        pose = fit(body, pose, framed(body, bent(other, part), F), FITTING).pose
     error = np.linalg.norm(shape(body, pose)[0] - bent(body.V, angle), axis=1)
     assert error.mean() < 0.005 * LENGTH
     assert np.quantile(error, 0.95) < 0.01 * LENGTH
@@ -68,22 +70,22 @@ def test_a_body_whose_every_vertex_is_a_node_follows_a_bend():
     V, F = tube(around=12, along=24)
     coarse = deformation_graph(V, F)
     assert len(coarse.node) == len(V)
-    found = fit(coarse, at_rest(coarse), framed(coarse, bent(V, 0.3), F))
+    found = fit(coarse, at_rest(coarse), framed(coarse, bent(V, 0.3), F), FITTING)
     assert np.linalg.norm(shape(coarse, found.pose)[0] - bent(V, 0.3), axis=1).mean() < 0.02 * LENGTH
 
 
 def test_energy_never_rises_over_a_step_and_falls_over_the_first(body):
     other, F = tube(around=29, along=57)
-    energy = fit(body, at_rest(body), framed(body, bent(other, 0.5), F)).energy
+    energy = fit(body, at_rest(body), framed(body, bent(other, 0.5), F), FITTING).energy
     assert (energy[:, 1] <= energy[:, 0]).all()
     assert energy[0, 1] < 0.9 * energy[0, 0]
 
 
 def test_scale_and_place_change_nothing_but_rounding(body):
     V, F = bent(body.V, 0.3), body.F
-    found = shape(body, fit(body, at_rest(body), framed(body, V, F)).pose)[0]
+    found = shape(body, fit(body, at_rest(body), framed(body, V, F), FITTING).pose)[0]
     big = deformation_graph(1024 * body.V, body.F, FEW)
-    again = shape(big, fit(big, at_rest(big), framed(big, 1024 * V, F)).pose)[0]
+    again = shape(big, fit(big, at_rest(big), framed(big, 1024 * V, F), FITTING).pose)[0]
     np.testing.assert_allclose(again / 1024, found, atol=1e-6 * body.size)
 
 
@@ -92,7 +94,7 @@ def test_the_order_of_a_frames_vertices_changes_nothing_but_rounding(body):
     V = bent(V, 0.3) * (1 + 0.001 * np.random.default_rng(0).normal(size=(len(V), 1)))
     order = np.random.default_rng(1).permutation(len(V))
     place = np.argsort(order)
-    one, two = (fit(body, at_rest(body), framed(body, *f)).pose for f in ((V, F), (V[order], place[F])))
+    one, two = (fit(body, at_rest(body), framed(body, *f), FITTING).pose for f in ((V, F), (V[order], place[F])))
     np.testing.assert_allclose(shape(body, two)[0], shape(body, one)[0], atol=1e-6 * body.size)
 
 
@@ -100,7 +102,7 @@ def test_results_are_equal_to_the_last_bit_again_and_in_threads(body):
     V, F = tube(around=29, along=57)
 
     def once(angle):
-        return np.concatenate([x.ravel() for x in fit(body, at_rest(body), framed(body, bent(V, angle), F)).pose])
+        return np.concatenate([x.ravel() for x in fit(body, at_rest(body), framed(body, bent(V, angle), F), FITTING).pose])
 
     angles = [0.1, 0.2, 0.3, 0.4]
     alone = [once(a) for a in angles]
@@ -113,19 +115,19 @@ def test_a_frame_that_lacks_half_a_limb_still_gives_finite_poses(body):
     V, F = tube(around=29, along=57)
     half = F[(V[F, 2] < 1).all(axis=1)]
     used = np.unique(half)
-    found = fit(body, at_rest(body), framed(body, V[used], np.searchsorted(used, half)))
+    found = fit(body, at_rest(body), framed(body, V[used], np.searchsorted(used, half)), FITTING)
     assert np.isfinite(found.pose.rotation).all()
     assert np.abs(shape(body, found.pose)[0] - body.V).max() < 0.2 * LENGTH
 
 
 def test_a_frame_out_of_reach_leaves_the_pose_as_it_was(body):
-    found = fit(body, at_rest(body), framed(body, body.V + 100.0, body.F)).pose
+    found = fit(body, at_rest(body), framed(body, body.V + 100.0, body.F), FITTING).pose
     np.testing.assert_allclose(shape(body, found)[0], body.V, atol=1e-9)
 
 
 def test_rotations_stay_rotations(body):
     V, F = tube(around=29, along=57)
-    R = fit(body, at_rest(body), framed(body, bent(V, 0.5), F)).pose.rotation
+    R = fit(body, at_rest(body), framed(body, bent(V, 0.5), F), FITTING).pose.rotation
     np.testing.assert_allclose(R @ R.transpose(0, 2, 1), np.tile(np.eye(3), (len(R), 1, 1)), atol=1e-12)
     np.testing.assert_allclose(np.linalg.det(R), 1.0)
 

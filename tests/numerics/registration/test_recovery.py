@@ -2,6 +2,7 @@
 
 import numpy as np
 from limbs import ANGLES, LENGTH, bent, rotation
+from shipped import FITTING
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.recovery import failures, recovery
@@ -20,12 +21,12 @@ def test_failures_stand_out_from_the_sequence():
 def test_a_lost_frame_is_found_again_from_the_frame_beyond_it(body, targets):
     good, last = [], at_rest(body)
     for target in targets:
-        good.append(tracking(body, None, last, target))
+        good.append(tracking(body, None, last, target, FITTING))
         last = good[-1].pose
     lost = Pose(np.tile(rotation((1, 0, 0), np.pi / 2), (len(body.node), 1, 1)), body.g @ rotation((1, 0, 0), np.pi / 2).T)
     poses = [*(frame.pose for frame in good[:3]), lost, good[4].pose]
     share = np.array([*(frame.uncovered for frame in good[:3]), 0.3, good[4].uncovered])
-    found = recovery(body, share, poses.__getitem__, targets.__getitem__, 0)
+    found = recovery(body, share, poses.__getitem__, targets.__getitem__, 0, FITTING)
     assert list(found.recovered) == [3]
     assert found.recovered[3].uncovered <= SETTINGS.uncovered
     true = bent(body.V, ANGLES[3])
@@ -36,11 +37,11 @@ def test_good_frames_and_the_reference_are_left_alone(body):
     def refused(at: int):
         raise AssertionError(f"frame {at} was asked for")
 
-    found = recovery(body, np.array([0.5, 0.001, 0.001, 0.001, 0.001]), refused, refused, 0)
+    found = recovery(body, np.array([0.5, 0.001, 0.001, 0.001, 0.001]), refused, refused, 0, FITTING)
     assert not found.failed.any()
     assert not found.recovered
     assert found.usual == 0.001
 
 
 def test_a_single_frame_has_nothing_usual(body):
-    assert recovery(body, np.zeros(1), lambda at: at_rest(body), lambda at: None, 0).usual == 1.0
+    assert recovery(body, np.zeros(1), lambda at: at_rest(body), lambda at: None, 0, FITTING).usual == 1.0

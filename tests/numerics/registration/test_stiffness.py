@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from limbs import bent, rotation, tube
+from shipped import FITTING
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
@@ -12,6 +13,7 @@ from kinetree.tasks.numerics.registration.stiffness import (
     learned_stiffness,
     loose_between_clusters,
     loose_limb_ends,
+    refit_pass,
 )
 
 SETTINGS = StiffnessSettings()
@@ -24,9 +26,13 @@ def sequence(body):
     targets, poses, pose = [], [], at_rest(body)
     for angle in ANGLES:
         targets.append(Target.of(bent(V, angle), F, body.size))
-        pose = fit(body, pose, targets[-1]).pose
+        pose = fit(body, pose, targets[-1], FITTING).pose
         poses.append(pose)
     return targets, poses
+
+
+def test_passes_beyond_the_last_that_is_described_do_as_that_one():
+    assert [refit_pass(number) for number in range(5)] == [*PASSES, PASSES[-1], PASSES[-1]]
 
 
 def middle(body):

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, rotation, tube
+from shipped import FITTING
 
 from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.tracking import (
     TrackingSettings,
     attempts,
@@ -23,7 +24,7 @@ def rigid(body, R, t):
 
 
 def test_a_frame_that_is_followed_is_covered_at_the_first_attempt(body, targets):
-    found = tracking(body, None, at_rest(body), targets[1])
+    found = tracking(body, None, at_rest(body), targets[1], FITTING)
     assert (found.attempt, found.uncovered) == (0, pytest.approx(0.0, abs=SETTINGS.uncovered))
 
 
@@ -32,7 +33,7 @@ def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
     step = 0.9
     before, last = (rigid(body, rotation((1, 0, 0), k * step), np.zeros(3)) for k in (1, 2))
     target = Target.of(V @ rotation((1, 0, 0), 3 * step).T, F, body.size)
-    alone, led = (tracking(body, b, last, target) for b in (None, before))
+    alone, led = (tracking(body, b, last, target, FITTING) for b in (None, before))
     assert led.uncovered <= min(SETTINGS.uncovered, alone.uncovered)
     x = shape(body, led.pose)[0]
     assert np.linalg.norm(x - body.V @ rotation((1, 0, 0), 3 * step).T, axis=1).mean() < 0.01 * LENGTH
@@ -41,14 +42,14 @@ def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
 def test_a_missing_half_is_reported_as_uncovered(body):
     V, F = tube(around=29, along=57)
     longer = V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH]
-    found = tracking(body, None, at_rest(body), Target.of(longer, F, body.size))
+    found = tracking(body, None, at_rest(body), Target.of(longer, F, body.size), FITTING)
     assert found.uncovered > 0.1
 
 
 def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
     V, F = tube(around=29, along=57)
     longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
-    assert tracking(body, None, at_rest(body), longer, usual=1.0).attempt == 0
+    assert tracking(body, None, at_rest(body), longer, FITTING, usual=1.0).attempt == 0
 
 
 def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, monkeypatch):
@@ -57,7 +58,7 @@ def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, 
     folded = Target.of(np.concatenate([V, 0.97 * V]), np.concatenate([F, inner + len(V)]), body.size)
     fits = []
     monkeypatch.setattr(module, "fit", lambda *a: fits.append(a) or fit(*a))
-    found = tracking(body, None, at_rest(body), folded)
+    found = tracking(body, None, at_rest(body), folded, FITTING)
     assert found.uncovered > 2 * SETTINGS.uncovered
     assert distant_share(body, found.pose, folded) == 0
     assert len(fits) == 1
@@ -79,7 +80,7 @@ def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
 
 
 def test_later_attempts_reach_further_and_try_longer():
-    first, *others = attempts(FitSettings())
+    first, *others = attempts(FITTING)
     assert not first.predicted
     assert max(a.settings.reach[0] for a in others) > first.settings.reach[0]
     assert max(a.settings.steps for a in others) > first.settings.steps

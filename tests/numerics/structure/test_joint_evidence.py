@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from articulated import Known, chain
 from limbs import rotation
+from shipped import EVIDENCE
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.structure import joint_evidence as numerics
@@ -30,7 +31,7 @@ def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> t
     x, goal = aligned.x @ M.T, true.x @ M.T
     residual = np.stack([projected(a, b, true.F).distance for a, b in zip(x, goal, strict=True)])
     parts = MovingParts(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
-    evidence = FrameEvidence(np.ones(residual.shape), residual, lambda t: (goal[t], true.F))
+    evidence = FrameEvidence(np.ones(residual.shape), residual, lambda t: (goal[t], true.F), EVIDENCE)
     return MovingSurface(aligned.V, aligned.F, x, aligned.area), parts, evidence
 
 
@@ -59,6 +60,19 @@ def test_part_that_bends_is_shown(degrees: float, moved: np.ndarray | None) -> N
 
 def test_part_that_bends_in_the_alignment_alone_is_not_shown() -> None:
     assert least(chain((1.0,), turned(X, 4.0)), otherwise(turned(X, 0.0))) == 1
+
+
+def test_what_makes_a_joint_evident_can_be_set() -> None:
+    bent = turned(X, 20.0)
+    body, parts, evidence = looked_at(chain((1.0,), bent), otherwise(bent))
+    tree = part_tree(body, parts)
+    tested = EVIDENCE._replace(clear_motion=1e9)
+    for settings, least_evident in (
+        (EVIDENCE._replace(misfit_ratio=1e9, misfit_ratio_if_moving=1e9), -1),
+        (tested._replace(misfit_ratio_if_moving=1e9), -1),
+        (tested._replace(misfit_ratio=1e9), 1),
+    ):
+        assert least_evident_joint(body, parts, tree, evidence._replace(settings=settings)) == least_evident
 
 
 def test_handful_of_vertices_shows_nothing() -> None:
