@@ -15,8 +15,9 @@ from scipy.spatial import cKDTree
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints, Labels
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.normals import area_vectors, face_areas
+from kinetree.tasks.numerics.geometry.normals import area_vectors
 from kinetree.tasks.numerics.geometry.orientation import half_edges, lexicographic, oriented, winding
+from kinetree.tasks.numerics.input.whole_faces import whole_faces
 
 _SMALLEST_DIAGONAL = 1e-100
 """Mesh unit; of a smaller diagonal the cube, or that of its inverse, is no number."""
@@ -113,22 +114,10 @@ def clean(
     raises          : MeshError if no face or no area is left
     """
     chosen = settings or MeshSettings()
-    if not len(F):
-        raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
-    corners = V[F.ravel()]
-    diagonal = float(np.hypot.reduce(corners.max(axis=0) / 2 - corners.min(axis=0) / 2)) * 2
-    if not _SMALLEST_DIAGONAL < diagonal < 1 / _SMALLEST_DIAGONAL:
-        raise MeshError(f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged")
-    # the box of the faces alone: one stray vertex far away must not widen what counts as close
-    with np.errstate(over="ignore"):
-        X = np.clip((V - corners.min(axis=0)) / diagonal, -_FARTHEST, _FARTHEST)
+    X, diagonal = _relative(V, F, name)
     first = welded(X, merge)
-    G = first[F]
-    whole = np.flatnonzero((G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0]))
-    area = face_areas(X, G[whole])
-    distinct, folded = _distinct(G[whole], area, component_share, len(V))
-    origin, area = whole[distinct], area[distinct]
-    G = G[origin]
+    faces = whole_faces(X, first[F], component_share)
+    G, area = first[F[faces.origin]], faces.area
     if not area.sum() > 0:
         raise MeshError(f"{name}: its {len(F)} faces have no area; the corners of each lie in one point or on one line")
     turned, component = oriented(X, G)
@@ -144,12 +133,12 @@ def clean(
         V=V_new,
         F=F_new,
         vertex_map=vertex_map,
-        face_origin=origin[keep].astype(np.int32),
+        face_origin=faces.origin[keep].astype(np.int32),
         merged=int((~stays).sum()),
         unreferenced=int(stays.sum()) - referenced,
-        degenerate=len(F) - len(whole),
-        duplicate=len(whole) - folded - len(origin),
-        folded=folded,
+        degenerate=faces.degenerate,
+        duplicate=faces.duplicate,
+        folded=faces.folded,
         needles=int(_needles(X, G[keep], area[keep], chosen.needle)),
         flipped=int(turned[keep].sum()),
         shares=shares,
@@ -191,6 +180,23 @@ def welded(X: Floats, tolerance: float) -> Faces:
     return first[cluster]
 
 
+def _relative(V: Floats, F: Faces, name: str) -> tuple[Floats, float]:
+    """(vertex, xyz) in diagonals of the faces' bounding box from its lowest corner · the diagonal, mesh unit.
+
+    The box is that of the faces alone: one stray vertex far away must not widen what counts as close.
+
+    raises : MeshError if there is no face or the diagonal is no length
+    """
+    if not len(F):
+        raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
+    corners = V[F.ravel()]
+    diagonal = float(np.hypot.reduce(corners.max(axis=0) / 2 - corners.min(axis=0) / 2)) * 2
+    if not _SMALLEST_DIAGONAL < diagonal < 1 / _SMALLEST_DIAGONAL:
+        raise MeshError(f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged")
+    with np.errstate(over="ignore"):
+        return np.clip((V - corners.min(axis=0)) / diagonal, -_FARTHEST, _FARTHEST), diagonal
+
+
 def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float, settings: MeshSettings) -> tuple[Flags, Flags]:
     """(component,) large enough but wholly inside a larger one · (component,) to be kept."""
     large = shares >= min(least, float(shares.max()))
@@ -205,27 +211,6 @@ def _body(X: Floats, F: Faces, component: Ints, shares: Floats, least: float, se
             within = (X[own] > box.min(axis=0)).all() and (X[own] < box.max(axis=0)).all()
             inside[c] |= within and bool((winding(probes, X, parts[other]) > settings.inside).all())
     return inside, large & ~inside
-
-
-def _distinct(G: Faces, area: Floats, sheet: float, n: int) -> tuple[Ints, int]:
-    """One face, the first, for each set of corners, without pairs back to back unless they are a sheet.
-
-    G, area : (face, corner) three different vertices below n · (face,)
-    sheet   : share of the area from which faces back to back are a sheet
-    returns : rows to keep, ascending · how many faces were back to back and are not kept
-    """
-    rows = np.sort(G, axis=1)
-    order = lexicographic(rows, n)
-    start = np.flatnonzero(np.r_[True, (np.diff(rows[order], axis=0) != 0).any(axis=1)][: len(rows)])
-    first = order[start]
-    if len(first) == len(rows):
-        return np.arange(len(rows)), 0
-    ascents = (np.roll(G, -1, axis=1) > G).sum(axis=1)  # 2 one way round, 1 the other
-    paired = np.add.reduceat(2 * ascents[order] - 3, start) == 0
-    if area[first[paired]].sum() >= sheet * area[first].sum():
-        paired[:] = False
-    copies = np.diff(start, append=len(rows))
-    return np.sort(first[~paired]), int(copies[paired].sum())
 
 
 def _compacted(V: Floats, F: Faces, first: Faces) -> tuple[Floats, Faces, Faces]:

@@ -57,10 +57,7 @@ def removal_cost(
             _residuals(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
         _residuals(V, N, x, weight, v, part, part, R, t, slip, r[count])
         _products(r, E)
-        best = 0
-        for a in range(1, touches):
-            if E[a, a] < E[best, best]:
-                best = a
+        best = _best_single(E, touches)
         i, j, w, without_part = _best_blend(E, 0, count)
         m, n, u, with_part = _best_blend(E, count, count + 1)
         if without_part < with_part:
@@ -74,14 +71,8 @@ def removal_cost(
             mass[f] += area[v] * weight[f, v]
             weight_sum += weight[f, v]
         own_square[k] = E[count, count] / max(weight_sum, 1e-6)
-    full, total, frame_weight = 1e-300, 0.0, 1e-300
-    for f in range(frames):
-        full = max(full, mass[f])
-    for f in range(frames):
-        if mass[f] > 0.0:
-            total += mass[f] / full * max(loss[f] / mass[f], 0.0) ** 2
-            frame_weight += mass[f] / full
-    return np.sqrt(max(np.sqrt(total / frame_weight) - loose * max(median_of(own_square, len(member)) - quiet, 0.0), 0.0))
+    own = loose * max(median_of(own_square, len(member)) - quiet, 0.0)
+    return np.sqrt(max(_frame_norm(loss, mass) - own, 0.0))
 
 
 @compiled
@@ -148,6 +139,16 @@ def _products(r: Floats, E: Floats) -> None:
 
 
 @compiled
+def _best_single(E: Floats, high: int) -> int:
+    """The one before `high` that leaves least."""
+    best = 0
+    for a in range(1, high):
+        if E[a, a] < E[best, best]:
+            best = a
+    return best
+
+
+@compiled
 def _best_blend(E: Floats, low: int, high: int) -> tuple[int, int, float, float]:
     """The two whose blend leaves least, one of them from `low` on and below `high`, the other before it.
 
@@ -165,3 +166,21 @@ def _best_blend(E: Floats, low: int, high: int) -> tuple[int, int, float, float]
             if 0.0 < w < 1.0 and E[b, b] - w * w * bend < least:
                 first, second, share, least = a, b, w, E[b, b] - w * w * bend
     return first, second, share, least
+
+
+@compiled
+def _frame_norm(loss: Floats, mass: Floats) -> float:
+    """Root mean square over frames of the mean squared residual, each frame by its confident area.
+
+    loss    : (frame,) mesh unit⁴, squared residuals times area
+    mass    : (frame,) mesh unit², area times confidence
+    returns : mesh unit²
+    """
+    full, total, frame_weight = 1e-300, 0.0, 1e-300
+    for f in range(len(loss)):
+        full = max(full, mass[f])
+    for f in range(len(loss)):
+        if mass[f] > 0.0:
+            total += mass[f] / full * max(loss[f] / mass[f], 0.0) ** 2
+            frame_weight += mass[f] / full
+    return np.sqrt(total / frame_weight)
