@@ -23,8 +23,9 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
-from kinetree.pipeline.definitions import PACKAGE, Code
+from kinetree.pipeline.definitions import Code
 from kinetree.pipeline.key import HARMLESS
+from kinetree.pipeline.modules import PACKAGE
 from kinetree.pipeline.statements import syntax
 
 ROOT = Path(__file__).parent.parent

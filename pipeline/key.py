@@ -21,7 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.pipeline.definitions import IMPORTS, STATEMENTS, Code, Definition
+from kinetree.pipeline.definitions import Code
+from kinetree.pipeline.modules import IMPORTS, STATEMENTS, Definition
 from kinetree.schemas.array import Artifact
 
 DIGEST_BYTES = 20

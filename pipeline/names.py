@@ -5,10 +5,11 @@ same spelling inside it and in what is nested in it; what a class body binds hid
 """
 
 import ast
-import importlib.util
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
+
+from kinetree.pipeline.bindings import Target, bound_by, bound_in, children, imported_by, statements_in
 
 READ, HANDED, CALLED, STORED = range(4)
 """How a use treats what it names: only reads it; hands it on, to whatever end; calls it, or a method of it; stores into it."""
@@ -18,10 +19,7 @@ _UNCHANGING = """abs all any bool dict enumerate filter float frozenset getattr 
 list map max min next print range repr reversed round set sorted str sum super tuple type zip"""
 READERS = frozenset(_UNCHANGING.split())
 """Built-in functions that leave their arguments as they are."""
-Target = tuple[str, str | None]
-"""What an import binds: a module, and the name in it where it is one name."""
 Scope = dict[str, tuple[Target, ...]]
-_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 
@@ -65,108 +63,6 @@ def names_of(nodes: Sequence[ast.AST], module: str, *, is_package: bool, walrus:
     for node in nodes:
         reader.read(node)
     return reader.names
-
-
-def bound_by(node: ast.AST, *, walrus: bool = True) -> set[str]:
-    """The names that a statement binds or deletes in the scope it stands in.
-
-    walrus : whether to look for `:=` in expressions, which takes longer
-    """
-    found: set[str] = set()
-    for inner in statements_in([node]):
-        if isinstance(inner, ast.Import | ast.ImportFrom):
-            found.update(alias.asname or alias.name.partition(".")[0] for alias in inner.names)
-        elif isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            found.add(inner.name)
-        elif isinstance(inner, ast.ExceptHandler):
-            found |= {inner.name} if inner.name else set()
-        else:
-            for target in _targets(inner):
-                found |= _bound_in(target)
-    return found | {n.target.id for n in _in_scope(node) if isinstance(n, ast.NamedExpr)} if walrus else found
-
-
-def statements_in(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """The statements of one scope, however deep, with handlers and cases; bodies of functions and classes are left out."""
-    for node in body:
-        yield node
-        if not isinstance(node, _SCOPES):
-            for name in ("body", "handlers", "cases", "orelse", "finalbody"):
-                below = getattr(node, name, None)
-                if below and isinstance(below, list):
-                    yield from statements_in(below)
-
-
-def _targets(node: ast.AST) -> list[ast.AST]:
-    """The expressions in which a statement may bind names."""
-    if isinstance(node, ast.Assign | ast.Delete):
-        return [*node.targets]
-    if isinstance(node, ast.AnnAssign | ast.AugAssign | ast.For | ast.AsyncFor | ast.comprehension):
-        return [node.target]
-    if isinstance(node, ast.With | ast.AsyncWith):
-        return [item.optional_vars for item in node.items if item.optional_vars is not None]
-    if isinstance(node, ast.match_case):
-        return [node.pattern]
-    return [getattr(node, "name")] if type(node).__name__ == "TypeAlias" else []  # noqa: B009 - a node of later Pythons
-
-
-def _bound_in(target: ast.AST) -> set[str]:
-    """The names that a target or a pattern binds."""
-    if isinstance(target, ast.Name):
-        return {target.id}
-    if isinstance(target, ast.Attribute | ast.Subscript):
-        return set()
-    found: set[str] = set()
-    for inner in ast.walk(target):
-        if isinstance(inner, ast.Name) and not isinstance(inner.ctx, ast.Load):
-            found.add(inner.id)
-        elif isinstance(inner, ast.MatchAs | ast.MatchStar) and inner.name:
-            found.add(inner.name)
-        elif isinstance(inner, ast.MatchMapping) and inner.rest:
-            found.add(inner.rest)
-    return found
-
-
-def imported_by(node: ast.AST, module: str, *, is_package: bool) -> Iterator[tuple[str, Target]]:
-    """The names that one import statement binds, and what to; the name of a starred import is "*"."""
-    if isinstance(node, ast.Import):
-        for alias in node.names:
-            yield (
-                alias.asname or alias.name.partition(".")[0],
-                (alias.name if alias.asname else alias.name.partition(".")[0], None),
-            )
-    elif isinstance(node, ast.ImportFrom):
-        package = module if is_package else module.rpartition(".")[0]
-        origin = (
-            importlib.util.resolve_name("." * node.level + (node.module or ""), package) if node.level else node.module or ""
-        )
-        for alias in node.names:
-            yield alias.asname or alias.name, (origin, alias.name)
-
-
-def children(node: ast.AST) -> Iterator[ast.AST]:
-    """The nodes right below a node."""
-    for name in node._fields:
-        value = getattr(node, name, None)
-        if isinstance(value, list):
-            yield from (item for item in value if isinstance(item, ast.AST))
-        elif isinstance(value, ast.AST):
-            yield value
-
-
-def _in_scope(node: ast.AST) -> Iterator[ast.AST]:
-    """The nodes of one scope: bodies of functions, lambdas and classes are left out."""
-    waiting = [node]
-    while waiting:
-        here = waiting.pop()
-        yield here
-        if isinstance(here, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            decorators = [] if isinstance(here, ast.Lambda) else here.decorator_list
-            waiting += [*decorators, *here.args.defaults, *(d for d in here.args.kw_defaults if d)]
-        elif isinstance(here, ast.ClassDef):
-            waiting += [*here.decorator_list, *here.bases, *here.keywords]
-        else:
-            waiting += children(here)
 
 
 class _Reader:
@@ -312,7 +208,7 @@ class _Reader:
         """A comprehension: its first iterable belongs outside, everything else sees its targets."""
         generators: list[ast.comprehension] = node.generators  # type: ignore[attr-defined]
         self.read(generators[0].iter, READ)
-        self._scopes.append({name: () for g in generators for name in _bound_in(g.target)})
+        self._scopes.append({name: () for g in generators for name in bound_in(g.target)})
         for number, generator in enumerate(generators):
             self._read_all([*([generator.iter] if number else []), *generator.ifs], READ)
         self._read_all([getattr(node, part, None) for part in ("elt", "key", "value")])

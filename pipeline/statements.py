@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
-from kinetree.pipeline.names import Names, Target, bound_by, imported_by, names_of
+from kinetree.pipeline.bindings import Target, bound_by, imported_by
+from kinetree.pipeline.names import Names, names_of
 
 Kind = Literal["function", "class", "value", "import", "effect"]
 _UNCHANGEABLE = (
