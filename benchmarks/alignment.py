@@ -35,7 +35,7 @@ from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph, deformation_graph
-from kinetree.tasks.numerics.registration.frame_confidence import residuals, trusted
+from kinetree.tasks.numerics.registration.frame_confidence import inliers, residuals
 from kinetree.tasks.numerics.registration.recovery import recovery
 from kinetree.tasks.numerics.registration.reference import profile, reference
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
@@ -183,7 +183,7 @@ def scored(folder: Path, name: str, args: argparse.Namespace) -> None:
     body, kept, poses, share, seconds = aligned(meshes, start, args.every)
     shapes = [shape(body, pose)[0] for pose in poses]
     residual = np.array([residuals(x, meshes[t].V, meshes[t].F).mean() for x, t in zip(shapes, kept, strict=True)])
-    doubted = int((~trusted(share, residual)).sum())
+    doubted = int((~inliers(share, residual)).sum())
     line = f"{name:9s} {start:4d} {len(kept):4d} {seconds:6.2f} {residual.mean() / body.size * 100:6.3f}"
     line += f" {share.max():6.3f} {doubted:3d}"
     low: list[str] = []
@@ -219,7 +219,7 @@ def scored_generated(name: str, number: int, args: argparse.Namespace) -> None:
     part = seen.parts(start, rest.V)
     limbs = max(error[:, part == p].mean(axis=1).max() for p in np.unique(part) if (part == p).sum() > 10)
     told = f"{name:12s} {start:4d} {len(kept):4d} {seconds:6.2f} {residual.mean() / rest.size * 100:6.3f} {share.max():6.3f}"
-    doubted = int((~trusted(share, residual)).sum())
+    doubted = int((~inliers(share, residual)).sum())
     told += f" {doubted:3d} {error.mean():7.3f} {np.quantile(error, 0.95):6.2f} {error.max():6.1f} {limbs:6.1f}"
     print(told, flush=True)
     if args.plot:

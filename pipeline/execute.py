@@ -103,10 +103,10 @@ def execute(store_url: str, steps: tuple[Step, ...]) -> list[Result]:
         except (StoreError, StaleWorkerError) as error:
             bench.results.append(Result("refused", error=type(error).__name__, message=str(error)))
         except Exception as error:  # whatever a task raises is that node's failure and no other's
-            told = str(error) or type(error).__name__
+            message = str(error) or type(error).__name__
             trace = traceback.format_exc()
             spent = time.perf_counter() - started
-            bench.results.append(Result("failed", "", "", spent, None, type(error).__name__, told, trace))
+            bench.results.append(Result("failed", "", "", spent, None, type(error).__name__, message, trace))
     return bench.results
 
 
@@ -118,8 +118,8 @@ def _compute(bench: _Bench, number: int, step: Step) -> Result:
             f"{step.label}: planned with other code of {task.module} than this worker has"
             f" ({step.code[:12]} planned, {here[:12]} here); install the same kinetree everywhere and restart the workers"
         )
-    inputs = [_told(bench, i) for i in step.inputs]
-    identity = [[i.argument, i.form, told["artifacts"], i.numbers] for i, told in zip(step.inputs, inputs, strict=True)]
+    inputs = [_recorded(bench, i) for i in step.inputs]
+    identity = [[i.argument, i.form, record["artifacts"], i.numbers] for i, record in zip(step.inputs, inputs, strict=True)]
     key = node_key(task.name, here, step.params, identity, _asked_index(task, step))
     if step.key is not None and key != step.key:
         raise StaleWorkerError(f"{step.label}: this worker derives another key ({key[:12]}) than was planned ({step.key[:12]})")
@@ -165,7 +165,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
     return Result("ran", key, digest, seconds, record)
 
 
-def _told(bench: _Bench, given: Input) -> dict[str, Any]:
+def _recorded(bench: _Bench, given: Input) -> dict[str, Any]:
     """An argument in the words of a record: argument, form, nodes, artifacts."""
     return {
         "argument": given.argument,

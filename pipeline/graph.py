@@ -125,23 +125,23 @@ class Graph:
 
     def _gathered_space(self, task: AnyTask, argument: Argument, writer: AnyTask) -> Space:
         missing = tuple(d for d in writer.over if d not in task.over)
-        told = f"{task.name} ({task.where}): argument {argument.name}"
+        place = f"{task.name} ({task.where}): argument {argument.name}"
         if argument.form == "one":
             if missing:
                 raise GraphError(
-                    f"{told} is one {argument.artifact.__name__}, but {writer.name} ({writer.where}) writes one per"
+                    f"{place} is one {argument.artifact.__name__}, but {writer.name} ({writer.where}) writes one per"
                     f" {'/'.join(writer.over)}; write tuple[{argument.artifact.__name__}, ...] to gather them"
                 )
             return writer.over
         if not missing:
-            raise GraphError(f"{told} gathers {argument.artifact.__name__}, of which there is one at its index")
+            raise GraphError(f"{place} gathers {argument.artifact.__name__}, of which there is one at its index")
         if argument.form == "mapping" and len(missing) != 1:
-            raise GraphError(f"{told} maps from one number, but gathers over {'/'.join(missing)}; use a tuple")
+            raise GraphError(f"{place} maps from one number, but gathers over {'/'.join(missing)}; use a tuple")
         joint = task.over + missing
         if joint in self.openers:
             return joint
         if writer.over not in self.openers:
-            raise GraphError(f"{told} gathers over {'/'.join(writer.over)}, which nothing opens")
+            raise GraphError(f"{place} gathers over {'/'.join(writer.over)}, which nothing opens")
         return writer.over
 
     def until(self, names: Sequence[str]) -> "Graph":

@@ -69,8 +69,8 @@ def artifact_digest(artifact: Artifact) -> str:
 
 def combined_digest(cls: type[Artifact], plain: Mapping[str, Any], arrays: Mapping[str, str]) -> str:
     """The artifact digest from its parts: JSON fields and the digest of each array."""
-    told = {name: value for name, value in plain.items() if name not in cls.location_fields()}
-    return digest(["kinetree.artifact/1", cls.__name__, cls.version, told, dict(arrays)])
+    identity = {name: value for name, value in plain.items() if name not in cls.location_fields()}
+    return digest(["kinetree.artifact/1", cls.__name__, cls.version, identity, dict(arrays)])
 
 
 def node_key(
@@ -112,9 +112,9 @@ def _identified(module: str, name: str) -> tuple[str, dict[str, str]]:
         known = None if one[1] in (STATEMENTS, IMPORTS) else code.digests.get(one)
         found[one] = code.digests[one] = known or digest(["kinetree.definition/1", syntax])
     parts: dict[str, str] = {}
-    for (home, definition), told in found.items():
-        parts[home] = f"{parts.get(home, '')} {definition}:{told[:PART_DIGITS]}".lstrip()
-    return digest(["kinetree.code/2", name, [[*one, told] for one, told in found.items()]]), parts
+    for (home, definition), part in found.items():
+        parts[home] = f"{parts.get(home, '')} {definition}:{part[:PART_DIGITS]}".lstrip()
+    return digest(["kinetree.code/2", name, [[*one, part] for one, part in found.items()]]), parts
 
 
 @contextlib.contextmanager

@@ -54,15 +54,15 @@ def _params(now: Mapping[str, Any], then: Mapping[str, Any]) -> tuple[Reason, ..
 
 def _code(now: Mapping[str, str], then: Mapping[str, str]) -> tuple[Reason, ...]:
     if any(":" not in parts for parts in then.values()):
-        return (Reason("code", "the earlier run told it by whole modules"),)
-    told: list[Reason] = []
+        return (Reason("code", "the earlier run identified it by whole modules"),)
+    reasons: list[Reason] = []
     for module in sorted({*now, *then}):
         a, b = _definitions(then.get(module, "")), _definitions(now.get(module, ""))
         names = sorted(name for name in {*a, *b} if a.get(name) != b.get(name))
         if names:
             more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-            told.append(Reason("code", f"{module}:{', '.join(names[:3])}{more}"))
-    return tuple(told)
+            reasons.append(Reason("code", f"{module}:{', '.join(names[:3])}{more}"))
+    return tuple(reasons)
 
 
 def _definitions(parts: str) -> dict[str, str]:

@@ -103,7 +103,7 @@ def test_limb_cut_off_in_some_frames_is_told_and_doubted_there_alone(tmp_path: P
     assert far(pipeline, 1) < NEAR
 
 
-def test_teleport_is_not_trusted_and_the_frames_around_it_are(tmp_path: Path) -> None:
+def test_teleport_is_an_outlier_and_the_frames_around_it_are_none(tmp_path: Path) -> None:
     def teleported(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
         turn = trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1])
         return mesh.copy().apply_transform(turn).apply_translation([0.4 * mesh.scale] * 3)
@@ -111,8 +111,8 @@ def test_teleport_is_not_trusted_and_the_frames_around_it_are(tmp_path: Path) ->
     source = changed(tmp_path, "teleport", 4, teleported)
     pipeline, told = ran(tmp_path / "out", source=source)
     assert told["status"] == "done"
-    trust = pipeline.artifact("frame_confidence")
-    assert trust.trusted.tolist() == [True, True, True, True, False]  # type: ignore[attr-defined]
+    confidence = pipeline.artifact("frame_confidence")
+    assert confidence.inlier.tolist() == [True, True, True, True, False]  # type: ignore[attr-defined]
     assert pipeline.artifact("alignment", frame=4).confidence.mean() < 0.3  # type: ignore[attr-defined]
     assert "alignment failed in frame 4" in said(pipeline)
     assert max(far(pipeline, t) for t in range(4)) < NEAR

@@ -17,5 +17,5 @@ class FrameConfidence(Artifact):
     """Share of each frame's surface that the body does not explain."""
     unreliable: Annotated[Floats, Array("float64", FRAME)]
     """Share of the body's vertices whose confidence is below a half in each frame."""
-    trusted: Annotated[Bools, Array("bool", FRAME)]
-    """False where a frame is explained clearly worse than the others. Only messages to people depend on it."""
+    inlier: Annotated[Bools, Array("bool", FRAME)]
+    """False where a frame is an outlier: explained clearly worse than the others. Only messages to people depend on it."""

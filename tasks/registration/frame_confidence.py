@@ -8,7 +8,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
-from kinetree.tasks.numerics.registration.frame_confidence import trusted
+from kinetree.tasks.numerics.registration.frame_confidence import inliers
 
 
 @task()
@@ -22,5 +22,5 @@ def frame_confidence(alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh
         residual=residual,
         uncovered=uncovered,
         unreliable=np.array([a.unreliable for a in alignment.values()]),
-        trusted=trusted(uncovered, residual),
+        inlier=inliers(uncovered, residual),
     )

@@ -37,7 +37,7 @@ def reference_remarks(reference: Reference) -> tuple[str, ...]:
 def frame_confidence_remarks(confidence: FrameConfidence) -> tuple[str, ...]:
     """Frames whose alignment failed, and frames in which parts of it are unreliable."""
     lines = []
-    failed, partly = ~confidence.trusted, confidence.trusted & (confidence.unreliable > PARTLY_DOUBTED)
+    failed, partly = ~confidence.inlier, confidence.inlier & (confidence.unreliable > PARTLY_DOUBTED)
     if failed.any():
         lines.append(f"alignment failed in {_runs(confidence, failed)}: the aligned body does not fit the mesh there")
     if partly.any():

@@ -60,7 +60,7 @@ def test_much_changed_code_of_one_module_is_told_in_short():
 
 def test_code_that_a_record_tells_by_whole_modules_is_told_in_one_reason():
     found = differences(Work({}, {"a.b": "f:000001"}, []), recorded({"a.b": "0" * 40, "a.c": "1" * 40}))
-    assert [str(r) for r in found] == ["code: the earlier run told it by whole modules"]
+    assert [str(r) for r in found] == ["code: the earlier run identified it by whole modules"]
 
 
 def recorded(code):

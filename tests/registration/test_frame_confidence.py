@@ -1,4 +1,4 @@
-"""Contract of trust: frames that stand out are marked and told by their numbers."""
+"""Contract of frame_confidence: outliers are marked and named by their numbers."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -20,25 +20,25 @@ def told(uncovered: list[float], unreliable: list[float] | None = None, first: i
     return frame_confidence(frames, mesh)
 
 
-def test_even_alignment_is_trusted_and_says_nothing() -> None:
+def test_even_alignment_has_no_outliers_and_says_nothing() -> None:
     made = told([0.001] * 6)
-    assert made.trusted.all()
+    assert made.inlier.all()
     assert views.remarks(made) == ()
     assert made.residual.tolist() == [0.005] * 6
 
 
 def test_frames_that_stand_out_are_told_as_runs() -> None:
     made = told([0.001, 0.2, 0.3, 0.001, 0.001, 0.2, 0.001, 0.001, 0.001])
-    assert made.trusted.tolist() == [True, False, False, True, True, False, True, True, True]
+    assert made.inlier.tolist() == [True, False, False, True, True, False, True, True, True]
     assert views.remarks(made) == ("alignment failed in frames 11–12, 15: the aligned body does not fit the mesh there",)
 
 
-def test_limb_that_is_not_seen_is_told_where_the_frame_is_trusted() -> None:
+def test_limb_that_is_not_seen_is_reported_where_the_frame_is_an_inlier() -> None:
     made = told([0.001] * 5, unreliable=[0.0, 0.0, 0.12, 0.1, 0.0])
     expected = "alignment partly unreliable in frames 12–13: up to 12% of the body is hidden or does not fit"
     assert views.remarks(made) == (expected,)
 
 
-def test_aligned_walk_is_trusted() -> None:
-    assert walk().frame_confidence.trusted.all()
+def test_aligned_walk_has_no_outliers() -> None:
+    assert walk().frame_confidence.inlier.all()
     assert views.remarks(walk().frame_confidence) == ()

@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.registration.recovery import failures
 
 
 class FrameConfidenceSettings(NamedTuple):
-    """From which values on a frame is not trusted, besides those that stand out (`recovery.failures`)."""
+    """From which values on a frame is an outlier, besides those that stand out (`recovery.failures`)."""
 
     residual: float = 3.0
     """Residual in medians of the sequence. Chosen on: not recorded."""
@@ -42,7 +42,7 @@ def stretches(rest: Floats, x: Floats, F: Ints) -> Floats:
     return _stretches(rest, x, start, ring)
 
 
-def trusted(uncovered: Floats, residual: Floats, settings: FrameConfidenceSettings | None = None) -> Flags:
+def inliers(uncovered: Floats, residual: Floats, settings: FrameConfidenceSettings | None = None) -> Flags:
     """Frames that the alignment explains: no more uncovered than the others, and no farther away (ours).
 
     uncovered : (frame,) share of each frame that the body does not explain

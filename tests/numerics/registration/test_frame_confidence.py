@@ -4,7 +4,7 @@ import numpy as np
 from limbs import tube
 from shapes import sphere
 
-from kinetree.tasks.numerics.registration.frame_confidence import residuals, stretches, trusted
+from kinetree.tasks.numerics.registration.frame_confidence import inliers, residuals, stretches
 
 
 def test_points_of_the_surface_have_no_residual_and_those_beside_it_their_distance():
@@ -33,12 +33,12 @@ def test_a_vertex_without_edges_or_with_edges_of_no_length_is_not_stretched():
     np.testing.assert_array_equal(stretches(V, V + 1.0, F), 1.0)
 
 
-def test_a_frame_far_from_the_surface_or_half_uncovered_is_not_trusted():
+def test_a_frame_far_from_the_surface_or_half_uncovered_is_an_outlier():
     uncovered, residual = np.full(9, 0.001), np.full(9, 0.1)
-    assert trusted(uncovered, residual).all()
+    assert inliers(uncovered, residual).all()
     uncovered[3], residual[5] = 0.2, 0.5
-    np.testing.assert_array_equal(np.flatnonzero(~trusted(uncovered, residual)), [3, 5])
+    np.testing.assert_array_equal(np.flatnonzero(~inliers(uncovered, residual)), [3, 5])
 
 
-def test_a_sequence_that_lacks_a_limb_throughout_is_not_trusted():
-    assert not trusted(np.full(5, 0.2), np.full(5, 0.1)).any()
+def test_a_sequence_that_lacks_a_limb_throughout_has_no_inliers():
+    assert not inliers(np.full(5, 0.2), np.full(5, 0.1)).any()
