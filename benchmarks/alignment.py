@@ -25,6 +25,7 @@ import trimesh
 from turning import Truth, with_roll
 
 from kinetree.schemas.input.synth import ContactParams, SynthParams
+from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.tasks.input.synth import body as posed
 from kinetree.tasks.input.synth import recipe
@@ -45,9 +46,10 @@ from kinetree.tasks.numerics.topology.extrema import extrema, stems
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 from kinetree.tasks.numerics.topology.leaves import follow
 from kinetree.tasks.numerics.topology.mu_histogram import dimensionless
+from kinetree.tasks.registration.deformation_graph import graph_settings
 from kinetree.tasks.registration.pose import fit_settings
 
-FITTING = fit_settings(TrackingParams())
+GRAPH, FITTING = graph_settings(DeformationGraphParams()), fit_settings(TrackingParams())
 Floats = npt.NDArray[np.float64]
 
 # figure:motion, or random:SEED, and per contact: limb, target, first and last frame
@@ -119,7 +121,7 @@ def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tra
 
 def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationGraph, list[int], list[Pose], Floats, float]:
     """All passes: the graph, the frames kept, their poses, uncovered shares, and seconds a frame."""
-    body = deformation_graph(meshes[start].V, meshes[start].F)
+    body = deformation_graph(meshes[start].V, meshes[start].F, GRAPH)
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size), FITTING)
     begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]

@@ -29,6 +29,8 @@ import numpy as np
 import numpy.typing as npt
 from accuracy import MOTIONS, varied
 
+from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
+from kinetree.schemas.structure.rigid_parts import RigidPartsParams
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.input.synth.body import Body
@@ -41,6 +43,10 @@ from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.topology.extrema import extrema
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
+from kinetree.tasks.structure.kinematic_tree import tree_settings
+from kinetree.tasks.structure.rigid_parts import parts_settings
+
+PARTS, TREE = parts_settings(RigidPartsParams()), tree_settings(KinematicTreeParams())
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -160,12 +166,13 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     area = Surface.of(case.V, case.F).area
     begun = time.process_time()
     confidence = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
-    found = rigid_parts(case.V, case.F, case.x, confidence, leaves=tips)
+    found = rigid_parts(case.V, case.F, case.x, confidence, leaves=tips, settings=PARTS)
     parted = time.process_time()
-    skeleton, _ = kinematic_tree(case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, confidence)
+    known = case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, confidence
+    skeleton, _ = kinematic_tree(*known, settings=TREE)
     done = time.process_time()
     body, held = MovingSurface(case.V, case.F, case.x, area), MovingParts(found.label, found.R, found.t, found.residual)
-    left = pruned(body, held, tips)
+    left = pruned(body, held, tips, settings=TREE.pruning)
     turning = np.array([kind == "joint" for kind in skeleton.kinds])
     joints = {
         "tree": carried(held, part_tree(body, held)),

@@ -1,10 +1,18 @@
 """Settings as the parameters ship, for numerics that are called without their task: only parameters hold these defaults."""
 
+from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
-from kinetree.tasks.numerics.structure.joint_evidence import JointEvidenceSettings
+from kinetree.schemas.structure.rigid_parts import RigidPartsParams
+from kinetree.tasks.registration.deformation_graph import graph_settings
 from kinetree.tasks.registration.pose import fit_settings
+from kinetree.tasks.structure.kinematic_tree import evidence_settings, tree_settings
+from kinetree.tasks.structure.rigid_parts import parts_settings
 
+GRAPH = graph_settings(DeformationGraphParams())
 FITTING = fit_settings(TrackingParams())
-_TREE = KinematicTreeParams()
-EVIDENCE = JointEvidenceSettings(_TREE.clear_motion, _TREE.misfit_ratio, _TREE.misfit_ratio_if_moving)
+PARTS = parts_settings(RigidPartsParams())
+FIRST_CUT, ELIMINATION = PARTS.first_cut, PARTS.elimination
+TREE = tree_settings(KinematicTreeParams())
+PRUNING = TREE.pruning
+EVIDENCE = evidence_settings(KinematicTreeParams())

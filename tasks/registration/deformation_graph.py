@@ -15,7 +15,7 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
         return _empty(reference)
     # with a node on every vertex nothing lies between nodes, and no edge would link them
     nodes = max(min(params.nodes, len(reference.vertices) // 2), 1)
-    settings = numerics.DeformationGraphSettings(nodes, params.finest, params.thick, params.strut, params.samples)
+    settings = graph_settings(params)._replace(nodes=nodes)
     made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), settings)
     return DeformationGraph(
         frames=reference.frames,
@@ -36,6 +36,11 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
         block_of_vertex=made.of_vertex,
         block_of_edge=made.of_edge,
     )
+
+
+def graph_settings(params: DeformationGraphParams) -> numerics.DeformationGraphSettings:
+    """How finely a reference of any size is covered."""
+    return numerics.DeformationGraphSettings(params.nodes, params.finest, params.thick, params.strut, params.samples)
 
 
 def _empty(reference: Reference) -> DeformationGraph:

@@ -37,7 +37,7 @@ def kinematic_tree(
         np.stack([a.confidence for a in aligned]),
         np.stack([a.residual for a in aligned]),
         lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),
-        JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving),
+        evidence_settings(params),
     )
     given = is_given(evidence.confidence, evidence.residual)
     V, F = reference.vertices, reference.faces
@@ -53,7 +53,7 @@ def kinematic_tree(
         leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         limited_confidence(evidence.confidence),
         None if given else evidence,
-        numerics.KinematicTreeSettings(PruningSettings(params.degrees, params.ratio)),
+        settings=tree_settings(params),
     )
     return KinematicTree(
         frames=frames,
@@ -65,3 +65,13 @@ def kinematic_tree(
         **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
         **{**derivation._asdict(), "dropped": tuple((d.part, d.reason) for d in derivation.dropped)},
     )
+
+
+def evidence_settings(params: KinematicTreeParams) -> JointEvidenceSettings:
+    """What makes a joint evident in the frames."""
+    return JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving)
+
+
+def tree_settings(params: KinematicTreeParams) -> numerics.KinematicTreeSettings:
+    """How parts become joints."""
+    return numerics.KinematicTreeSettings(PruningSettings(params.degrees, params.ratio))

@@ -22,14 +22,13 @@ def rigid_parts(
 ) -> RigidParts:
     """Divides the surface into the rigid parts that the motion shows (2014, Sec. 6.1 and 6.2)."""
     aligned, at = list(alignment.values()), leaves.frames.index(reference.frame)
-    first_cut = OversegmentationSettings(rings=params.rings, patches=params.patches)
     parts = numerics.rigid_parts(
         reference.vertices,
         np.asarray(reference.faces, dtype=np.int64),
         np.stack([a.vertices for a in aligned]),
         limited_confidence(np.stack([a.confidence for a in aligned])),
         leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
-        numerics.RigidPartsSettings(first_cut, EliminationSettings(removal_cost=params.removal_cost)),
+        settings=parts_settings(params),
     )
     return RigidParts(
         frames=tuple(alignment),
@@ -40,3 +39,9 @@ def rigid_parts(
         residual=parts.residual,
         **parts.cut._asdict(),
     )
+
+
+def parts_settings(params: RigidPartsParams) -> numerics.RigidPartsSettings:
+    """What the numerics take."""
+    first_cut = OversegmentationSettings(params.rings, params.patches)
+    return numerics.RigidPartsSettings(first_cut, EliminationSettings(params.removal_cost))

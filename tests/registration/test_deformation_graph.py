@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from shipped import GRAPH
 from stepwise import walk
 
 from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
@@ -17,7 +18,7 @@ from kinetree.tasks.registration.pose import graph
 def test_stored_graph_is_the_graph_bit_for_bit() -> None:
     reference = walk().reference
     made = numerics.deformation_graph(
-        np.array(reference.vertices), np.array(reference.faces), numerics.DeformationGraphSettings(nodes=200)
+        np.array(reference.vertices), np.array(reference.faces), GRAPH._replace(nodes=200)
     )
     back = graph(walk().deformation_graph)
     for field in fields(made):

@@ -88,9 +88,9 @@ def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.Mon
     body, asked = chain((0.0,), swings(16, 2)), []
     made = numerics.kinematic_tree
 
-    def listening(*given: Any) -> Any:
+    def listening(*given: Any, settings: Any) -> Any:
         asked.append(given[10].settings)
-        return made(*given[:10], None, given[11])
+        return made(*given[:10], None, settings=settings)
 
     monkeypatch.setattr(numerics, "kinematic_tree", listening)
     told(body, np.full(body.x.shape[:2], 0.9), clear_motion=7.0, misfit_ratio=1.5, misfit_ratio_if_moving=1.2)

@@ -23,8 +23,8 @@ from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
 class KinematicTreeSettings(NamedTuple):
     """How parts become joints; lengths are shares of the root of the area where nothing else is said."""
 
-    pruning: PruningSettings | None = None
-    """What a joint must show to stay; the defaults if not given."""
+    pruning: PruningSettings
+    """What a joint must show to stay."""
     noise: float = 0.002
     """Error of a vertex below which its motion says nothing of its skinning weights. Not recorded."""
     spread: float = 0.35
@@ -109,7 +109,8 @@ def kinematic_tree(
     leaves: Ints,
     confidence: Floats | None = None,
     evidence: FrameEvidence | None = None,
-    settings: KinematicTreeSettings | None = None,
+    *,
+    settings: KinematicTreeSettings,
 ) -> tuple[KinematicTree, Derivation]:
     """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
 
@@ -123,14 +124,14 @@ def kinematic_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
-    chosen = settings or KinematicTreeSettings()
+    chosen = settings
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
     F, label = np.array(F, dtype=np.int64), _filled(V, np.array(label, dtype=np.int64))
     given = R.shape[1]
     used, label, R, t, residual = _used(label, R, t, residual)
     seen = None if confidence is None else confident_share(label, area, confidence, len(x), R.shape[1])
     parts = MovingParts(label, R, t, residual, seen)
-    left = pruned(MovingSurface(V, F, x, area), parts, leaves, evidence, chosen.pruning)
+    left = pruned(MovingSurface(V, F, x, area), parts, leaves, evidence, settings=chosen.pruning)
     tree = left.part_tree.tree
     label = np.argsort(tree.order)[left.parts.label]
     tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)

@@ -24,8 +24,10 @@ SHARED = -2
 class OversegmentationSettings(NamedTuple):
     """How finely cones and patches are cut; lengths are shares of the root of the area, areas shares of it."""
 
-    rings: int = 50
+    rings: int
     """Rings in the longest distance from each leaf. Not recorded; more rings follow thin limbs more closely."""
+    patches: int
+    """Patches that the whole surface is cut into. Not recorded."""
     cut: float = 0.002
     """Root mean square residual that makes a tenth of a cone's rings worth a run of their own. Not recorded."""
     shortest_run: int = 2
@@ -35,8 +37,6 @@ class OversegmentationSettings(NamedTuple):
     Chosen on generated humans, where cones reach round the trunk and up the next leg."""
     pocket: float = 0.1
     """Area of a side branch without a leaf that a cone absorbs. Not recorded; beyond it the cone ends there."""
-    patches: int = 1000
-    """Patches that the whole surface is cut into. Not recorded."""
     trunk_groups: int = 16
     """Groups that the patches outside the cones are merged into at first. Not recorded."""
     split: float = 1e-7
@@ -68,7 +68,7 @@ def cone_runs(
     leaves: Ints,
     start: Ints,
     ring: Ints,
-    settings: OversegmentationSettings | None = None,
+    settings: OversegmentationSettings,
 ) -> ConeRuns:
     """Rings around every leaf, cut into rigid runs (2014, Sec. 6.1.1 and 6.1.2; the optimal cut is ours).
 
@@ -78,7 +78,7 @@ def cone_runs(
     leaves      : (leaf,) vertices
     start, ring : neighbours of every vertex
     """
-    chosen = settings or OversegmentationSettings()
+    chosen = settings
     outside = np.full(len(V), -1, np.int64)
     shape = (len(leaves), chosen.rings)
     out = ConeRuns(outside, outside.copy(), outside.copy(), np.full(shape, -1, np.int64), np.full(shape, np.nan))

@@ -19,21 +19,17 @@ FLESH, STILL, SLIDING, UNEVIDENT = "flesh", "still", "sliding", "unevident"
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames."""
 
 
-DEFAULT_RATIO = 0.8
-"""`PruningSettings.ratio` that `leaf_ratio` and `flap_ratio` belong to: they grow and shrink with it."""
-
-
 class PruningSettings(NamedTuple):
     """What a joint must show to stay."""
 
-    degrees: float = 6.0
+    degrees: float
     """Range by which a joint turns, at least. Chosen on thirty generated bodies: with 8° three more true joints are lost."""
-    ratio: float = 0.8
+    ratio: float
     """Displacement that turning gives the smaller side of a joint, in drifts of the joint, at least. Not recorded."""
-    leaf_ratio: float = 0.5
-    """The same for the last part of a limb that has a leaf: hands and feet are small. Not recorded."""
-    flap_ratio: float = 3.0
-    """The same for a last part without a leaf: few bodies have a limb there. Not recorded."""
+    leaf: float = 0.625
+    """What the last part of a limb that has a leaf needs of it, share: hands and feet are small. Not recorded."""
+    flap: float = 3.75
+    """What a last part without a leaf needs of it, multiple: few bodies have a limb there. Not recorded."""
     clear_ratio: float = 3.0
     """Ratio from which on a joint is clear: a part that has a clear joint stays when another of its joints is poor. Not
     recorded."""
@@ -74,14 +70,15 @@ def pruned(
     parts: MovingParts,
     leaves: Ints,
     evidence: FrameEvidence | None = None,
-    settings: PruningSettings | None = None,
+    *,
+    settings: PruningSettings,
 ) -> Pruned:
     """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows.
 
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
     """
-    chosen = settings or PruningSettings()
+    chosen = settings
     start, ring = rings(body.F, len(body.V))
     tree = part_tree(body, parts)
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, chosen)
@@ -125,10 +122,10 @@ def _weak_parts(
         last = not (tree.parents == k).any()
         scores.append((found.degrees[k] / max(chosen.degrees, 1e-9), smaller, STILL))
         if last and not has_leaf[part]:
-            least = chosen.flap_ratio / DEFAULT_RATIO * chosen.ratio
+            least = chosen.flap * chosen.ratio
             scores.append((found.ratio[k] / max(least, 1e-9), part, SLIDING))
             continue
-        least = chosen.leaf_ratio / DEFAULT_RATIO * chosen.ratio if last else chosen.ratio
+        least = chosen.leaf * chosen.ratio if last else chosen.ratio
         spare = [p for p in (smaller, part + above - smaller) if not _has_clear_joint(found, p, k, chosen.clear_ratio)]
         scores += [(found.ratio[k] / max(least, 1e-9), p, SLIDING) for p in spare[:1]]
     failed = [entry for entry in scores if entry[0] < 1.0]

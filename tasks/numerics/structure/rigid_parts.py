@@ -74,10 +74,10 @@ class RigidParts(NamedTuple):
 class RigidPartsSettings(NamedTuple):
     """How parts are cut, labelled and eliminated; lengths are shares of the root of the area, areas shares of it."""
 
-    first_cut: OversegmentationSettings | None = None
-    """Of the cut into too many parts; its defaults if not given."""
-    elimination: EliminationSettings | None = None
-    """Of the elimination; its defaults if not given."""
+    first_cut: OversegmentationSettings
+    """Of the cut into too many parts."""
+    elimination: EliminationSettings
+    """Of the elimination."""
     smoothing: float = 0.015
     """Radius of the surroundings whose residual decides with a vertex. Not recorded."""
     most_vertices: int = 14_000
@@ -94,7 +94,8 @@ def rigid_parts(
     x: Floats,
     confidence: Floats | None = None,
     leaves: Ints | None = None,
-    settings: RigidPartsSettings | None = None,
+    *,
+    settings: RigidPartsSettings,
 ) -> RigidParts:
     """The rigid parts that the motion shows, each of which costs enough to remove; one if nothing turns.
 
@@ -105,8 +106,7 @@ def rigid_parts(
     returns    : parts numbered by their first vertex; `cut` was made at a sample of a large surface's vertices, and every other
                  vertex has the values of the nearest one in the sample
     """
-    chosen = settings or RigidPartsSettings()
-    limits = chosen.elimination or EliminationSettings()
+    chosen, limits = settings, settings.elimination
     if confidence is None:
         limits = limits._replace(slip=chosen.followed_slip)
     sample, faces = _sampled(V, F, chosen.most_vertices)
@@ -170,7 +170,7 @@ def _normalised_parts(
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
     body = NormalisedBody(V, vertex_normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
-    first = chosen.first_cut or OversegmentationSettings()
+    first = chosen.first_cut
     patch = patches(surface, V, body.start, body.ring, first.patches)
     cones, initial = _first_cut(surface, body, patch, leaves, first)
     steps = max(round((chosen.smoothing * unit / surface.edge) ** 2), 1)

@@ -2,15 +2,16 @@
 
 import pytest
 from limbs import ANGLES, bent, tube
+from shipped import GRAPH
 
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 
 
 @pytest.fixture(scope="session")
 def body():
     """The straight tube with a deformation graph of 80 nodes."""
-    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
+    return deformation_graph(*tube(), GRAPH._replace(nodes=80))
 
 
 @pytest.fixture(scope="session")

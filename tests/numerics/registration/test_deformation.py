@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
-from shipped import FITTING
+from shipped import FITTING, GRAPH
 
 from kinetree.tasks.numerics.registration.block_system import add_data, conjugate_gradients
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy, strains
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
 
-FEW = DeformationGraphSettings(nodes=80)
+FEW = GRAPH._replace(nodes=80)
 
 
 def moved(body, R, t):
@@ -68,7 +68,7 @@ def test_a_bent_tube_cut_otherwise_is_followed_within_a_hundredth_of_its_length(
 
 def test_a_body_whose_every_vertex_is_a_node_follows_a_bend():
     V, F = tube(around=12, along=24)
-    coarse = deformation_graph(V, F)
+    coarse = deformation_graph(V, F, GRAPH)
     assert len(coarse.node) == len(V)
     found = fit(coarse, at_rest(coarse), framed(coarse, bent(V, 0.3), F), FITTING)
     assert np.linalg.norm(shape(coarse, found.pose)[0] - bent(V, 0.3), axis=1).mean() < 0.02 * LENGTH
@@ -165,7 +165,7 @@ def _energy(body, pose, vertex, point, normal):
 
 def test_blocks_are_the_normal_equations_of_the_energy_and_cg_solves_them():
     rng = np.random.default_rng(0)
-    body = deformation_graph(*tube(around=10, along=14), DeformationGraphSettings(nodes=9))
+    body = deformation_graph(*tube(around=10, along=14), GRAPH._replace(nodes=9))
     start = Pose(*stepped(*at_rest(body), 0.1 * rng.normal(size=(9, 6)), 1.0))
     vertex = rng.integers(len(body.V), size=60)
     point = body.V[vertex] + 0.1 * rng.normal(size=(60, 3))

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from limbs import RADIUS, tube
 from shapes import sphere, two_components
+from shipped import GRAPH
 
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.geometry.thickness import thickness
-from kinetree.tasks.numerics.registration.deformation_graph import BOUND, DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.deformation_graph import BOUND, deformation_graph
 
-FEW = DeformationGraphSettings(nodes=60)
+FEW = GRAPH._replace(nodes=60)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +44,7 @@ def test_all_nodes_are_tied_together_and_none_to_itself(body):
 
 def test_struts_go_through_the_body_and_no_struts_leave_only_ties_over_the_surface():
     V, F = tube()
-    without, through = (deformation_graph(V, F, DeformationGraphSettings(nodes=60, strut=strut)) for strut in (0.0, 0.4))
+    without, through = (deformation_graph(V, F, GRAPH._replace(nodes=60, strut=strut)) for strut in (0.0, 0.4))
     pairs = {tuple(e) for e in through.edge} - {tuple(e) for e in without.edge}
     assert {tuple(e) for e in without.edge} <= {tuple(e) for e in through.edge}
     a, b = np.array(sorted(pairs)).T
@@ -65,7 +66,7 @@ def test_a_ball_is_nowhere_thin():
 def test_nodes_lie_closer_where_the_body_is_thin():
     V, F = tube(around=32, along=120)
     V = V * np.where(V[:, 2:] > 0, [[0.3, 0.3, 1.0]], [[1.0, 1.0, 1.0]])
-    body = deformation_graph(V, F, DeformationGraphSettings(nodes=200, thick=0.4))
+    body = deformation_graph(V, F, GRAPH._replace(nodes=200, thick=0.4))
     thin, thick = ((V[body.node, 2] * side > 1).sum() / _area(V, F, side) for side in (1, -1))
     assert thin > 2 * thick
 
@@ -83,7 +84,7 @@ def test_every_node_has_samples_of_its_own(body):
 
 def test_every_component_gets_nodes_and_follows_only_its_own():
     V, F = two_components(3)
-    body = deformation_graph(V, F, DeformationGraphSettings(nodes=40))
+    body = deformation_graph(V, F, GRAPH._replace(nodes=40))
     first = body.node < len(V) // 2
     assert first.any()
     assert not first.all()
@@ -93,14 +94,14 @@ def test_every_component_gets_nodes_and_follows_only_its_own():
 
 def test_a_component_with_a_single_node_moves_with_it():
     V, F = two_components(3)
-    body = deformation_graph(V, F, DeformationGraphSettings(nodes=2))
+    body = deformation_graph(V, F, GRAPH._replace(nodes=2))
     np.testing.assert_allclose(body.weight.sum(axis=1), 1.0)
     np.testing.assert_array_equal(body.bound.max(axis=1), np.arange(len(V)) >= len(V) // 2)
 
 
 def test_more_nodes_than_vertices_are_one_a_vertex():
     V, F = sphere(1)
-    np.testing.assert_array_equal(deformation_graph(V, F, DeformationGraphSettings(nodes=1000)).node, np.arange(len(V)))
+    np.testing.assert_array_equal(deformation_graph(V, F, GRAPH._replace(nodes=1000)).node, np.arange(len(V)))
 
 
 def test_scale_and_place_change_no_choice():

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, rotation, tube
+from shipped import GRAPH
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 from kinetree.tasks.numerics.registration.rigid_clusters import RigidClustersSettings, rigid_clusters
 
 ANGLES = (0.3, 0.6, 0.9)
@@ -13,7 +14,7 @@ ANGLES = (0.3, 0.6, 0.9)
 
 @pytest.fixture(scope="module")
 def body():
-    return deformation_graph(*tube(), DeformationGraphSettings(nodes=80))
+    return deformation_graph(*tube(), GRAPH._replace(nodes=80))
 
 
 def folded(body, angle):
@@ -57,7 +58,7 @@ def test_the_order_of_frames_and_the_scale_change_nothing(body):
     ]
     first = rigid_clusters(body, poses)
     np.testing.assert_array_equal(first, rigid_clusters(body, poses[::-1]))
-    larger = deformation_graph(1024.0 * body.V, body.F, DeformationGraphSettings(nodes=80))
+    larger = deformation_graph(1024.0 * body.V, body.F, GRAPH._replace(nodes=80))
     scaled = [Pose(p.rotation, 1024.0 * p.translation) for p in poses]
     np.testing.assert_array_equal(larger.node, body.node)
     np.testing.assert_array_equal(first, rigid_clusters(larger, scaled))

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, rotation, tube
+from shipped import GRAPH
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 from kinetree.tasks.numerics.registration.roll_candidates import RollCandidatesSettings, limbs, roll_candidates, rolled
 
 
@@ -18,7 +19,7 @@ def egg(**cut):
 
 @pytest.fixture(scope="module")
 def body():
-    return deformation_graph(*egg(), DeformationGraphSettings(nodes=80))
+    return deformation_graph(*egg(), GRAPH._replace(nodes=80))
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +62,7 @@ def test_a_limb_that_fits_fits_best_where_it_is(body, cluster):
 
 
 def test_what_is_round_fits_in_every_roll():
-    round_body = deformation_graph(*tube(flat=1.0), DeformationGraphSettings(nodes=80))
+    round_body = deformation_graph(*tube(flat=1.0), GRAPH._replace(nodes=80))
     target = Target.of(*tube(around=29, along=57, flat=1.0), round_body.size)
     found = roll_candidates(round_body, at_rest(round_body), target, np.zeros(len(round_body.g), np.int64))
     assert np.ptp(found.misfit, axis=1).max() < 0.02

@@ -2,9 +2,10 @@
 
 import numpy as np
 from limbs import bent, tube
+from shipped import ELIMINATION
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated, rims
+from kinetree.tasks.numerics.structure.elimination import NormalisedBody, eliminated, rims
 from kinetree.tasks.numerics.structure.part_motion import fit
 
 
@@ -24,7 +25,7 @@ def hinge(angles, bands=10):
 
 def test_of_many_bands_of_a_hinge_its_two_sides_are_left():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    found = eliminated(body, label, R, t).label
+    found = eliminated(body, label, R, t, ELIMINATION).label
     kept = np.unique(found)
     assert len(kept) == 2
     low, high = (body.V[found == k, 2] for k in kept)
@@ -34,12 +35,12 @@ def test_of_many_bands_of_a_hinge_its_two_sides_are_left():
 
 def test_what_does_not_move_is_one_part():
     body, label, R, t = hinge((0.0, 0.0))
-    assert len(np.unique(eliminated(body, label, R, t).label)) == 1
+    assert len(np.unique(eliminated(body, label, R, t, ELIMINATION).label)) == 1
 
 
 def test_parts_that_are_removed_and_what_each_cost_are_told_in_order():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    settings = EliminationSettings(removal_cost=0.02)
+    settings = ELIMINATION._replace(removal_cost=0.02)
     found = eliminated(body, label, R, t, settings)
     np.testing.assert_array_equal(np.sort([*found.removed, *np.unique(found.label)]), np.arange(10))
     assert 0.0 <= found.cost.min() <= found.cost.max() < 0.02
@@ -50,7 +51,7 @@ def test_parts_that_are_removed_and_what_each_cost_are_told_in_order():
 def test_asked_again_nothing_goes():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
     for missed in (1e-6, 1e-4, 0.0025):
-        settings = EliminationSettings(removal_cost=missed)
+        settings = ELIMINATION._replace(removal_cost=missed)
         first = eliminated(body, label, R, t, settings)
         again = eliminated(body, first.label, first.R, first.t, settings)
         np.testing.assert_array_equal(again.label, first.label)
@@ -59,7 +60,7 @@ def test_asked_again_nothing_goes():
 
 def test_a_lower_bar_never_leaves_fewer_parts():
     body, label, R, t = hinge((0.3, 0.8, -0.4))
-    settings = [EliminationSettings(removal_cost=cost) for cost in (1e-9, 0.0025, 0.02, 1.0)]
+    settings = [ELIMINATION._replace(removal_cost=cost) for cost in (1e-9, 0.0025, 0.02, 1.0)]
     counts = [len(np.unique(eliminated(body, label, R, t, one).label)) for one in settings]
     assert counts == sorted(counts, reverse=True)
     assert counts[-1] == 1

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from articulated import Known, chain
 from limbs import rotation
-from shipped import EVIDENCE
+from shipped import EVIDENCE, PRUNING
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.structure import joint_evidence as numerics
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
-from kinetree.tasks.numerics.structure.pruning import PruningSettings, pruned
+from kinetree.tasks.numerics.structure.pruning import pruned
 
 FRAMES = 4
 X, Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
@@ -89,7 +89,7 @@ def test_body_that_only_slid_is_one_part_and_one_that_bends_two() -> None:
     tips = np.zeros(0, np.int64)
     for aligned, there, count in ((slid, true, 1), (chain((1.0,), bent), otherwise(bent), 2)):
         body, parts, evidence = looked_at(aligned, there)
-        assert pruned(body, parts, tips, evidence, PruningSettings(ratio=0.0)).parts.R.shape[1] == count
+        assert pruned(body, parts, tips, evidence, settings=PRUNING._replace(ratio=0.0)).parts.R.shape[1] == count
 
 
 @pytest.mark.parametrize(("first", "second", "goes"), [(2.0, 1.3, True), (np.inf, 1.3, False), (np.inf, 1.05, True)])

@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from articulated import Known, chain, swings, three_arms
 from limbs import bent, rotation
+from shipped import PARTS, TREE
 
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
@@ -12,7 +13,8 @@ from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 
 def both(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> tuple[KinematicTree, Derivation]:
     tips = np.array(leaves, dtype=np.int64)
-    return kinematic_tree(body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual, tips, confidence)
+    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
+    return kinematic_tree(*known, tips, confidence, settings=TREE)
 
 
 def of(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> KinematicTree:
@@ -74,8 +76,9 @@ def test_noise_at_every_vertex_moves_no_joint_by_half_a_percent() -> None:
     rough = body.x + 0.00067 * 10.0 * np.random.default_rng(0).normal(size=body.x.shape)
     joints = []
     for x in (body.x, rough):
-        p = rigid_parts(x[0], body.F, x)
-        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, np.zeros(0, dtype=np.int64))[0]
+        p = rigid_parts(x[0], body.F, x, settings=PARTS)
+        no_leaf = np.zeros(0, dtype=np.int64)
+        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, no_leaf, settings=TREE)[0]
         joints.append(found.positions[:, [kind == "joint" for kind in found.kinds]])
     assert joints[0].shape == joints[1].shape == (24, 2, 3)
     assert np.linalg.norm(joints[0] - joints[1], axis=2).mean(axis=0).max() < 0.005 * 10.0
@@ -126,8 +129,8 @@ def test_a_ring_with_no_leaf_or_one_has_one_tree(leaves: tuple[int, ...]) -> Non
     ring = trimesh.creation.torus(3.0, 0.8, major_sections=48, minor_sections=16)
     V, F, tips = np.array(ring.vertices), np.array(ring.faces), np.array(leaves, dtype=np.int64)
     x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
-    held = rigid_parts(V, F, x, leaves=tips)
-    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips)[0]
+    held = rigid_parts(V, F, x, leaves=tips, settings=PARTS)
+    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips, settings=TREE)[0]
     assert (found.parents < 0).sum() == 1
     assert found.kinds.count("joint") >= 1
     assert found.kinds.count("joint") + found.kinds.count("leaf") + 1 == len(found.kinds)

@@ -2,19 +2,19 @@
 
 import numpy as np
 from limbs import bent, tube
+from shipped import FIRST_CUT
 
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.oversegmentation import (
     NO_CONE,
     SHARED,
-    OversegmentationSettings,
     cone_runs,
     grouped,
     patches,
 )
 
-COARSE = OversegmentationSettings(rings=40, cut=0.05)
+COARSE = FIRST_CUT._replace(rings=40, cut=0.05)
 
 
 def hinge():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from articulated import Known, chain, moved, swings, three_arms
+from shipped import PRUNING
 
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
@@ -10,7 +11,7 @@ from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dro
 
 def of(body: Known, leaves: tuple[int, ...] = ()) -> Pruned:
     parts = MovingParts(body.label, body.R, body.t, body.residual)
-    return pruned(MovingSurface(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64))
+    return pruned(MovingSurface(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64), settings=PRUNING)
 
 
 @pytest.mark.parametrize("body", [chain((-2.0, 2.0)), chain((0.0,)), three_arms()], ids=["three links", "two links", "arms"])

@@ -1,12 +1,17 @@
 """Laws of rigid parts on bodies whose parts are known."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import shapes
 import trimesh
 from limbs import bent, rotation, tube
+from shipped import PARTS
 
-from kinetree.tasks.numerics.structure.rigid_parts import RigidPartsSettings, rigid_parts
+from kinetree.tasks.numerics.structure import rigid_parts as numerics
+
+rigid_parts = partial(numerics.rigid_parts, settings=PARTS)
 
 FRAMES = 8
 
@@ -170,7 +175,7 @@ def test_a_large_surface_asked_at_some_of_its_vertices_has_the_same_parts():
     lone = np.array([[0.9, 0.0, 3.0], [0.9, 0.1, 3.0], [0.9, 0.0, 3.1]])
     F = np.concatenate([F, [[len(V), len(V) + 1, len(V) + 2]]])
     x = np.concatenate([x, np.tile(lone, (FRAMES, 1, 1))], axis=1)
-    found = rigid_parts(np.concatenate([V, lone]), F, x, settings=RigidPartsSettings(most_vertices=2000))
+    found = rigid_parts(np.concatenate([V, lone]), F, x, settings=PARTS._replace(most_vertices=2000))
     assert_parts_are(found, V, np.append(true, [2, 2, 2]))
     assert len(found.label) == len(found.rigid) == len(V) + 3
     assert len(found.cut.initial) == len(found.cut.cone) == len(found.cut.ring) == len(V) + 3
