@@ -262,9 +262,9 @@ def outcome(body: Body, work: Path, sets: Sequence[str] = (), until: str = "eval
         return Outcome(0, 0, math.nan, 0, empty, ran, why=why)
     if until != "evaluation":
         return Outcome(0, 0, math.nan, 0, empty, ran)
-    within = method.schedule(until=[until])
-    evaluated: Any = method.artifact(until, within=within)
-    skeleton: Any = method.artifact("skeleton", within=within)
+    there = method.inspect(until=[until])
+    evaluated: Any = there.artifact(until)
+    skeleton: Any = there.artifact("skeleton")
     s = evaluated.summary
     joints = np.asarray(skeleton.positions, np.float64) / evaluated.height
     return Outcome(s.found, s.scored, math.nan if s.percent is None else s.percent, s.spurious, joints, ran)

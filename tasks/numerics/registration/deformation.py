@@ -35,6 +35,10 @@ _HALVINGS = 3
 class FitSettings:
     """How one frame is fitted; of a pair, the first step takes the first value, the last the second, between geometric.
 
+    Chosen on: not recorded. Halved or doubled, each moves some joint in some frame of a generated tree of 1,200 vertices by
+    8 % of its height or more. Half of `steps`, half of `reach` or twice `stiffness` double the tree's mean error, twice
+    `point_weight` raises it by two thirds; on a human half of `stiffness` raises it by a fifth.
+
     steps        : Gauss–Newton steps
     stiffness    : λ
     reach        : matches farther apart do not count, share of √area

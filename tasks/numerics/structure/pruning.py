@@ -27,18 +27,24 @@ class PruningSettings(NamedTuple):
     ratio: float
     """Displacement that turning gives the smaller side of a joint, in drifts of the joint, at least. Not recorded."""
     leaf: float = 0.625
-    """What the last part of a limb that has a leaf needs of it, share: hands and feet are small. Not recorded."""
+    """What the last part of a limb that has a leaf needs of it, share: hands and feet are small. Not recorded. Halved or
+    doubled it moves no joint of two generated bodies."""
     flap: float = 3.75
-    """What a last part without a leaf needs of it, multiple: few bodies have a limb there. Not recorded."""
+    """What a last part without a leaf needs of it, multiple: few bodies have a limb there. Not recorded. Halved or doubled
+    it moves no joint of two generated bodies."""
     clear_ratio: float = 3.0
     """Ratio from which on a joint is clear: a part that has a clear joint stays when another of its joints is poor. Not
-    recorded."""
+    recorded. Halved or doubled it moves no joint of two generated bodies; it guards parts between a good joint and a poor
+    one."""
     flesh_share: float = 0.92
-    """Share of a part's turning that follows from that of the part beyond it, above which it is flesh. Not recorded."""
+    """Share of a part's turning that follows from that of the part beyond it, above which it is flesh. Not recorded. Halved
+    it moves no joint of two generated bodies."""
     flesh_length: float = 1.25
-    """Length of such a part at most, from joint to joint, in radii of its borders. Not recorded."""
+    """Length of such a part at most, from joint to joint, in radii of its borders. Not recorded. Halved or doubled it moves
+    no joint of two generated bodies."""
     worse: float = 0.9
-    """A part is dropped only if the worst ratio without it is at least this share of the worst ratio with it. Not recorded."""
+    """A part is dropped only if the worst ratio without it is at least this share of the worst ratio with it. Not recorded.
+    Halved or doubled it moves no joint of two generated bodies; it guards parts without which the tree would be worse."""
 
 
 class Dropped(NamedTuple):
