@@ -5,6 +5,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
 DATA   ?=
+PROCESSES ?= 2
 
 .PHONY: demo test lint types tests benchmarks accuracy clean
 
@@ -19,8 +20,9 @@ lint: $(READY)
 types: $(READY)
 	$(BIN)/mypy
 
+# files go to the processes in the order in which they are collected: those that take longest first
 tests: $(READY)
-	$(BIN)/pytest --cov --cov-report=term
+	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder --cov --cov-report=term
 
 benchmarks: $(READY)
 	for file in $(filter-out benchmarks/accuracy.py benchmarks/sensitivity.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done

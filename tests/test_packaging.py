@@ -1,14 +1,16 @@
-"""A wheel built from the sdist, installed in a clean environment, used from another folder."""
+"""A wheel built from the sdist, in an environment that has what it requires and nothing else, used from another folder."""
 
 import json
 import subprocess
 import sys
 import venv
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -31,10 +33,15 @@ def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) ->
     assert {name.split("/")[0] for name in held if ".dist-info" not in name} == {"kinetree"}
 
 
-def test_wheel_works_from_another_folder_in_a_clean_environment(wheel: Path, tmp_path: Path) -> None:
+def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path, tmp_path: Path) -> None:
     home = tmp_path / "clean"
-    venv.create(home, with_pip=True)
-    subprocess.run([home / "bin/pip", "install", "--quiet", str(wheel)], check=True, capture_output=True)
+    venv.create(home)
+    (site,) = home.glob("lib/python*/site-packages")
+    for name in required(wheel):
+        _link(metadata.distribution(name), site)
+    pip = [sys.executable, "-m", "pip", "--python", str(home / "bin/python")]
+    subprocess.run([*pip, "install", "--quiet", "--no-deps", str(wheel)], check=True, capture_output=True)
+    subprocess.run([*pip, "check"], check=True, capture_output=True)
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     generic = "import importlib.util as u; print([n for n in ('pipeline', 'tasks', 'schemas') if u.find_spec(n)])"
@@ -48,6 +55,28 @@ def test_wheel_works_from_another_folder_in_a_clean_environment(wheel: Path, tmp
         counts = json.loads(done.stdout)["nodes"]
         assert counts["ran"] <= ran
         assert (counts["ran"] == 0) == (ran == 0)
+
+
+def required(wheel: Path) -> set[str]:
+    """Names of the distributions that the wheel requires, and that these require."""
+    (info,) = (entry for entry in zipfile.Path(zipfile.ZipFile(wheel)).iterdir() if entry.name.endswith(".dist-info"))
+    waiting: list[tuple[metadata.Distribution, str]] = [(metadata.PathDistribution(info), "")]
+    found: set[tuple[str, str]] = set()
+    while waiting:
+        distribution, extra = waiting.pop()
+        for requirement in map(Requirement, distribution.requires or ()):
+            if requirement.marker is None or requirement.marker.evaluate({"extra": extra}):
+                new = {(requirement.name, wanted) for wanted in {"", *requirement.extras}} - found
+                waiting += [(metadata.distribution(name), wanted) for name, wanted in new]
+                found |= new
+    return {name for name, _ in found}
+
+
+def _link(distribution: metadata.Distribution, site: Path) -> None:
+    """Makes a distribution of this environment a part of another one."""
+    for top in {file.parts[0] for file in distribution.files or ()} - {"..", "__pycache__"}:
+        if not (site / top).exists():
+            (site / top).symlink_to(str(distribution.locate_file(top)))
 
 
 def _write_two_tetrahedra(path: Path) -> None:

@@ -13,7 +13,7 @@ from kinetree.pipeline.run import _steps
 @pytest.fixture
 def cluster(toys):
     """Two worker processes that know the toy package, as somebody else's dask would."""
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as found:
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0") as found:
         yield found
 
 
@@ -115,7 +115,7 @@ def test_a_worker_derives_the_planners_keys(toys, tmp_path):
 
 def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
     toys.flag("wait-total-210")
-    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0") as cluster:
         process = toys.start("run", str(toys.yaml()), "--scheduler", cluster.scheduler_address, "--quiet")
         toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
         assert [run["status"] for run in toys.pipeline().runs()] == ["running"]
