@@ -7,7 +7,7 @@ READY  := $(VENV)/ready
 DATA   ?=
 PROCESSES ?= 2
 
-.PHONY: demo test lint types tests benchmarks accuracy clean
+.PHONY: demo test lint types tests coverage benchmarks accuracy clean
 
 demo: $(READY)
 	$(BIN)/kinetree demo --output demo-output
@@ -22,6 +22,10 @@ types: $(READY)
 
 # files go to the processes in the order in which they are collected: those that take longest first
 tests: $(READY)
+	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder
+
+# half as much processor time again, so it stands apart
+coverage: $(READY)
 	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder --cov --cov-report=term
 
 benchmarks: $(READY)
