@@ -4,8 +4,9 @@
 
 Prints one table. Each commit is compared with its parent from the texts in git alone. By modules, the digest of a task covers
 the modules that its own imports, transitively, as it did before; by definitions, what its function reaches by name.
---verify runs both trees of a commit over one small generated sequence and compares, bit by bit, the arrays and values of
-every task that is stale by modules and not by definitions. --edits makes typical edits of today's code instead, in memory.
+--verify runs both trees of a commit over one small generated sequence and compares, bit by bit, what every node made that had
+equal inputs and parameters in both: a task that then makes something else and is not stale by definitions is MISSED.
+--edits makes typical edits of today's code instead, in memory.
 """
 
 import argparse
@@ -14,12 +15,15 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
 import tempfile
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -27,8 +31,12 @@ from kinetree.pipeline.definitions import Code
 from kinetree.pipeline.key import HARMLESS
 from kinetree.pipeline.modules import PACKAGE
 from kinetree.pipeline.statements import syntax
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.tasks.input.synth import write_sequence
 
 ROOT = Path(__file__).parent.parent
+LIMIT = 900
+"""Seconds that the run of one tree may take."""
 COUNTED = ("kinetree.tasks", "kinetree.schemas")
 Texts = Mapping[str, str]
 Tasks = dict[str, str]
@@ -74,20 +82,26 @@ def main() -> None:
     parser.add_argument("commits", nargs="*", help="default: the last that touch code of tasks or schemas")
     parser.add_argument("--last", type=int, default=20)
     parser.add_argument("--verify", action="store_true", help="run both trees and compare")
+    parser.add_argument("--frames", type=int, default=4, help="of the generated sequence")
+    parser.add_argument("--vertices", type=int, default=900, help="of the generated sequence")
     parser.add_argument("--edits", action="store_true", help="typical edits instead of commits")
     asked = parser.parse_args()
     if asked.edits:
         edits()
         return
-    print(f"{'commit':9} {'modules':>8} {'definitions':>11}  no longer stale")
-    for commit in asked.commits or _commits(asked.last):
-        before, after = texts_of(f"{commit}^"), texts_of(commit)
-        old, new = stale(before, after, by_modules), stale(before, after, by_definitions)
-        if new - old:
-            raise SystemExit(f"{commit}: stale by definitions alone: {', '.join(sorted(new - old))}")
-        print(f"{commit[:9]} {len(old):8} {len(new):11}  {_listed(old - new)}", flush=True)
-        if asked.verify and old - new:
-            print(f"{'':31}{verified(commit, old - new)}", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        frames = Path(folder) / "frames"
+        if asked.verify:
+            write_sequence(SynthParams(frames=asked.frames, vertices=asked.vertices), frames)
+        print(f"{'commit':9} {'modules':>8} {'definitions':>11}  no longer stale")
+        for commit in asked.commits or _commits(asked.last):
+            before, after = texts_of(f"{commit}^"), texts_of(commit)
+            old, new = stale(before, after, by_modules), stale(before, after, by_definitions)
+            print(f"{commit[:9]} {len(old):8} {len(new):11}  {_listed(old - new)}", flush=True)
+            if new - old:
+                print(f"{'':31}stale by definitions alone: {_listed(new - old)}", flush=True)
+            if asked.verify:
+                print(f"{'':31}{verified(commit, new, frames)}", flush=True)
 
 
 def edits() -> None:
@@ -176,62 +190,100 @@ def texts_in(folder: Path) -> Texts:
     return found
 
 
-def verified(commit: str, tasks: set[str]) -> str:
-    """Runs both trees of a commit on one generated sequence; says which of the tasks gave what."""
-    with tempfile.TemporaryDirectory() as folder:
-        told = []
-        scans = Path(folder) / "scans"
-        for side, name in (("before", f"{commit}^"), ("after", commit)):
-            tree = Path(folder) / side
-            _unpacked(name, tree)
-            told.append(_results(tree, scans, Path(folder) / f"out-{side}"))
-    before, after = told
-    seen = {node: (before[node], after[node]) for node in before.keys() & after.keys() if node.partition("[")[0] in tasks}
-    ran = {node.partition("[")[0] for node in seen}
-    differing = {node.partition("[")[0] for node, (a, b) in seen.items() if a != b}
-    missing = tasks - ran
-    return (
-        f"ran {len(ran)} of {len(tasks)}: {len(differing)} with other results"
-        + (f" ({_listed(differing)})" if differing else "")
-        + (f"; not run: {_listed(missing)}" if missing else "")
+@dataclass(frozen=True)
+class Outcome:
+    """What one tree made of the sequence."""
+
+    failure: str
+    """Why its run did not come to its end; "" where it did."""
+    artifacts: Mapping[str, str]
+    """By task, index, parameters and the digests of its inputs, the digest of the artifact of a node."""
+
+
+def verified(commit: str, stale_by_definitions: set[str], frames: Path) -> str:
+    """One line: nodes that ran on equal inputs, tasks that made other results of them, tasks that the rule missed."""
+    parent = _git("rev-parse", f"{commit}^").strip()
+    before, after = (outcome(_git("rev-parse", f"{name}^{{tree}}").strip(), frames) for name in (parent, commit))
+    failures = [f"{side}: {found.failure}" for side, found in (("parent", before), ("commit", after)) if found.failure]
+    equal = before.artifacts.keys() & after.artifacts.keys()
+    ran = {_task(node) for node in after.artifacts}
+    compared = {_task(node) for node in equal}
+    differing = {_task(node) for node in equal if before.artifacts[node] != after.artifacts[node]}
+    missed = differing - stale_by_definitions
+    return "; ".join(
+        [
+            f"{len(equal)} of {len(after.artifacts)} nodes had equal inputs",
+            f"{len(compared - stale_by_definitions)} of {len(ran - stale_by_definitions)} tasks that are not stale compared",
+            f"other results of {_listed(differing) or 'no task'}",
+            f"MISSED {_listed(missed)}" if missed else "none missed",
+            *failures,
+        ]
     )
 
 
-def _results(tree: Path, scans: Path, output: Path) -> dict[str, str]:
-    """The artifact digest of every node of one tree, over the sequence, which the first tree makes."""
-    home = tree / "installed"
-    layout = tomllib.loads((tree / "pyproject.toml").read_text())["tool"]["setuptools"]["package-dir"]
+def _task(node: str) -> str:
+    return str(json.loads(node)[0])
+
+
+@cache
+def outcome(tree: str, frames: Path) -> Outcome:
+    """Runs one tree of the history over the sequence, in a process of its own."""
+    place = frames.parent / "tree"  # always the same, since what numba compiled is found again by its path
+    with _removed(place):
+        output = place / "output"
+        _unpacked(tree, place)
+        call, env = _program(place)
+        try:
+            done = subprocess.run(
+                [*call, "run", "--input", str(frames), "--output", str(output), "--executor", "sync", "--quiet"],
+                env=env, capture_output=True, text=True, timeout=LIMIT,
+            )  # fmt: skip
+            failure = f"exit {done.returncode}: {' '.join(done.stderr.split())[-200:]}" if done.returncode else ""
+        except subprocess.TimeoutExpired:
+            failure = f"stopped after {LIMIT} s"
+        records = map(json.loads, (p.read_bytes() for p in output.glob("store/records/*/*.json")))
+        made = {json.dumps([r["task"], r["index"], r["params"], r["inputs"]], sort_keys=True): r["artifact"] for r in records}
+    return Outcome(failure, made)
+
+
+@contextmanager
+def _removed(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _program(place: Path) -> tuple[list[str], dict[str, str]]:
+    """The command and the environment that run the kinetree of a tree and nothing of the one that is installed."""
+    home, project = place / "installed", tomllib.loads((place / "pyproject.toml").read_text())
     (home / "kinetree").mkdir(parents=True)
-    for package, place in sorted(layout.items()):
+    for package, folder in sorted(project["tool"]["setuptools"]["package-dir"].items()):
         if package.count(".") == 1:
-            (home / "kinetree" / package.rpartition(".")[2]).symlink_to(tree / place)
-    env = {**os.environ, "PYTHONPATH": str(home), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    begin = "import sys; sys.meta_path[:] = [f for f in sys.meta_path if '__editable__' not in getattr(f, '__module__', '')]; "
-    call = [sys.executable, "-c", f"{begin}from kinetree.pipeline.cli import main; main()"]
-    if not scans.exists():
-        made = subprocess.run(
-            [*call, "synth", "-o", str(scans), "--frames", "6", "--vertices", "1500"], env=env, capture_output=True, text=True
-        )
-        if made.returncode:
-            raise SystemExit(f"{tree.name}: {made.stderr.strip()}")
-    subprocess.run(
-        [*call, "run", "-i", str(scans), "-o", str(output), "--executor", "sync", "-q"], env=env, capture_output=True
+            (home / "kinetree" / package.rpartition(".")[2]).symlink_to(place / folder)
+    module, _, function = project["project"]["scripts"]["kinetree"].partition(":")
+    begin = "import sys; sys.meta_path[:] = [f for f in sys.meta_path if '__editable__' not in getattr(f, '__module__', '')]"
+    threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    return (
+        [sys.executable, "-c", f"{begin}; from {module} import {function} as main; main()"],
+        {**os.environ, "PYTHONPATH": str(home), **threads},
     )
-    told = subprocess.run([*call, "plan", str(output), "--nodes", "--json"], env=env, capture_output=True, text=True)
-    nodes = json.loads(told.stdout)["nodes"]
-    return {node["node"]: node["artifact"] for node in nodes if node.get("artifact")}
 
 
 def _unpacked(commit: str, folder: Path) -> None:
     """The tree of a commit in a folder."""
+    folder.mkdir(exist_ok=True)
     data = subprocess.run(["git", "archive", commit], cwd=ROOT, check=True, capture_output=True).stdout
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         archive.extractall(folder, filter="data")
 
 
 def _commits(count: int) -> list[str]:
-    asked = ["git", "log", "--format=%H", f"-{count}", "--", "tasks/*.py", "schemas/*.py"]
-    return subprocess.run(asked, cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
+    return _git("log", "--format=%h", f"-{count}", "--no-merges", "--", "tasks/*.py", "schemas/*.py").split()
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout
 
 
 def _listed(names: set[str]) -> str:
