@@ -9,14 +9,15 @@ KinetreeError
 │   │   └── DisconnectedMeshError   a distance between two components was asked for
 │   ├── StoreError            the folder is not a store, or cannot be read or written
 │   │   └── StoreFullError    no space is left on the device
-│   ├── ClusterError          nobody answers at the scheduler's address
 │   └── UnknownNodeError      no such task, node, run or artifact
+├── ClusterError              the scheduler or the workers are not there; exit code 3, the same command may succeed later
 ├── GraphError                the declarations do not make a graph; raised at import
 │   ├── TwoWritersError       two tasks return the same artifact
 │   ├── MissingWriterError    an argument's type is returned by no task
 │   └── CycleError            a task waits for itself
 ├── ArtifactError             a value breaks its schema
 ├── DamagedArtifactError      a stored artifact lost or changed bytes; it is computed again
+├── LostWorkerError           the workers that computed a node died under it, several times
 ├── StaleWorkerError          a worker runs other code than the one that planned
 └── NodesFailedError          the run ended and some nodes failed; exit code 1
 """
@@ -58,12 +59,12 @@ class StoreFullError(StoreError):
     """No space is left where the store lies."""
 
 
-class ClusterError(InputError):
-    """Nobody answers at the scheduler's address, or the workers are gone."""
-
-
 class UnknownNodeError(InputError):
     """No such task, node, run or artifact."""
+
+
+class ClusterError(KinetreeError):
+    """Nobody answers at the scheduler's address, it went away, or the workers did; the same command may succeed later."""
 
 
 class GraphError(KinetreeError):
@@ -96,6 +97,10 @@ class DamagedArtifactError(KinetreeError):
 
     def __reduce__(self) -> tuple[type, tuple[str, str]]:
         return type(self), (self.digest, self.what)
+
+
+class LostWorkerError(KinetreeError):
+    """The workers that computed a node died under it, several times."""
 
 
 class StaleWorkerError(KinetreeError):

@@ -25,11 +25,11 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from kinetree.errors import ConfigError, InputError, KinetreeError
+from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError
 from kinetree.pipeline.application import Application, Command, Shortcut
 from kinetree.pipeline.printable import printable, quoted
 
-EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 130 interrupted"
+EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 the cluster failed, try again · 130 interrupted"
 ENVIRONMENT = (
     errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.ENAMETOOLONG, errno.EIO, errno.EMFILE,
     errno.ENFILE, errno.ELOOP, errno.ENOTDIR, errno.ESTALE, errno.ENOMEM,
@@ -127,6 +127,9 @@ def main(application: Application) -> NoReturn:
     except InputError as error:
         _print_error(name, error)
         code = 2
+    except ClusterError as error:
+        _print_error(name, error)
+        code = 3
     except KinetreeError as error:
         _print_error(name, error)
         code = 1

@@ -1,15 +1,17 @@
 """Where parcels are computed on dask's distributed scheduler: workers of this machine, or any scheduler's address."""
 
 import asyncio
+import concurrent.futures
 import contextlib
 import logging
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
-from distributed import Client, LocalCluster, WorkerPlugin
+from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin
 
-from kinetree.errors import ClusterError
+from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 
 CONNECT_SECONDS = 10
 
@@ -47,7 +49,9 @@ def at(address: str) -> Iterator[Client]:
 def _at(address: str) -> Iterator[Client]:
     try:
         client = Client(address, timeout=CONNECT_SECONDS)
-    except (OSError, TimeoutError, ValueError) as error:
+    except ValueError as error:
+        raise ConfigError(f"--scheduler {address}: not an address ({error}); expected one such as tcp://host:8786") from None
+    except (OSError, TimeoutError) as error:
         raise ClusterError(
             f"--scheduler {address}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
             " check the address and that the scheduler runs (dask scheduler), or leave --scheduler out"
@@ -56,6 +60,41 @@ def _at(address: str) -> Iterator[Client]:
         if not client.scheduler_info()["workers"]:
             raise ClusterError(f"--scheduler {address}: the scheduler has no workers; start some (dask worker {address})")
         yield client
+
+
+@dataclass(frozen=True)
+class Remote:
+    """A future of distributed whose result is fetched as soon as it is there, in the background.
+
+    A result that dies with its worker before it is fetched is computed again, which the caller's thread must not wait for.
+    """
+
+    future: Any
+    outcome: "concurrent.futures.Future[Any]"
+
+    @staticmethod
+    def of(client: Client, future: Any) -> "Remote":
+        """For a future of a client."""
+
+        async def fetched() -> Any:
+            try:
+                return await future
+            except KilledWorker as error:
+                raise LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory") from None
+
+        return Remote(future, asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop))
+
+    def add_done_callback(self, call: Callable[["Remote"], None], /) -> None:
+        """Calls when the result was fetched."""
+        self.outcome.add_done_callback(lambda _: call(self))
+
+    def result(self) -> Any:
+        """The value, or raises."""
+        return self.outcome.result()
+
+    def cancel(self) -> None:
+        """Takes it back where it has not begun."""
+        self.future.cancel()
 
 
 def slots(client: Client) -> int:

@@ -18,6 +18,7 @@ from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.memory import peak_bytes, reset_peak
+from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
 from kinetree.schemas.array import Artifact, Index
@@ -87,7 +88,17 @@ class _Bench:
     made: dict[int, Artifact] = field(default_factory=dict)
 
 
-def execute(store_url: str, steps: tuple[Step, ...]) -> list[Result]:
+def execute(store_url: str, steps: tuple[Step, ...], sight: Sight) -> list[Result]:
+    """Computes the steps in order, in a process that has proven that it sees the store; in any other the first is refused."""
+    try:
+        sight.prove(store_url)
+    except StoreError as error:
+        refused = Result("refused", error=type(error).__name__, message=str(error))
+        return [refused, *(Result("undone") for _ in steps[1:])]
+    return compute(store_url, steps)
+
+
+def compute(store_url: str, steps: tuple[Step, ...]) -> list[Result]:
     """Computes the steps in order; a step that fails leaves those that read it undone and the others untouched."""
     bench = _Bench(_store(store_url))
     for number, step in enumerate(steps):

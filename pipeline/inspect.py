@@ -225,7 +225,8 @@ class Pipeline:
         """Starts workers only where there is something to run."""
         if all(entry.state == "fresh" for entry in schedule.entries.values()) and not any(schedule.blocked.values()):
             return
-        from kinetree.pipeline.run import launcher, run
+        from kinetree.pipeline.launch import launcher
+        from kinetree.pipeline.run import run
 
         with launcher(self.config.compute, client) as launch:
             run(schedule, launch, watch)

@@ -1,77 +1,31 @@
-"""Runs a schedule on dask until nothing is left to run: parcels out, results in, the schedule told.
-
-Everything is a future. In this process dask's synchronous executor makes them (a breakpoint inside a task works), or a pool
-of threads; on workers, distributed does.
-"""
+"""Runs a schedule until nothing is left to run: parcels out, results in, the schedule told."""
 
 import contextlib
 import itertools
 import queue
-import secrets
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, ThreadPoolExecutor
+import time
+from collections import Counter, deque
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol
 
-from dask.local import SynchronousExecutor
-
-from kinetree.errors import ClusterError, GraphError, InputError, StoreError, StoreFullError
-from kinetree.pipeline.config import Compute
+from kinetree.errors import ClusterError, GraphError, KinetreeError, LostWorkerError, StoreError, StoreFullError
+from kinetree.pipeline import sight as seeing
 from kinetree.pipeline.events import Watch
-from kinetree.pipeline.execute import Input, Ref, Result, Step, execute, forget_reads
+from kinetree.pipeline.execute import Result, forget_reads
+from kinetree.pipeline.launch import Future, Launcher
 from kinetree.pipeline.node import Node
+from kinetree.pipeline.parcels import steps_of
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
+from kinetree.pipeline.sight import Sight
 
-
-class Future(Protocol):
-    """What futures of the standard library and of distributed have in common."""
-
-    def add_done_callback(self, call: Callable[[Any], None], /) -> None:
-        """Calls when done."""
-
-    def result(self) -> Any:
-        """The value, or raises."""
-
-    def cancel(self) -> Any:
-        """Takes it back where it has not begun."""
-
-
-@dataclass(frozen=True)
-class Launcher:
-    """Where parcels go: `submit(name, store_url, steps)` gives a future of their results."""
-
-    submit: Callable[[str, str, tuple[Step, ...]], Future]
-    window: int
-    """How many parcels may be out at once: enough that no worker waits, few enough that the deepest go first."""
-    is_apart: bool = True
-    """Whether nodes run elsewhere than in the thread that runs the loop."""
-
-
-@contextlib.contextmanager
-def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
-    """The launcher that a configuration asks for, or one on a `distributed.Client` handed in."""
-    with contextlib.ExitStack() as stack:
-        if client is None and compute.scheduler:
-            from kinetree.pipeline import clusters
-
-            client = stack.enter_context(clusters.at(compute.scheduler))
-        elif client is None and compute.executor == "processes":
-            from kinetree.pipeline import clusters
-
-            client = stack.enter_context(clusters.local(compute.worker_count, compute.memory))
-        if client is not None:
-            yield _on_client(client)
-        elif compute.executor == "threads":
-            pool = ThreadPoolExecutor(compute.worker_count)
-            # an interrupted run does not wait for nodes that may take minutes: what they publish is whole or nothing
-            stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-            yield Launcher(lambda _, url, steps: pool.submit(execute, url, steps), 2 * compute.worker_count)
-        else:
-            here = SynchronousExecutor()
-            yield Launcher(lambda _, url, steps: here.submit(execute, url, steps), 1, is_apart=False)
+RETRIES = 1
+"""How often a node is tried again, alone, after dask gave it up because its workers died."""
+LOOK_AGAIN = 0.1
+"""Seconds after which the run looks for new workers, and again for a record that was not there."""
 
 
 def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
@@ -80,7 +34,7 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
     raises : StoreError, ClusterError where going on makes no sense; KeyboardInterrupt; either way the store is whole
     """
     forget_reads()
-    loop = _Loop(schedule, launch, watch)
+    loop = _Loop(schedule, launch, watch, Sight.of(schedule.store))
     try:
         with _interruptible(loop):
             while loop.send() or loop.out:
@@ -91,6 +45,8 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
             future.cancel()
         loop.out.clear()
         raise
+    finally:
+        loop.sight.end(schedule.store)
 
 
 @contextlib.contextmanager
@@ -118,13 +74,19 @@ class _Loop:
     schedule: Schedule
     launch: Launcher
     watch: Watch
+    sight: Sight
     out: dict[int, Future] = field(default_factory=dict)
     _parcels: dict[int, list[Entry]] = field(default_factory=dict)
     _done: "queue.SimpleQueue[tuple[int, Future | None]]" = field(default_factory=queue.SimpleQueue)
     _twins: dict[str, list[Node]] = field(default_factory=dict)
     """Nodes that wait for a parcel under way which computes the same key."""
     _numbers: Iterator[int] = field(default_factory=itertools.count)
-    _ready: Iterator[Entry] | None = None
+    _suspects: "deque[Entry]" = field(default_factory=deque)
+    """Nodes whose workers died; each is tried again when nothing else is out."""
+    _lost: "Counter[Node]" = field(default_factory=Counter)
+    _look_at: float = 0.0
+    _unseen: dict[int, float] = field(default_factory=dict)
+    """Since when the results of a parcel are looked for in the store."""
 
     def send(self) -> bool:
         """Sends ready nodes while the window has room; True if any went."""
@@ -137,6 +99,9 @@ class _Loop:
             sent = True
             if len(self.out) >= self.launch.window:
                 break
+        if self._suspects and not self.out:
+            self._submit([self._suspects.popleft()])
+            return True
         return sent
 
     def interrupt(self, *_: object) -> None:
@@ -144,36 +109,80 @@ class _Loop:
         self._done.put((-1, None))
 
     def receive(self) -> None:
-        """Waits for one parcel and tells the schedule what became of it."""
-        number, future = self._done.get()
+        """Waits for one parcel, for a while, and tells the schedule what became of it."""
+        if self.launch.is_elsewhere and time.monotonic() > self._look_at:
+            self.sight.confirm(self.schedule.store)
+            self._look_at = time.monotonic() + LOOK_AGAIN
+        try:
+            number, future = self._done.get(timeout=LOOK_AGAIN if self.launch.is_elsewhere else None)
+        except queue.Empty:
+            return
         if future is None:
             raise KeyboardInterrupt
-        del self.out[number]
-        parcel = self._parcels.pop(number)
+        parcel = self._parcels[number]
         try:
             results: list[Result] = future.result()
         except CancelledError:
             raise ClusterError("the scheduler cancelled the work; was it stopped? Run again to go on") from None
-        except (KeyboardInterrupt, SystemExit):
-            raise
-        except Exception as error:  # the worker died too often, or cannot even load the work
-            results = [_lost(error)] + [Result("undone")] * (len(parcel) - 1)
+        except Exception as error:  # the workers died under it, or none can even load the work
+            self._forget(number)
+            self._lose(parcel, error)
+            return
+        if self._all_seen(number, parcel, results, future):
+            self._forget(number)
+            self._tell_all(parcel, results)
+
+    def _lose(self, parcel: list[Entry], error: Exception) -> None:
+        """Nothing came back of a parcel. Its first node is tried again, alone, since another may have killed its workers."""
+        first, *rest = parcel
+        for entry in rest:
+            self.schedule.put_back(entry.node)
+        self._lost[first.node] += 1
+        if isinstance(error, LostWorkerError) and self._lost[first.node] <= RETRIES:
+            self._suspects.append(first)
+        else:
+            self._tell_all([first], [Result("failed", error=type(error).__name__, message=str(error) or repr(error))])
+
+    def _tell_all(self, parcel: list[Entry], results: list[Result]) -> None:
         twins = self._twins.pop(parcel[0].key or "", [])
         for entry, result in zip(parcel, results, strict=True):
             self._tell(entry, result)
         for node in twins:
             self._tell(self.schedule.entries[node], _twin(results[0]))
 
+    def _all_seen(self, number: int, parcel: list[Entry], results: list[Result], future: Future) -> bool:
+        """Whether what a worker says it stored is there for this process too; where not, it is looked for again soon.
+
+        raises : StoreError where it was not there for too long
+        """
+        for entry, result in zip(parcel, results, strict=True):
+            is_stored = result.status in ("ran", "fresh")
+            if is_stored and not seeing.sees(self.schedule.store, result.key, result.artifact):
+                since = self._unseen.setdefault(number, time.monotonic())
+                if time.monotonic() - since > seeing.SEEN_WITHIN:
+                    raise seeing.unseen(self.schedule.store, entry.label, result.record)
+                later = threading.Timer(LOOK_AGAIN, self._note, (number, future))
+                later.daemon = True
+                later.start()
+                return False
+        return True
+
+    def _forget(self, number: int) -> None:
+        del self.out[number], self._parcels[number]
+        self._unseen.pop(number, None)
+
     def _send(self, entry: Entry) -> None:
         parcel = self.schedule.send(entry)
-        number = next(self._numbers)
-        self._parcels[number] = parcel
         self._twins[entry.key or ""] = []
         for member in parcel:
             self.watch.start(member)
-        steps = _steps(self.schedule, parcel)
-        name = f"{entry.node.task}-{'-'.join(map(str, entry.node.at))}-{(entry.key or '')[:8]}-{number}"
-        future = self.launch.submit(name, self.schedule.store.url, steps)
+        self._submit(parcel)
+
+    def _submit(self, parcel: list[Entry]) -> None:
+        number, first = next(self._numbers), parcel[0]
+        name = f"{first.node.task}-{'-'.join(map(str, first.node.at))}-{(first.key or '')[:8]}-{number}"
+        future = self.launch.submit(name, self.schedule.store.url, steps_of(self.schedule, parcel), self.sight)
+        self._parcels[number] = parcel
         self.out[number] = future
         future.add_done_callback(partial(self._note, number))
 
@@ -192,6 +201,7 @@ class _Loop:
                 self.watch.layout(schedule.entries.values())
             self.watch.finish(entry, result)
             self.watch.fresh(fresh)
+            self._tell_losses()
         elif result.status == "failed":
             skipped = schedule.fail(entry.node, result.message)
             self.watch.fail(entry, result, [schedule.entries[n] for n in skipped])
@@ -202,12 +212,19 @@ class _Loop:
         else:
             raise (StoreFullError if result.error == "StoreFullError" else _refusal(result))(result.message)
 
+    def _tell_losses(self) -> None:
+        """What could not be read while more of the graph was laid out."""
+        for loss in self.schedule.losses():
+            self.watch.damaged(loss.entry, loss.was, loss.what)
+            if loss.skipped is not None:
+                failed = _beyond_repair(loss.entry.artifact or "", loss.what)
+                self.watch.fail(loss.entry, failed, [self.schedule.entries[n] for n in loss.skipped])
+
     def _mend(self, entry: Entry, result: Result) -> None:
         """An input could not be read: whoever made it makes it again, then this node runs."""
         redone = self.schedule.mend(entry.node, result.artifact, result.message)
         if redone is None:
-            told = f"artifact {result.artifact[:12]} {result.message}, again after it was computed again; check the disk"
-            self._tell(entry, Result("failed", error="DamagedArtifactError", message=told))
+            self._tell(entry, _beyond_repair(result.artifact, result.message))
             return
         for maker, was in redone:
             self.watch.damaged(maker, was, result.message)
@@ -223,51 +240,9 @@ def _refuse_rings(schedule: Schedule) -> None:
         )
 
 
-def _on_client(client: Any) -> Launcher:
-    from kinetree.pipeline import clusters
-
-    run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
-
-    def submit(name: str, url: str, steps: tuple[Step, ...]) -> Future:
-        future: Future = client.submit(execute, url, steps, key=f"{name}-{run}", pure=False)
-        return future
-
-    return Launcher(submit, 3 * clusters.slots(client))
-
-
-def _steps(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
-    place = {entry.node: number for number, entry in enumerate(parcel)}
-    return tuple(
-        Step(
-            label=entry.label,
-            task=f"{entry.task.module}:{entry.task.name}",
-            index=dict(zip(entry.task.over, entry.node.at, strict=True)),
-            code=schedule.code[entry.node.task],
-            params=schedule.params.get(entry.node.task, {}),
-            inputs=tuple(
-                Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), schedule.numbers(entry, a, nodes))
-                for a, nodes in entry.inputs or ()
-            ),
-            key=entry.key if entry is parcel[0] else None,
-            force=entry.node.task in schedule.force or any(r.kind == "artifact" for r in entry.reasons),
-            distrusted=schedule.distrusted,
-        )
-        for entry in parcel
-    )
-
-
-def _ref(schedule: Schedule, place: dict[Node, int], node: Node) -> Ref:
-    entry = schedule.entries[node]
-    if node in place:
-        return Ref(entry.label, step=place[node])
-    if entry.task.is_origin:
-        return Ref(entry.label, given=schedule.given[node.task][node.at])
-    return Ref(entry.label, artifact=entry.artifact)
-
-
-def _lost(error: Exception) -> Result:
-    told = f"the worker was lost ({type(error).__name__}: {error}); perhaps it ran out of memory"
-    return Result("failed", error=type(error).__name__, message=told)
+def _beyond_repair(artifact: str, what: str) -> Result:
+    told = f"artifact {artifact[:12]} {what}, again after it was computed again; check the disk"
+    return Result("failed", error="DamagedArtifactError", message=told)
 
 
 def _twin(result: Result) -> Result:
@@ -275,5 +250,5 @@ def _twin(result: Result) -> Result:
     return Result("fresh", result.key, result.artifact, 0.0, result.record) if result.status == "ran" else result
 
 
-def _refusal(result: Result) -> type[InputError]:
+def _refusal(result: Result) -> type[KinetreeError]:
     return StoreError if result.error == "StoreError" else ClusterError

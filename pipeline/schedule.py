@@ -6,7 +6,7 @@ schedule nobody completes; it computes nothing.
 """
 
 import heapq
-from collections import Counter, defaultdict, deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
@@ -25,7 +25,7 @@ from kinetree.schemas.array import Artifact, Index, Params
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")
 MENDS = 3
-"""How often an input of a node is made again before the disk is to blame."""
+"""How often a node is computed again because its artifact is damaged, before the disk is to blame."""
 
 
 @dataclass
@@ -45,10 +45,21 @@ class Entry:
     record: Record | None = None
     damaged: str | None = None
     """Digest of an artifact that was found damaged and has to go before it is made again."""
-    mends: Counter[str] = field(default_factory=Counter)
-    """How often each input of this node, by its digest, had to be computed again."""
+    redone: int = 0
+    """How often its artifact was damaged and had to be computed again."""
     cause: str = ""
     """What failed, for a failed node; which node failed, for a skipped one."""
+
+
+@dataclass(frozen=True)
+class Loss:
+    """An artifact that could not be read while laying out."""
+
+    entry: Entry
+    was: State
+    what: str
+    skipped: tuple[Node, ...] | None
+    """What is skipped where its node failed for good; None where the node runs again."""
 
 
 class Schedule:
@@ -86,7 +97,9 @@ class Schedule:
         self._values: dict[Node, Artifact] = {}
         self._shaping = {t.name for t in graph.openers.values()} | {graph.writers[t.along].name for t in graph.tasks if t.along}
         self.blocked: dict[str, tuple[Node, ...]] = {}
+        self._losses: list[Loss] = []
         self.lay_out()
+        self._losses.clear()  # nothing was told of these nodes yet
 
     def lay_out(self) -> list[Node]:
         """Adds every node whose index is known by now, links every node whose inputs are; returns what is fresh at once."""
@@ -178,17 +191,18 @@ class Schedule:
         """A node could not read an input: whoever made it makes it again, and the node waits for that.
 
         artifact : digest of the input; what : what is wrong with it
-        returns  : the nodes that are to run again, and what each was; None where that was tried before, several times
+        returns  : the nodes that are to run again, and what each was; None where one of them did too often
         raises   : StoreError where no node makes it
         """
         entry = self.entries[node]
         makers = [n for n, other in self.entries.items() if other.artifact == artifact and not other.task.is_origin]
         if not makers:
             raise StoreError(f"{entry.label}: artifact {artifact[:12]} {what} and nothing here makes it")
-        entry.mends[artifact] += 1
-        if entry.mends[artifact] > MENDS:
-            return None
+        if entry.state == "skipped":
+            return []
         redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
+        if any(maker.redone >= MENDS for maker, _ in redone):
+            return None
         for maker, _ in redone:
             self._redo(maker.node, what)
         entry.state = "waits"
@@ -209,6 +223,7 @@ class Schedule:
     def _redo(self, node: Node, what: str) -> None:
         """A node's artifact turned out to be damaged: it runs again, and what was to read it waits for it again."""
         entry = self.entries[node]
+        entry.redone += 1
         self._values.pop(node, None)
         entry.state, entry.reasons, entry.damaged = "stale", (Reason("artifact", what),), entry.artifact
         heapq.heappush(self._ready, (-self._rank[node.task], node.at, node))
@@ -274,8 +289,20 @@ class Schedule:
         try:
             return question(self.value(node))
         except DamagedArtifactError as error:
-            self._redo(node, error.what)
+            self._lose(entry, error.what)
             return None
+
+    def _lose(self, entry: Entry, what: str) -> None:
+        """What an opener or a traversal answers cannot be read: it runs again, or fails where it did too often."""
+        was, gives_up = entry.state, entry.redone >= MENDS
+        if not gives_up:
+            self._redo(entry.node, what)
+        self._losses.append(Loss(entry, was, what, tuple(self.fail(entry.node, what)) if gives_up else None))
+
+    def losses(self) -> list[Loss]:
+        """What could not be read while laying out since this was asked last, in that order."""
+        found, self._losses = self._losses, []
+        return found
 
     def _link(self, entry: Entry) -> None:
         """Lists what a node reads; while that cannot be known, it waits for the nodes that will tell."""

@@ -22,7 +22,7 @@ FILES = [p for folder in ("errors", "pipeline", "schemas", "tasks") for p in sor
 NUMERICS = sorted(ROOT.glob("tasks/numerics/**/*.py"))
 SCHEMAS = sorted(ROOT.glob("schemas/**/*.py"))
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
-ALONE = {"dask": "pipeline/run.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
+ALONE = {"dask": "pipeline/launch.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
 OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
 PRODUCT = re.compile(
     r"\b(mesh|meshes|skeletons?|joints?|bones?|body|bodies|limbs?|scans?|vertex|vertices|geodesics?|kinematic|silhouettes?"

@@ -3,7 +3,8 @@
 import pytest
 
 from kinetree.errors import GraphError
-from kinetree.pipeline.run import Launcher, run
+from kinetree.pipeline.launch import Launcher
+from kinetree.pipeline.run import run
 
 CHAIN = '''"""Frames without files, linked in a row."""
 
@@ -177,13 +178,13 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
     schedule = toys.pipeline().schedule(until=["smooth"])
     schedule.store.create()
 
-    def submit(name, url, steps):
+    def submit(name, url, steps, sight):
         from dask.local import SynchronousExecutor
 
         from kinetree.pipeline.execute import execute
 
         sent.append([step.label for step in steps])
-        return SynchronousExecutor().submit(execute, url, steps)
+        return SynchronousExecutor().submit(execute, url, steps, sight)
 
     from kinetree.pipeline.events import Watch
 

@@ -6,8 +6,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from kinetree.errors import StaleWorkerError
-from kinetree.pipeline.execute import execute
-from kinetree.pipeline.run import _steps
+from kinetree.pipeline.execute import compute
+from kinetree.pipeline.parcels import steps_of
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_a_node_that_kills_every_worker_fails_alone(toys):
     toys.flag("slay-total-210")
     run = toys.run(compute={"executor": "processes", "workers": 1}, until=("total", "intervals"))
     (failure,) = run.told["failures"]
-    assert (failure["node"], failure["error"]) == ("total", "KilledWorker")
+    assert (failure["node"], failure["error"]) == ("total", "LostWorkerError")
     assert failure["message"].startswith("the worker was lost")
     # a result that died with its worker is found in the store when the node is tried again
     assert "intervals" in {*run.ran, *run.heard.nodes("fresh")}
@@ -66,7 +66,7 @@ def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, clus
         assert toys.run(client, until=("smooth",), force=("smooth",)).ran == {f"smooth[frame={n}]" for n in range(6)}
         toys.edit("return Smooth(value=rough(", "return Smooth(value=1.0 + rough(")
         told = toys.command("run", str(toys.yaml()), "--scheduler", cluster.scheduler_address, "--quiet")
-        assert told.returncode == 2
+        assert told.returncode == 3
         assert "planned with other code" in told.stderr
         assert "restart the workers" in told.stderr
         assert "Traceback" not in told.stderr
@@ -75,7 +75,7 @@ def test_a_client_handed_in_twice_does_not_take_one_run_for_the_other(toys, clus
 def parcel(toys, **blocks):
     """The first parcel of a run, as it would travel."""
     schedule = toys.pipeline(**blocks).schedule()
-    return schedule, _steps(schedule, schedule.send(next(schedule.ready())))
+    return schedule, steps_of(schedule, schedule.send(next(schedule.ready())))
 
 
 def test_a_worker_with_other_code_refuses(toys):
@@ -83,7 +83,7 @@ def test_a_worker_with_other_code_refuses(toys):
     schedule.store.create()
     toys.edit("return Points(x=params.scale", "return Points(x=2.0 * params.scale")
     toys.module  # noqa: B018 - a worker that has loaded the new code
-    first, second = execute(schedule.store.url, steps)
+    first, second = compute(schedule.store.url, steps)
     assert (first.status, first.error) == ("refused", StaleWorkerError.__name__)
     assert "points[frame=0]: planned with other code" in first.message
     assert second.status == "undone"
@@ -97,7 +97,7 @@ def test_a_worker_that_loaded_old_code_does_not_pass_it_off_as_the_new(toys):
     path = toys.folder / toys.name / "toys.py"
     path.write_text(path.read_text().replace("return Smooth(value=rough(", "return Smooth(value=1.0 + rough("))
     # edited below a process that lives on: what it plans and computes is still the old code
-    assert {r.status for r in execute(schedule.store.url, steps)} == {"ran"}
+    assert {r.status for r in compute(schedule.store.url, steps)} == {"ran"}
     assert toys.run(until=("smooth",)).told["nodes"]["failed"] == 0
     old = toys.artifacts()["smooth[frame=0]"]
     assert toys.module is module
@@ -120,7 +120,7 @@ def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
         toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
         assert [run["status"] for run in toys.pipeline().runs()] == ["running"]
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 2
+    assert process.returncode == 3
     assert err.strip() == "toy: the scheduler cancelled the work; was it stopped? Run again to go on"
     (toys.flags / "wait-total-210").unlink()
     assert not {"points", "smooth"} & set(toys.run().counts)

@@ -8,6 +8,7 @@ import signal
 import pytest
 
 from kinetree.errors import DamagedArtifactError
+from kinetree.pipeline.schedule import MENDS
 from kinetree.pipeline.store import Store, artifact_path
 
 TERMINAL = {"finish", "fresh", "failed", "skipped"}
@@ -313,3 +314,27 @@ def test_two_runs_at_once_share_a_store(toys, calm):
         assert run.returncode == 0, err
     assert toys.artifacts() == calm
     assert toys.run().ran == set()
+
+
+@pytest.mark.parametrize(("task", "skipped"), [("intervals", ["report"]), ("order", ["track", "report"])])
+@pytest.mark.parametrize("executor", ["sync", "threads"])
+def test_what_lays_out_the_graph_and_is_never_readable_fails_after_a_few_tries(toys, monkeypatch, executor, task, skipped):
+    """A disk that loses the artifact which opens a space, or orders a traversal, as often as it is written."""
+    whole = Store.read
+    lost = toys.module.GRAPH.by_name[task].returns
+
+    def read(self, cls, digest):
+        if cls is lost:
+            raise DamagedArtifactError(digest, "it is missing")
+        return whole(self, cls, digest)
+
+    monkeypatch.setattr(Store, "read", read)
+    run = toys.run(compute={"executor": executor})
+    assert run.told["status"] == "failed"
+    (failure,) = run.told["failures"]
+    assert failure["node"] == task
+    assert failure["message"].endswith("it is missing, again after it was computed again; check the disk")
+    assert sum(line.startswith(task) for line in toys.executions()) == MENDS + 1
+    ends = terminal(run.heard.events)
+    assert ends[task] == "failed"
+    assert {node.partition("[")[0] for node, end in ends.items() if end == "skipped"} == set(skipped)

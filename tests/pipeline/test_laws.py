@@ -277,7 +277,7 @@ def test_keys_are_the_same_in_every_process(toys, monkeypatch, seed):
 
 
 def test_planning_computes_and_writes_nothing(toys, monkeypatch):
-    from kinetree.pipeline import execute, files, run
+    from kinetree.pipeline import execute, files, launch
 
     def refuse(*_, **__):
         raise AssertionError("planning started something")
@@ -286,7 +286,7 @@ def test_planning_computes_and_writes_nothing(toys, monkeypatch):
     toys.clear()
     before = toys.stored()
     monkeypatch.setattr(files, "SETTLED_SECONDS", -1e9)
-    monkeypatch.setattr(run, "launcher", refuse)
+    monkeypatch.setattr(launch, "launcher", refuse)
     monkeypatch.setattr(execute, "execute", refuse)
     pipeline = toys.pipeline(points={"scale": 7.0})
     pipeline.plan()

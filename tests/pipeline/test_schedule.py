@@ -67,6 +67,7 @@ def test_after_several_rounds_nothing_more_is_tried(schedule):
     points = of(schedule, "points")
     for _ in range(MENDS):
         assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") is not None
+        schedule.complete(points.node, str(points.key), str(points.artifact), points.record, ran=True)
     state = (smooth.state, points.state)
     assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") is None
     assert (smooth.state, points.state) == state
