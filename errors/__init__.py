@@ -7,6 +7,7 @@ KinetreeError
 │   ├── SourceError           the sequence cannot be found or listed
 │   ├── MeshError             one mesh cannot be read or used
 │   │   └── DisconnectedMeshError   a distance between two components was asked for
+│   ├── HullError             silhouettes or a volume of one frame make no body
 │   ├── StoreError            the folder is not a store, or cannot be read or written
 │   │   └── StoreFullError    no space is left on the device
 │   └── UnknownNodeError      no such task, node, run or artifact
@@ -49,6 +50,10 @@ class MeshError(InputError):
 
 class DisconnectedMeshError(MeshError):
     """A distance between two components was asked for."""
+
+
+class HullError(InputError):
+    """The silhouettes or the volume of one frame cannot be read, or make no body."""
 
 
 class StoreError(InputError):

@@ -261,6 +261,28 @@ def group_arrays(path: Path) -> dict[str, NDArray[Any]]:
     return held
 
 
+def is_array(path: Path) -> bool:
+    """Whether one zarr array, not a group, lies at a path."""
+    if (path / ".zarray").is_file():
+        return True
+    try:
+        head = json.loads((path / "zarr.json").read_bytes())
+    except (OSError, ValueError):
+        return False
+    return isinstance(head, dict) and head.get("node_type") == "array"
+
+
+def opened_array(path: Path) -> tuple[Any, dict[str, Any]]:
+    """A zarr array lying anywhere, to be sliced and not read yet, and its attributes; raises StoreError."""
+    import zarr
+
+    try:
+        array = zarr.open_array(path, mode="r")
+        return array, dict(array.attrs)
+    except Exception as error:  # zarr and its codecs raise many kinds for one fact
+        raise StoreError(f"{path}: not a readable zarr array ({type(error).__name__}: {error})") from error
+
+
 def _record_path(key: str) -> str:
     return f"records/{key[:2]}/{key}.json"
 

@@ -94,6 +94,12 @@ APPLICATION = Application(
                     "kinetree synth quadruped -o dog/ --frames 60 --vertices 12000",
                     "kinetree synth human -o hip/ --contact hand_r:hip_r:12:26 --noise 0.001",
                 ),
+                _command(
+                    "silhouettes",
+                    "Render the silhouettes of a mesh sequence from a ring of cameras.",
+                    "kinetree silhouettes walk/ -o walk-masks/",
+                    "kinetree silhouettes walk/ -o walk-masks/ --cameras 8 --size 1024 --up z",
+                ),
             ),
         ),
         Section("Care", (built_in("gc", "kinetree gc walk/ --dry-run", "kinetree gc walk/ --keep-last 3"),)),
@@ -102,7 +108,7 @@ APPLICATION = Application(
         Shortcut(
             ("--input", "-i"),
             "source.input",
-            "Folder or glob of meshes, one per frame; or one .npz or zarr file with all frames.",
+            "Folder or glob of meshes, silhouettes or volumes, one per frame; or one file with all frames.",
             "FOLDER",
             is_input=True,
         ),

@@ -75,4 +75,4 @@ def test_the_new_operation_runs_takes_its_parameter_and_is_drawn(copy: Path, tmp
     run(copy, "-c", program, "plot", out, "extent", "-o", str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
     plan = json.loads(run(copy, "-c", program, "plan", out, "--set", "extent.quantile=0.1", "--until", "extent", "--json"))
-    assert {row["task"] for row in plan["tasks"] if set(row["states"]) != {"fresh"}} == {"extent"}
+    assert {row["task"] for row in plan["tasks"] if set(row["states"]) - {"fresh"}} == {"extent"}

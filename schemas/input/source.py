@@ -1,16 +1,20 @@
 """Where the frames of a sequence lie and what they hold; nothing of their geometry yet."""
 
-from typing import Annotated, Literal
+from collections.abc import Sequence
+from typing import Annotated, ClassVar, Literal
 
-from kinetree.schemas.array import Artifact, Location, Params, PathLike
+from kinetree.errors import ArtifactError
+from kinetree.schemas.array import Artifact, Index, Location, Params, PathLike
 from kinetree.schemas.input.synth import SynthParams
+
+Kind = Literal["file", "npz", "zarr", "synth", "silhouettes", "volume"]
 
 
 class SourceParams(Params):
     """Where the sequence is and which of its frames are wanted."""
 
     input: Annotated[str, PathLike()] = ""
-    """A folder or glob of mesh files, one a frame, or one .npz or zarr file that holds all frames."""
+    """Folder or glob of meshes, silhouettes or volumes, or one file that holds all frames."""
     synth: SynthParams | None = None
     """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"
@@ -20,17 +24,30 @@ class SourceParams(Params):
 class Source(Artifact):
     """One frame as the user gave it: which bytes, where they lie, and what the file says about time and unit."""
 
+    opens: ClassVar[tuple[str, ...]] = ("frame/silhouettes", "frame/volume")
+
     content: str
     """Digest of the bytes that make this frame; equal for equal content, whatever the file's name or age."""
     path: Annotated[str, Location()]
-    """The file, or the folder of a zarr group."""
+    """The file, or the folder of a zarr group or of silhouettes."""
     part: Annotated[int | None, Location()] = None
-    """Position in a file that holds all frames, or in a synthetic sequence; None for one file a frame."""
+    """Position in a file that holds all frames, in a synthetic sequence or among silhouettes; None for one file a frame."""
     recipe: Annotated[str, Location()] = ""
     """What a synthetic frame is made by, as JSON; its digest is in `content`."""
-    kind: Literal["file", "npz", "zarr", "synth"] = "file"
-    """How to read it."""
+    kind: Kind = "file"
+    """How to read it: the first four are meshes."""
+    calibration: Annotated[tuple[str, ...], Location()] = ()
+    """The files that calibrate the cameras of silhouettes."""
+    masks: Annotated[tuple[str, ...], Location()] = ()
+    """The mask of every camera in the calibration's order, empty where a camera has none; one npz may hold all."""
     fps: float | None = None
     """Frames a second as the file states it; None where it does not."""
     unit: str | None = None
     """Unit of length as the file states it; None where it does not."""
+
+    def members(self, space: str, index: Index) -> Sequence[int]:
+        """One hull for silhouettes, one isosurface for silhouettes or a volume, none for a mesh."""
+        if space not in self.opens:
+            raise ArtifactError(f"Source opens no index {space!r}")
+        kinds = {"frame/silhouettes": ("silhouettes",), "frame/volume": ("silhouettes", "volume")}[space]
+        return (0,) if self.kind in kinds else ()

@@ -1,4 +1,4 @@
-"""Where the frames are: a folder or glob of mesh files, one npz or zarr file that holds them all, or a synthetic body."""
+"""Where the frames are: meshes, silhouettes or volumes, a file each or in one file that holds all, or a synthetic body."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -10,13 +10,18 @@ import numpy as np
 from kinetree.errors import SourceError, StoreError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.key import array_digest, digest, file_digest
-from kinetree.pipeline.store import group_arrays
+from kinetree.pipeline.store import group_arrays, is_array, opened_array
 from kinetree.pipeline.task import origin
+from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
-from kinetree.tasks.numerics.input.source import Frames, mesh_files, read_npz
+from kinetree.tasks.numerics.input.input_kind import input_kind
+from kinetree.tasks.numerics.input.silhouettes import mask_files, read_masks, read_packed_masks
+from kinetree.tasks.numerics.input.source import Frames, mesh_files, read_npz, refuse_unreadable, selected_frames, written
+from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
 
 
 @origin(over="frame")
@@ -33,10 +38,24 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
 
 def _found(where: str, files: Files) -> list[Source]:
     """Every frame at a path, a pattern or in a packed sequence."""
-    path = _written(Path(where))
-    if path.suffix == ".npz" or _is_zarr(path):
-        return _packed(path, "npz" if path.suffix == ".npz" else "zarr", files)
-    paths = [_written(p) for p in mesh_files(where)]
+    path = written(Path(where))
+    if is_array(path):
+        return _packed_volumes(path, files)
+    if _is_zarr(path):
+        return _packed(path, "zarr", files)
+    kind, found = input_kind(where)
+    if kind == "silhouettes":
+        return _silhouettes(path, files)
+    if kind == "packed silhouettes":
+        return _packed_silhouettes([written(p) for p in found], files)
+    if kind == "volumes":
+        contents = files.digests([written(p) for p in found])
+        return [Source(content=c, path=str(p), kind="volume") for c, p in zip(contents, found, strict=True)]
+    if kind == "packed volumes":
+        return _packed_volumes(path, files)
+    if path.suffix == ".npz":
+        return _packed(path, "npz", files)
+    paths = [written(p) for p in mesh_files(where)]
     contents = files.digests(paths)
     return [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
 
@@ -53,7 +72,7 @@ def _generated(written: str, frames: int) -> list[Source]:
 
 def _chosen(sources: Sequence[Source], frames: str, where: str) -> dict[int, Source]:
     """The frames wanted, by number."""
-    chosen = _selected(frames, len(sources), where)
+    chosen = selected_frames(frames, len(sources), where)
     if len(chosen) < 2:
         held = f"frames {frames!r} selects" if len(sources) > 1 else f"{where}: there is"
         raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
@@ -71,21 +90,121 @@ def surface(frame_source: Source) -> tuple[Floats, Ints]:
         F = corners.astype(np.int32)
         now = digest(["synth", frame_source.recipe, frame_source.part])
     elif frame_source.part is None:
-        _refuse_closed(path)
+        refuse_unreadable(path)
         V, F = read_mesh(path)
         now = file_digest(path)
     else:
         V, F = _packed_frames(path, frame_source.kind).mesh(frame_source.part)
         now = _mesh_digest(V, F)
+    _refuse_changed(now, frame_source)
+    return V, F
+
+
+def silhouettes(frame_source: Source) -> tuple[Calibration, list[Flags | None]]:
+    """The cameras, and the mask of each in one frame, None where it has none.
+
+    raises : SourceError, HullError where they cannot be read, or are not the bytes that were there when planning
+    """
+    calibration = read_calibration([Path(path) for path in frame_source.calibration])
+    packed = frame_source.part is None
+    masks = (
+        read_packed_masks(Path(frame_source.masks[0]), calibration)
+        if packed
+        else read_masks([Path(path) if path else None for path in frame_source.masks], calibration)
+    )
+    files = frame_source.calibration, frame_source.masks
+    now = [[file_digest(Path(path)) if path else "" for path in paths] for paths in files]
+    _refuse_changed(digest(["silhouettes", *now]), frame_source)
+    return calibration, masks
+
+
+def volume(frame_source: Source) -> Grid:
+    """The volume of one frame, as the user gave it.
+
+    raises : SourceError, HullError where it cannot be read, or is not the bytes that were there when planning
+    """
+    path = Path(frame_source.path)
+    if frame_source.part is None:
+        refuse_unreadable(path)
+        grid = read_volume(path)
+        _refuse_changed(file_digest(path), frame_source)
+    else:
+        grid = _volumes(path).grid(frame_source.part)
+        _refuse_changed(_grid_digest(grid), frame_source)
+    return grid
+
+
+def _refuse_changed(now: str, frame_source: Source) -> None:
     if now != frame_source.content:
         raise SourceError(f"{name(frame_source)}: the file changed while the run was under way; run again")
-    return V, F
 
 
 def name(frame_source: Source) -> str:
     """What messages call the frame."""
     file = Path(frame_source.path).name
     return file if frame_source.part is None else f"{file}, frame {frame_source.part}"
+
+
+def _silhouettes(folder: Path, files: Files) -> list[Source]:
+    """Every frame of a folder with a folder of images for every camera."""
+    calibrated, calibration, contents = _calibrated(folder, files)
+    frames = mask_files(folder, calibration)
+    digests = dict(zip(paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths), strict=True))
+    return [
+        Source(
+            content=digest(["silhouettes", contents, [digests[p] if p else "" for p in masks]]),
+            path=str(folder),
+            part=number,
+            kind="silhouettes",
+            calibration=calibrated,
+            masks=tuple(str(p or "") for p in masks),
+            fps=calibration.fps,
+            unit=calibration.unit,
+        )
+        for number, masks in frames
+    ]
+
+
+def _packed_silhouettes(found: Sequence[Path], files: Files) -> list[Source]:
+    """A frame for every npz that holds the masks of all cameras."""
+    calibrated, calibration, contents = _calibrated(found[0].parent, files)
+    stated = {"kind": "silhouettes", "calibration": calibrated, "fps": calibration.fps, "unit": calibration.unit}
+    named = zip(found, files.digests(found), strict=True)
+    return [Source(content=digest(["silhouettes", contents, [c]]), path=str(p), masks=(str(p),), **stated) for p, c in named]
+
+
+def _calibrated(folder: Path, files: Files) -> tuple[tuple[str, ...], Calibration, list[str]]:
+    """The calibration of a folder: its files, what they hold, and their digests; raises SourceError where there is none."""
+    calibrated = calibration_files(folder)
+    if not calibrated:
+        raise SourceError(f"{folder}: silhouettes without a calibration of their cameras; put {' or '.join(NAMES[:3])} there")
+    return tuple(map(str, calibrated)), read_calibration(calibrated), files.digests(calibrated)
+
+
+def _packed_volumes(path: Path, files: Files) -> list[Source]:
+    """Every frame of one array of volumes."""
+
+    def parts(where: Path) -> Sequence[str]:
+        held = _volumes(where)
+        return [_grid_digest(held.grid(t)) for t in range(len(held))]
+
+    contents = files.parts(path, "volumes/1", parts)
+    return [Source(content=c, path=str(path), part=t, kind="volume") for t, c in enumerate(contents)]
+
+
+def _volumes(path: Path) -> Volumes:
+    """The volumes of one npy, npz or zarr array."""
+    if not is_array(path):
+        return read_volumes(path)
+    try:
+        return Volumes.of(*opened_array(path), str(path))
+    except StoreError as error:  # the user's file, not the store
+        raise SourceError(str(error)) from error
+
+
+def _grid_digest(grid: Grid) -> str:
+    """Digest of one frame of packed volumes."""
+    return digest(["volume", array_digest(np.ascontiguousarray(grid.values)), grid.origin.tolist(), grid.spacing.tolist()])
 
 
 def _packed_frames(path: Path, kind: str) -> Frames:
@@ -131,44 +250,8 @@ def _packed(path: Path, kind: str, files: Files) -> list[Source]:
     return [Source(content=c, part=t, **stated) for t, c in enumerate(contents)]
 
 
-def _written(path: Path) -> Path:
-    """The path, if its name can be written down; raises SourceError where its bytes are no text."""
-    try:
-        str(path).encode()
-    except UnicodeEncodeError:
-        raise SourceError(f"{str(path)!r}: this name is not valid UTF-8; rename the file or folder") from None
-    return path
-
-
 def _is_zarr(path: Path) -> bool:
     try:
         return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
     except OSError as error:
         raise SourceError(f"{path}: cannot be read: {error.strerror}; check its name and its permissions") from None
-
-
-def _refuse_closed(path: Path) -> None:
-    """A file that may not be read is not a damaged one."""
-    try:
-        path.open("rb").close()
-    except FileNotFoundError:
-        return
-    except OSError as error:
-        raise SourceError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
-
-
-def _selected(text: str, count: int, where: str) -> range:
-    """The frames that start:stop:step selects of `count`; raises SourceError where it is no range or selects nothing."""
-    parts = text.split(":")
-    try:
-        start, stop, step = ([int(p) if p.strip() else None for p in parts] + [None, None])[:3]
-        if len(parts) not in (2, 3):
-            raise ValueError
-        chosen = range(count)[slice(start, stop, step)]
-    except ValueError:
-        raise SourceError(f"frames {text!r}: write start:stop or start:stop:step, e.g. 10:60:2") from None
-    if step is not None and step < 0:
-        raise SourceError(f"frames {text!r}: the step must be positive; time runs forward")
-    if not chosen:
-        raise SourceError(f"frames {text!r} selects none of the {count} frames of {where}")
-    return chosen

@@ -1,7 +1,10 @@
 """Exports the input meshes with their parts as PLY."""
 
+import numpy as np
+
 from kinetree.errors import MeshError
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.isosurface import Isosurface
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.ply import Ply
@@ -12,9 +15,9 @@ from kinetree.tasks.results.formats.ply import ply as ply_bytes
 
 
 @task(over="frame", on_request=True)
-def ply(source: Source, projection: Projection, skeleton: Skeleton) -> Ply:
+def ply(source: Source, projection: Projection, skeleton: Skeleton, isosurface: tuple[Isosurface, ...] = ()) -> Ply:
     """Writes the input mesh of one frame with its vertices coloured and numbered by part (ours)."""
-    V, F = surface(source)
+    V, F = (np.array(isosurface[0].vertices), np.array(isosurface[0].faces)) if isosurface else surface(source)
     if len(V) != len(projection.face):
         raise MeshError(
             f"{name(source)}: the file has {len(V)} vertices now, but had {len(projection.face)} when it was read; run again"

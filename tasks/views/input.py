@@ -2,6 +2,8 @@
 
 from kinetree.pipeline.views import remarks_of
 from kinetree.schemas.input.connectivity import Connectivity, Odd
+from kinetree.schemas.input.hull import Hull
+from kinetree.schemas.input.isosurface import Isosurface
 
 
 @remarks_of(Connectivity)
@@ -15,6 +17,31 @@ def connectivity_remarks(connectivity: Connectivity) -> tuple[str, ...]:
     more = f" (and {others} other frame{'s' * (others > 1)})" if others else ""
     what = f"most frames have the same faces, but frame {first.frame}{more} does not: {_difference(first)}"
     return (f"{what}; all frames are therefore aligned, which is not needed if that frame is corrected or left out",)
+
+
+@remarks_of(Hull)
+def hull_remarks(hull: Hull) -> tuple[str, ...]:
+    """Names the views that a frame lacks, and those that cut the body."""
+    remarks = []
+    if hull.missing:
+        remarks.append(
+            f"carved with {hull.views} views, without camera {', '.join(hull.missing)}, which has no mask or an empty one;"
+            " the body may be thicker here than in other frames"
+        )
+    if hull.cut:
+        remarks.append(
+            f"the border of the image cuts the body in {len(hull.cut)} of {hull.views} views ({', '.join(hull.cut)});"
+            " they carve nothing beyond it"
+        )
+    return tuple(remarks)
+
+
+@remarks_of(Isosurface)
+def isosurface_remarks(isosurface: Isosurface) -> tuple[str, ...]:
+    """Says that the volume ends before the body does."""
+    if not isosurface.cut:
+        return ()
+    return (f"the body reaches the border of its volume at {isosurface.cut} points and was closed there; give a larger volume",)
 
 
 def _difference(odd: Odd) -> str:

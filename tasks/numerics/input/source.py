@@ -131,6 +131,42 @@ def read_npz(path: Path | str) -> Frames:
     return _frames(str(path.resolve()), state.st_size, state.st_mtime_ns)
 
 
+def selected_frames(text: str, count: int, where: str) -> range:
+    """The frames that start:stop:step selects of `count`; raises SourceError where it is no range or selects nothing."""
+    parts = text.split(":")
+    try:
+        start, stop, step = ([int(p) if p.strip() else None for p in parts] + [None, None])[:3]
+        if len(parts) not in (2, 3):
+            raise ValueError
+        chosen = range(count)[slice(start, stop, step)]
+    except ValueError:
+        raise SourceError(f"frames {text!r}: write start:stop or start:stop:step, e.g. 10:60:2") from None
+    if step is not None and step < 0:
+        raise SourceError(f"frames {text!r}: the step must be positive; time runs forward")
+    if not chosen:
+        raise SourceError(f"frames {text!r} selects none of the {count} frames of {where}")
+    return chosen
+
+
+def written(path: Path) -> Path:
+    """The path, if its name can be written down; raises SourceError where its bytes are no text."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise SourceError(f"{str(path)!r}: this name is not valid UTF-8; rename the file or folder") from None
+    return path
+
+
+def refuse_unreadable(path: Path) -> None:
+    """A file that may not be read is not a damaged one."""
+    try:
+        path.open("rb").close()
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise SourceError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
+
+
 @lru_cache(maxsize=2)
 def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     """The file in this state; two are remembered, so that reading frame after frame unpacks it once."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.input.synth.cameras import Cameras, camera_ring, silhouettes
+from kinetree.tasks.numerics.input.cameras import Cameras, camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.contacts import Contact, merging, touching
 from kinetree.tasks.numerics.input.synth.defects import punctured, roughened
 from kinetree.tasks.numerics.input.synth.descriptions import suggestion

@@ -5,8 +5,8 @@ import pytest
 import trimesh
 
 from kinetree.errors import FigureError
+from kinetree.tasks.numerics.input.cameras import camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.body import Body
-from kinetree.tasks.numerics.input.synth.cameras import camera_ring, silhouettes
 from kinetree.tasks.numerics.input.synth.figures import Figure
 
 CENTRE = np.array([10.0, -4.0, 2.0])
