@@ -2,33 +2,56 @@
 
 Numba keeps compiled code beside the digest of the file it stands in, but compiled code holds what it calls in other files
 too: after an edit there, or an upgrade, the old code would run on. So the place where it is kept is named by the digest
-of the file and of every numeric file it imports.
+of the file and of every numeric file it imports, and by nothing else: installations of the same code share it.
 """
 
+import contextlib
 import hashlib
 import importlib.util
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core.caching import UserProvidedCacheLocator
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 PACKAGE = "kinetree.tasks.numerics"
+LOCATOR = f"{__name__}.SharedCacheLocator"
+
+
+class SharedCacheLocator(UserProvidedCacheLocator):  # type: ignore[misc]
+    """Keeps the compiled code in the folder of `CACHE_DIR` itself, wherever the source lies."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        """The folder below `CACHE_DIR`; numba's own is named by the path of the source, which a copy does not share."""
+        return Path(py_file).stem
 
 
 def compiled(function: Function) -> Function:
     """Numba's `njit` without the lock and without checks for division by nought, kept where only this code can find it."""
-    home, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _kept_at(function.__module__)
-    try:
-        made: Function = numba.njit(cache=bool(numba.config.CACHE_DIR), nogil=True, error_model="numpy")(function)
-    finally:
-        numba.config.CACHE_DIR = home
+    folder = _kept_at(function.__module__)
+    with _configured(CACHE_DIR=folder, CACHE_LOCATOR_CLASSES=LOCATOR):
+        made: Function = numba.njit(cache=bool(folder), nogil=True, error_model="numpy")(function)
     return made
+
+
+@contextlib.contextmanager
+def _configured(**values: str) -> Iterator[None]:
+    """Sets what this version of numba can be told, for the time of a block."""
+    before = {name: getattr(numba.config, name) for name in values if hasattr(numba.config, name)}
+    try:
+        for name in before:
+            setattr(numba.config, name, values[name])
+        yield
+    finally:
+        for name, value in before.items():
+            setattr(numba.config, name, value)
 
 
 @cache
@@ -55,8 +78,8 @@ def _digest(module: str) -> str:
         if name not in texts:
             texts[name] = _text(name)
             waiting += re.findall(rf"^\s*(?:from|import) ({PACKAGE}\.\w[\w.]*)", texts[name], re.MULTILINE)
-    told = "\0".join(f"{name}\0{texts[name]}" for name in sorted(texts))
-    return hashlib.blake2b(told.encode(), digest_size=10).hexdigest()
+    text = "\0".join(f"{name}\0{texts[name]}" for name in sorted(texts))
+    return hashlib.blake2b(text.encode(), digest_size=10).hexdigest()
 
 
 def _text(module: str) -> str:

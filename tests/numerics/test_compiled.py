@@ -44,6 +44,21 @@ def test_edit_in_a_called_file_is_noticed_and_unchanged_code_is_found_again(
     assert asked(2) == "3 0"
 
 
+def test_a_copy_elsewhere_finds_the_same_compiled_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
+
+    def asked(folder: str) -> str:
+        place = tmp_path / folder
+        place.mkdir()
+        (place / "zz_inner.py").write_text(INNER.format(number=1))
+        (place / "zz_outer.py").write_text(OUTER)
+        command = [sys.executable, "-B", "-c", ASK.format(folder=str(place))]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    assert asked("one") == "2 0"
+    assert asked("other") == "2 1"
+
+
 def test_folder_that_cannot_be_written_means_no_keeping_and_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
