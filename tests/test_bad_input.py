@@ -120,7 +120,9 @@ def test_empty_folder(refused, tmp_path):
 def test_folder_without_meshes(refused, tmp_path):
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "1.jpg").write_bytes(b"")
-    assert "no mesh among its files (1 × .jpg)" in refused("-i", "photos")
+    assert "images, but no folder for each camera; silhouettes are CAMERA/FRAME.png" in refused("-i", "photos")
+    (tmp_path / "photos" / "1.jpg").rename(tmp_path / "photos" / "1.txt")
+    assert "no mesh among its files (1 × .txt)" in refused("-i", "photos")
 
 
 def test_mixed_formats(refused, scans):

@@ -39,10 +39,8 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
 def _found(where: str, files: Files) -> list[Source]:
     """Every frame at a path, a pattern or in a packed sequence."""
     path = written(Path(where))
-    if is_array(path):
-        return _packed_volumes(path, files)
     if _is_zarr(path):
-        return _packed(path, "zarr", files)
+        return _packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)
     kind, found = input_kind(where)
     if kind == "silhouettes":
         return _silhouettes(path, files)
@@ -252,6 +250,6 @@ def _packed(path: Path, kind: str, files: Files) -> list[Source]:
 
 def _is_zarr(path: Path) -> bool:
     try:
-        return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
+        return any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zarray"))
     except OSError as error:
         raise SourceError(f"{path}: cannot be read: {error.strerror}; check its name and its permissions") from None
