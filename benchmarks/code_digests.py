@@ -23,13 +23,16 @@ import tempfile
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from kinetree.pipeline.definitions import Code
 from kinetree.pipeline.key import HARMLESS
 from kinetree.pipeline.modules import PACKAGE
+from kinetree.pipeline.place import Folder
+from kinetree.pipeline.records import Records
 from kinetree.pipeline.statements import syntax
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.input.synth import write_sequence
@@ -241,9 +244,17 @@ def outcome(tree: str, frames: Path) -> Outcome:
             failure = f"exit {done.returncode}: {' '.join(done.stderr.split())[-200:]}" if done.returncode else ""
         except subprocess.TimeoutExpired:
             failure = f"stopped after {LIMIT} s"
-        records = map(json.loads, (p.read_bytes() for p in output.glob("store/records/*/*.json")))
-        made = {json.dumps([r["task"], r["index"], r["params"], r["inputs"]], sort_keys=True): r["artifact"] for r in records}
+        made = {
+            json.dumps([r["task"], r["index"], r["params"], r["inputs"]], sort_keys=True): r["artifact"]
+            for r in _records(output / "store")
+        }
     return Outcome(failure, made)
+
+
+def _records(store: Path) -> list[dict[str, Any]]:
+    """The records of a store, which commits before the packed ones kept in files of their own."""
+    single = [json.loads(path.read_bytes()) for path in store.glob("records/*/*.json")]
+    return single or [asdict(record) for record in Records(Folder(store)).all()]
 
 
 @contextmanager

@@ -76,7 +76,7 @@ def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -
 
 def is_output(target: object) -> bool:
     """Whether a target names the output folder of a run."""
-    return isinstance(target, str | Path) and (expanded(target) / SAVED).is_file()
+    return isinstance(target, str | Path) and expanded(target).is_dir() and (expanded(target) / SAVED).is_file()
 
 
 def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
@@ -106,7 +106,7 @@ def portable(blocks: Mapping[str, Any], folder: Path, paths: Paths) -> dict[str,
 
     def relative(path: str) -> str:
         way = os.path.relpath(path, folder)
-        is_near = Path(path).is_relative_to(folder.parent) and (folder / way).resolve() == Path(path).resolve()
+        is_near = Path(path).is_relative_to(folder.parent) and _is_same(folder / way, Path(path))
         return path if not is_near else f"./{way}" if way.startswith("~") else way
 
     return _with_paths(blocks, paths, relative)
@@ -186,9 +186,17 @@ def _absolute(blocks: Mapping[str, Any], base: Path, paths: Paths) -> dict[str, 
     def absolute(path: str) -> str:
         way = base / expanded(path)
         plain = Path(os.path.normpath(way))
-        return str(plain if plain.resolve() == way.resolve() else way)  # a link may lead elsewhere than its name says
+        return str(plain if _is_same(plain, way) else way)
 
     return _with_paths(blocks, paths, absolute)
+
+
+def _is_same(a: Path, b: Path) -> bool:
+    """Whether two ways lead to the same place: where a link stands between, its name does not say."""
+    try:
+        return a.resolve() == b.resolve()
+    except (OSError, ValueError, RuntimeError):
+        return False
 
 
 def _with_paths(blocks: Mapping[str, Any], paths: Paths, change: Callable[[str], str]) -> dict[str, Any]:

@@ -153,7 +153,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
     artifact = task(**values)
     if type(artifact) is not task.returns:
         raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
-    digest, files = bench.store.publish(artifact)
+    digest, size = bench.store.publish(artifact)
     bench.made[number] = artifact
     seconds = time.perf_counter() - started
     record = Record(
@@ -161,7 +161,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         task=task.name,
         index=dict(step.index),
         artifact=digest,
-        files=files,
+        bytes=size,
         params=dict(step.params),
         code=dict(code_parts(task.module, task.name)),
         inputs=inputs,
@@ -217,6 +217,7 @@ def _artifact(bench: _Bench, cls: type[Artifact], ref: Ref) -> Artifact:
 def forget_reads() -> None:
     """Lets go of what was read: a run that begins must see what lies in the store now."""
     _read.cache_clear()
+    _store.cache_clear()
 
 
 @lru_cache(maxsize=16)

@@ -1,10 +1,9 @@
 """Digests of the user's files, remembered: a file whose size, times and inode did not change is not read again.
 
 The memory is a convenience that may be lost or shared at any time. A file touched within the last seconds is read again,
-because its next change might leave no trace in its times.
+because its next change might leave no trace in its times. An altered byte makes the store forget all of it.
 """
 
-import json
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from kinetree.pipeline.key import file_digest
+from kinetree.pipeline.sealed import sealed, unsealed
 from kinetree.pipeline.store import Store
 
 MEMORY = "files.json"
@@ -32,10 +32,7 @@ class Files:
     @staticmethod
     def of(store: Store) -> "Files":
         """The memory that this store keeps, empty where there is none or it is unreadable."""
-        try:
-            known = json.loads(store.place.get(MEMORY) or b"{}")
-        except ValueError:
-            known = {}
+        known = unsealed(store.place.get(MEMORY))
         return Files(store, known if isinstance(known, dict) else {})
 
     def digests(self, paths: Sequence[Path]) -> list[str]:
@@ -50,7 +47,7 @@ class Files:
     def save(self) -> None:
         """Keeps what was learnt, where the store exists."""
         if self._learnt and self.store.exists:
-            self.store.place.put(MEMORY, json.dumps(self._known, separators=(",", ":")).encode())
+            self.store.place.put(MEMORY, sealed(self._known))
 
     def _remembered(self, path: Path, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
         stamp = _stamp(path)

@@ -1,12 +1,12 @@
 """Frees what no kept run needs: records, artifacts, and what writers that died left half-written."""
 
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from kinetree.pipeline.heartbeat import lives
-from kinetree.pipeline.store import Store, artifact_path
+from kinetree.pipeline.store import Store, artifact_path, list_path
 
 LEFTOVER_SECONDS = 24 * 3600.0
 """After this nobody is writing what lies half-written."""
@@ -44,7 +44,7 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     A run that is under way, here or on another machine, keeps what it found fresh when it began and everything that was
     made since; so does one that was killed, until a later run into the same folder has taken its work over.
     """
-    runs = {name: store.run(name) for name in store.run_names()}
+    runs = {run["name"]: run for run in store.runs()}
     for name in keep:
         store.run(name)
     count = last if last is not None else (0 if keep else 1)
@@ -55,7 +55,8 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
-    garbage = _garbage(store, tuple(name for name in runs if name not in needed), keys, since)
+    lists = {name for run in needed for name in runs[run]["lists"].values()}
+    garbage = _garbage(store, tuple(name for name in store.run_names() if name not in needed), keys, lists, since)
     if not dry:
         _free(store, garbage)
     return garbage
@@ -74,39 +75,35 @@ def _latest(runs: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     return list({run["output"]: run for run in runs.values()}.values())
 
 
-def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], since: float) -> Garbage:
+def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: Collection[str], since: float) -> Garbage:
     records: list[str] = []
     needed: set[str] = set()
-    for shard in store.place.names("records"):
-        for name in store.place.names(f"records/{shard}"):
-            key = name.removesuffix(".json")
-            record = store.record(key)
-            young = store.place.modified(f"records/{shard}/{name}") >= since
-            if record is not None and (key in keys or young):
-                needed.add(record.artifact)
-            else:
-                records.append(key)
-    artifacts: list[str] = []
-    freed = 0
-    for shard in store.place.names("artifacts"):
-        for digest in store.place.names(f"artifacts/{shard}"):
-            if digest not in needed and store.place.modified(artifact_path(digest)) < since:
-                artifacts.append(digest)
-                freed += sum(store.place.tree(artifact_path(digest)).values())
-    old = time.time() - LEFTOVER_SECONDS
-    leftovers = tuple(name for name in store.place.names("tmp") if store.place.modified(f"tmp/{name}") < min(old, since))
-    freed += sum(sum(store.place.tree(f"tmp/{name}").values()) for name in leftovers)
+    for key in store.records.listed():
+        record = store.record(key)
+        if record is not None and (key in keys or store.records.modified(key) >= since):
+            needed.add(record.artifact)
+        else:
+            records.append(key)
+    artifacts = [d for d in store.artifacts() if d not in needed and store.place.modified(artifact_path(d)) < since]
+    leftovers = tuple(_leftovers(store, runs, lists, since))
+    freed = sum(store.place.size(path) or 0 for path in [*map(artifact_path, artifacts), *leftovers])
     return Garbage(runs, tuple(records), tuple(artifacts), leftovers, freed)
+
+
+def _leftovers(store: Store, runs: Collection[str], lists: Collection[str], since: float) -> Iterator[str]:
+    """What nobody needs beside records and artifacts: half-written files, lists and heartbeats of runs that go."""
+    old = min(time.time() - LEFTOVER_SECONDS, since)
+    yield from (f"tmp/{name}" for name in store.place.names("tmp") if store.place.modified(f"tmp/{name}") < old)
+    unused = (list_path(n.removesuffix(".json")) for n in store.place.names("nodes") if n.removesuffix(".json") not in lists)
+    yield from (path for path in unused if store.place.modified(path) < since)
+    beats = (name for name in store.place.names("runs") if name.endswith(".beat"))
+    yield from (f"runs/{name}" for name in beats if name.removesuffix(".beat") in runs)
 
 
 def _free(store: Store, garbage: Garbage) -> None:
     """Records go before artifacts, so that no record ever names what is not there."""
-    paths: list[Sequence[str]] = [
-        [f"runs/{name}.json" for name in garbage.runs],
-        [f"records/{key[:2]}/{key}.json" for key in garbage.records],
-        [artifact_path(digest) for digest in garbage.artifacts],
-        [f"tmp/{name}" for name in garbage.leftovers],
-    ]
-    for group in paths:
-        for path in group:
-            store.place.remove(path)
+    for name in garbage.runs:
+        store.place.remove(f"runs/{name}.json")
+    store.records.remove(garbage.records)
+    for path in [*map(artifact_path, garbage.artifacts), *garbage.leftovers]:
+        store.place.remove(path)

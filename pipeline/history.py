@@ -32,6 +32,7 @@ class History:
     output: str
     """As `output_name` names it."""
     _nodes: dict[str, Any] | None = None
+    _runs: list[dict[str, Any]] | None = None
 
     @staticmethod
     def of(store: Store, config: Config) -> "History":
@@ -52,30 +53,33 @@ class History:
 
     def runs(self) -> list[dict[str, Any]]:
         """Every run on record without its nodes, oldest first; one that never ended and is not under way was killed."""
-        runs = [self.store.run(name) for name in self.store.run_names()]
+        runs = self.store.runs()
         for run in runs:
             if run["status"] == "running" and not lives(run, self.store):
                 run["status"] = "killed"
-        return [{name: value for name, value in run.items() if name not in ("nodes", "uses")} for run in runs]
+        return [{name: value for name, value in run.items() if name not in ("nodes", "uses", "lists")} for run in runs]
 
     def last_nodes(self) -> dict[str, Any]:
         """Every node that the last runs into this folder computed, as the newest of them did."""
         if self._nodes is None:
-            runs = [self.store.run(name) for name in self.store.run_names()[-LOOKED_BACK:]]
             self._nodes = {}
-            for run in (run for run in runs if run.get("output") == self.output):
+            for run in self._mine()[-LOOKED_BACK:]:
                 self._nodes |= {name: node for name, node in run["nodes"].items() if node.get("key")}
         return self._nodes
+
+    def _mine(self) -> list[dict[str, Any]]:
+        if self._runs is None:
+            self._runs = [run for run in self.store.runs() if run.get("output") == self.output]
+        return self._runs
 
     def origin(self, task: str, params: Any) -> dict[str, Any]:
         """What an origin found in the last run into this folder, its values by node; empty where its parameters differed.
 
         params : the block of the origin's parameters in the configuration that the run would leave
         """
-        for name in reversed(self.store.run_names()):
-            run = self.store.run(name)
+        for run in reversed(self._mine()):
             nodes = {n: node["values"] for n, node in run["nodes"].items() if "values" in node and n.partition("[")[0] == task}
-            if nodes and run.get("output") == self.output:
+            if nodes:
                 return nodes if run["config"].get(task) == params else {}
         return {}
 

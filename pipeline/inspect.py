@@ -30,7 +30,7 @@ from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.origins import found
 from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
-from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.schedule import DONE, Schedule
 from kinetree.pipeline.snapshot import Snapshot
 from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact
@@ -233,6 +233,8 @@ class Pipeline:
 
     def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, summed: dict[str, Any]) -> None:
         before = History.of(self.store, self.config).last_nodes()
+        self.store.create()  # which somebody may have removed meanwhile
         write_run_json(self.config, summed)
         self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
+        self.store.records.pack(opened["name"], [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
 

@@ -1,6 +1,6 @@
 """Where bytes lie: the few things a store asks of a file system, so that a bucket can be one as well as a folder.
 
-A path is relative, with forward slashes. `put` and `put_all` are all or nothing: a reader sees the old or the new, never half.
+A path is relative, with forward slashes. `put` is all or nothing: a reader sees the old or the new, never half.
 """
 
 import contextlib
@@ -10,7 +10,7 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Protocol
+from typing import BinaryIO, Protocol
 
 from kinetree.errors import StoreError, StoreFullError
 
@@ -23,11 +23,14 @@ class Place(Protocol):
     def get(self, path: str) -> bytes | None:
         """The bytes at `path`; None where nothing is."""
 
+    def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
+        """The last bytes of an object, and how many it has in all; None where nothing is."""
+
+    def part(self, path: str, start: int, stop: int) -> bytes | None:
+        """The bytes from start to stop; None where nothing is."""
+
     def put(self, path: str, data: bytes) -> None:
         """Writes one object."""
-
-    def put_all(self, path: str, files: Mapping[str, bytes]) -> None:
-        """Writes a tree of objects below `path`, complete before any of it is visible; keeps one that is there."""
 
     def size(self, path: str) -> int | None:
         """Bytes of one object; None where nothing is."""
@@ -35,14 +38,11 @@ class Place(Protocol):
     def names(self, path: str) -> list[str]:
         """Names directly below `path`, sorted; empty where nothing is."""
 
-    def tree(self, path: str) -> Mapping[str, int]:
-        """Size of every object below `path`, by path relative to it."""
-
     def modified(self, path: str) -> float:
-        """Seconds since the epoch of the last change of an object or tree; 0 where nothing is."""
+        """Seconds since the epoch of the last change of an object; 0 where nothing is."""
 
     def remove(self, path: str) -> None:
-        """Removes an object or a tree; nothing happens where nothing is."""
+        """Removes an object; nothing happens where nothing is."""
 
 
 class Folder:
@@ -56,12 +56,25 @@ class Folder:
 
     def get(self, path: str) -> bytes | None:
         """The bytes at `path`; None where nothing is."""
-        try:
-            return (self.root / path).read_bytes()
-        except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
-            return None
-        except OSError as error:
-            raise StoreError(f"store {self.url}: cannot read {path}: {error.strerror}; check its permissions") from error
+        with self._reading(path) as file:
+            return None if file is None else file.read()
+
+    def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
+        """The last bytes of a file, and how many it has in all; None where nothing is."""
+        with self._reading(path) as file:
+            if file is None:
+                return None
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - count))
+            return file.read(), size
+
+    def part(self, path: str, start: int, stop: int) -> bytes | None:
+        """The bytes from start to stop; None where nothing is."""
+        with self._reading(path) as file:
+            if file is None:
+                return None
+            file.seek(start)
+            return file.read(stop - start)
 
     def put(self, path: str, data: bytes) -> None:
         """Writes one object beside, then renames."""
@@ -132,6 +145,20 @@ class Folder:
                 shutil.rmtree(beside, ignore_errors=True)
             else:
                 beside.unlink(missing_ok=True)
+
+    @contextlib.contextmanager
+    def _reading(self, path: str) -> Iterator[BinaryIO | None]:
+        """An open file; None where nothing is."""
+        try:
+            with contextlib.ExitStack() as stack:
+                try:
+                    file = stack.enter_context((self.root / path).open("rb"))
+                except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
+                    yield None
+                else:
+                    yield file
+        except OSError as error:
+            raise StoreError(f"store {self.url}: cannot read {path}: {error.strerror}; check its permissions") from error
 
     def _beside(self) -> Path:
         self._folder.mkdir(parents=True, exist_ok=True)

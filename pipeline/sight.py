@@ -84,15 +84,14 @@ class Sight:
 
 
 def sees(store: Store, key: str, artifact: str) -> bool:
-    """Whether the record of a key and the artifact's group are there for this process.
+    """Whether the record of a key and the artifact are there for this process.
 
     Where they are not at first, the folder of the records is listed, which makes a network file system look again.
     """
-    head = f"{artifact_path(artifact)}/zarr.json"
     for _ in range(2):
-        if store.record(key) is not None and store.place.size(head) is not None:
+        if store.record(key) is not None and store.place.size(artifact_path(artifact)) is not None:
             return True
-        store.place.names(f"records/{key[:2]}")
+        store.place.names("records")
     return False
 
 

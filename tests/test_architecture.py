@@ -24,7 +24,7 @@ SCHEMAS = sorted(ROOT.glob("schemas/**/*.py"))
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 READERS = {"PIL", "nrrd", "tifffile", "yaml"}
 """What reads the users' own files, beside the numbers."""
-ALONE = {"dask": "pipeline/launch.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/store.py"}
+ALONE = {"dask": "pipeline/launch.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/groups.py"}
 OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
 PRODUCT = re.compile(
     r"\b(mesh|meshes|skeletons?|joints?|bones?|body|bodies|limbs?|scans?|vertex|vertices|geodesics?|kinematic|silhouettes?"
@@ -101,7 +101,7 @@ def test_schemas_know_only_schemas(path: Path) -> None:
 
 @pytest.mark.parametrize("path", OPERATIONS, ids=name)
 def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
-    border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.store"] if name(path) == BORDER else []
+    border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.groups"] if name(path) == BORDER else []
     assert not ours(imports(path), "kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.errors", *border)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from kinetree.errors import SourceError, StoreError
 from kinetree.pipeline.files import Files
+from kinetree.pipeline.groups import is_array, opened_array, user_arrays
 from kinetree.pipeline.key import array_digest, digest, file_digest
-from kinetree.pipeline.store import group_arrays, is_array, opened_array
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
@@ -20,7 +20,15 @@ from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibr
 from kinetree.tasks.numerics.input.formats import read_mesh
 from kinetree.tasks.numerics.input.input_kind import input_kind
 from kinetree.tasks.numerics.input.silhouettes import mask_files, read_masks, read_packed_masks
-from kinetree.tasks.numerics.input.source import Frames, mesh_files, read_npz, refuse_unreadable, selected_frames, written
+from kinetree.tasks.numerics.input.source import (
+    ARRAYS,
+    Frames,
+    mesh_files,
+    read_npz,
+    refuse_unreadable,
+    selected_frames,
+    written,
+)
 from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
 
 
@@ -223,7 +231,7 @@ def _state(path: Path) -> tuple[tuple[str, int, int], ...]:
 def _zarr_frames(path: Path, state: tuple[tuple[str, int, int], ...]) -> Frames:
     """The frames of a zarr group in this state."""
     try:
-        return Frames.of(group_arrays(path), str(path))
+        return Frames.of(user_arrays(path, ARRAYS), str(path))
     except StoreError as error:  # the user's file, not the store
         raise SourceError(str(error)) from error
 

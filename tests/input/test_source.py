@@ -67,16 +67,9 @@ def as_zarr(path, **changes):
         group.create_array(key, data=array)
 
 
-def as_zarr_2(path, **changes):
-    held = packed(**changes)
-    group = zarr.create_group(path, zarr_format=2, attributes={k: held.pop(k).item() for k in ("fps", "unit") if k in held})
-    for key, array in held.items():
-        group.create_array(key, data=array)
-
-
 PACKED = pytest.mark.parametrize(
     ("where", "write"),
-    [("a.npz", as_npz), ("a.zarr", as_zarr), ("a", as_zarr), ("b.zarr", as_zarr_2)],
+    [("a.npz", as_npz), ("a.zarr", as_zarr), ("a", as_zarr)],
     ids=lambda x: str(x)[:9],
 )
 

@@ -6,8 +6,11 @@ import shutil
 import signal
 
 import pytest
+from zips import alter
 
 from kinetree.errors import DamagedArtifactError
+from kinetree.pipeline.place import Folder
+from kinetree.pipeline.records import Records
 from kinetree.pipeline.schedule import MENDS
 from kinetree.pipeline.store import Store, artifact_path
 
@@ -28,16 +31,14 @@ def place_of(toys, digest):
     return toys.output / "store" / artifact_path(digest)
 
 
-def place(toys, node, name=""):
-    """Where a file of the artifact of a node lies."""
-    return place_of(toys, toys.artifacts()[node]) / name
+def damage_in(toys, node, name, change):
+    """Changes a file of the artifact of a node."""
+    alter(place_of(toys, toys.artifacts()[node]), name, change)
 
 
-def flip(file):
+def flip(data):
     """Alters one byte."""
-    data = bytearray(file.read_bytes())
-    data[-1] ^= 0xFF
-    file.write_bytes(data)
+    return data[:-1] + bytes([data[-1] ^ 0xFF])
 
 
 def terminal(events):
@@ -117,7 +118,7 @@ def test_every_node_of_a_log_has_one_end(toys):
 
 def test_seconds_and_peak_memory_of_every_node_are_on_record(toys):
     run = toys.run()
-    records = list(Store.at(toys.output / "store").records())
+    records = list(Store.at(toys.output / "store").records.all())
     assert len(records) == len(run.ran)
     assert all(r.seconds > 0 and r.peak_bytes > 2**20 for r in records)
     assert all(e["seconds"] > 0 and e["peak_bytes"] > 2**20 for e in run.heard.events if e["event"] == "finish")
@@ -153,27 +154,27 @@ def test_failure_in_the_middle_of_a_parcel_keeps_what_went_before(toys):
 
 
 def remove_chunk(toys):
-    place(toys, "points[frame=2]", "x/c/0").unlink()
+    damage_in(toys, "points[frame=2]", "x/c/0", lambda data: None)
 
 
 def alter_chunk(toys):
-    flip(place(toys, "points[frame=2]", "x/c/0"))
+    damage_in(toys, "points[frame=2]", "x/c/0", flip)
 
 
 def alter_array_metadata(toys):
-    head = place(toys, "points[frame=2]", "x/zarr.json")
-    text = head.read_text()
-    assert '"float64"' in text
-    head.write_text(text.replace('"float64"', '"uint64" '))
+    damage_in(toys, "points[frame=2]", "x/zarr.json", lambda data: data.replace(b'"float64"', b'"uint64" '))
+
+
+def alter_unit(toys):
+    damage_in(toys, "points[frame=2]", "x/zarr.json", lambda data: data.replace(b'"length"', b'"degree"'))
 
 
 def alter_group_metadata(toys):
-    head = place(toys, "points[frame=2]", "zarr.json")
-    head.write_text(head.read_text().replace('"Points"', '"Pounts"'))
+    damage_in(toys, "points[frame=2]", "zarr.json", lambda data: data.replace(b'"Points"', b'"Pounts"'))
 
 
 def remove_artifact(toys):
-    shutil.rmtree(place(toys, "points[frame=2]"))
+    place_of(toys, toys.artifacts()["points[frame=2]"]).unlink()
 
 
 @pytest.mark.parametrize("damage", [remove_chunk, remove_artifact])
@@ -189,7 +190,7 @@ def test_a_missing_part_is_noticed_when_planning_and_mended(toys, calm, damage):
     assert toys.pipeline().artifact("points", frame=2).x.tolist() == [30.0, 60.0, 90.0]
 
 
-@pytest.mark.parametrize("damage", [alter_chunk, alter_array_metadata, alter_group_metadata])
+@pytest.mark.parametrize("damage", [alter_chunk, alter_array_metadata, alter_unit, alter_group_metadata])
 @pytest.mark.parametrize("executor", ["sync", "threads"])
 def test_altered_bytes_are_noticed_on_reading_and_mended(toys, damage, executor, tmp_path):
     toys.run()
@@ -210,8 +211,7 @@ def test_altered_bytes_are_noticed_on_reading_and_mended(toys, damage, executor,
 
 def test_a_damaged_opener_is_noticed_when_planning_and_mended(toys, calm):
     toys.run()
-    head = place(toys, "intervals", "zarr.json")
-    head.write_text(head.read_text().replace("[2,3]", "[3,2]").replace("2,\n", "3,\n", 1))
+    damage_in(toys, "intervals", "zarr.json", lambda data: data.replace(b"[2,3]", b"[3,2]").replace(b"2,\n", b"3,\n", 1))
     toys.clear()
     plan = toys.pipeline().plan()
     assert plan["intervals"].state == "stale"
@@ -222,7 +222,7 @@ def test_a_damaged_opener_is_noticed_when_planning_and_mended(toys, calm):
 
 def test_a_damaged_traversal_is_noticed_when_planning_and_mended(toys, calm):
     toys.run()
-    flip(place(toys, "order", "frames/c/0"))
+    damage_in(toys, "order", "frames/c/0", flip)
     toys.clear()
     plan = toys.pipeline().plan()
     assert str(plan["order"]) == "order: stale (artifact: array frames was altered)"
@@ -236,9 +236,7 @@ def test_an_artifact_that_many_nodes_made_is_mended_once(toys, executor):
     """All frames are smoothed to nothing: one artifact, six keys, and several tasks that read it at the same time."""
     told = {"smooth": {"grain": 100.0}, "compute": {"executor": executor, "workers": 4}}
     toys.run(**told)
-    head = place_of(toys, toys.artifacts(**told)["smooth[frame=0]"]) / "zarr.json"
-    assert '"value":0.0' in head.read_text().replace(" ", "")
-    head.write_text(head.read_text().replace("0.0", "0.5"))
+    alter(place_of(toys, toys.artifacts(**told)["smooth[frame=0]"]), "zarr.json", lambda data: data.replace(b"0.0", b"0.5"))
     run = toys.run(**told, force=("total", "intervals"))
     assert run.told["status"] == "done"
     assert run.counts == {"smooth": 6, "total": 1, "intervals": 1}
@@ -248,8 +246,12 @@ def test_an_artifact_that_many_nodes_made_is_mended_once(toys, executor):
 def test_a_truncated_record_is_as_good_as_none(toys, calm):
     toys.run()
     key = toys.pipeline().why("total").key
-    record = toys.output / "store" / "records" / key[:2] / f"{key}.json"
-    record.write_bytes(record.read_bytes()[:100])
+    records = Records(Folder(toys.output / "store"))
+    one = records.get(key)
+    records.remove([key])
+    records.put(one)
+    path = toys.output / "store" / "records" / f"{key}.json"
+    path.write_bytes(path.read_bytes()[:100])
     plan = toys.pipeline().plan()
     assert str(plan["total"]) == "total: stale (artifact: its record is missing or damaged)"
     assert toys.run().ran == {"total"}
@@ -259,8 +261,8 @@ def test_a_truncated_record_is_as_good_as_none(toys, calm):
 def test_any_number_of_damaged_inputs_is_mended(toys, calm):
     toys.run(until=("smooth",))
     for n in range(6):
-        head = place(toys, f"smooth[frame={n}]", "zarr.json")
-        head.write_text(head.read_text().replace(f"{10 * (n + 1)}.0", f"{10 * (n + 1)}.5"))
+        old, new = f"{10 * (n + 1)}.0".encode(), f"{10 * (n + 1)}.5".encode()
+        damage_in(toys, f"smooth[frame={n}]", "zarr.json", lambda data, old=old, new=new: data.replace(old, new))
     run = toys.run()
     assert run.told["status"] == "done"
     assert run.counts["smooth"] == 6
@@ -296,6 +298,18 @@ def test_after_kill_9_of_the_whole_run_the_next_goes_on(toys, calm, executor):
     run = toys.run()
     assert run.counts["total"] == 1
     assert not {"points", "smooth"} & set(run.counts)
+    assert toys.artifacts() == calm
+
+
+def test_store_removed_in_mid_run_is_a_store_again_and_every_command_accepts_it(toys, calm):
+    toys.flag("wait-total-210")
+    process = toys.start("run", str(toys.yaml()), "--quiet")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
+    shutil.rmtree(toys.output / "store")
+    (toys.flags / "wait-total-210").unlink()
+    process.communicate(timeout=60)
+    assert toys.command("plan", str(toys.output)).returncode == 0
+    assert toys.command("run", str(toys.yaml()), "--quiet").returncode == 0
     assert toys.artifacts() == calm
 
 

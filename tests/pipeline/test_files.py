@@ -8,6 +8,7 @@ import pytest
 from kinetree.pipeline import files as remembering
 from kinetree.pipeline.files import MEMORY, Files
 from kinetree.pipeline.key import file_digest
+from kinetree.pipeline.sealed import sealed, unsealed
 from kinetree.pipeline.store import Store
 
 LONG_AGO = 1_000_000_000
@@ -154,6 +155,23 @@ def test_memory_may_be_lost_or_nonsense_at_any_time(store, settled, memory):
     assert digests(store, path) == [file_digest(path)]
 
 
+def test_memory_that_is_sealed_and_nonsense_all_the_same_is_no_memory(store, settled):
+    path = settled("a.ply")
+    store.place.put(MEMORY, sealed({f"bytes:{path}": [3, "x"]}))
+    assert digests(store, path) == [file_digest(path)]
+
+
+def test_one_altered_digit_makes_the_store_forget_what_it_knew_of_a_file(store, settled):
+    path = settled("a.npz")
+    files = Files.of(store)
+    assert files.parts(path, "npz", lambda _: ["25.0", "mm"]) == ["25.0", "mm"]
+    files.save()
+    known = store.place.get(MEMORY)
+    store.place.put(MEMORY, known.replace(b"25.0", b"35.0"))
+    assert store.place.get(MEMORY) != known
+    assert Files.of(store).parts(path, "npz", lambda _: ["25.0", "read again"]) == ["25.0", "read again"]
+
+
 def test_planning_without_a_store_makes_none(tmp_path, settled):
     store = Store.at(tmp_path / "new")
     assert digests(store, settled("a.ply"))
@@ -163,6 +181,6 @@ def test_planning_without_a_store_makes_none(tmp_path, settled):
 def test_memory_holds_digests_and_no_bytes(store, settled):
     path = settled("a.ply", b"secret of the file")
     digests(store, path)
-    told = json.loads(store.place.get(MEMORY))
+    told = unsealed(store.place.get(MEMORY))
     assert list(told) == [f"bytes:{path}"]
     assert "secret" not in json.dumps(list(told.values()))

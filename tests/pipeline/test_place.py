@@ -125,10 +125,10 @@ def test_refused_write_names_store_file_and_remedy(place, monkeypatch, code):
 def test_refused_read_names_store_file_and_remedy(place, monkeypatch):
     place.put("records/a", b"x")
 
-    def refuse(path):
+    def refuse(path, *_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
     monkeypatch.setattr(Path, "iterdir", refuse)
     with pytest.raises(StoreError, match=r"cannot read records/a: Permission denied; check its permissions"):
         place.get("records/a")

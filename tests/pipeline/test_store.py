@@ -1,9 +1,8 @@
 """Laws of the store: what was published is read back bit for bit, damage is noticed, strangers are refused."""
 
 import errno
-import json
 import os
-import shutil
+import zipfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -11,11 +10,16 @@ from typing import Annotated
 import numpy as np
 import pytest
 import zarr
+from zarr.storage import ZipStore
 
 from kinetree.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
+from kinetree.pipeline import groups
 from kinetree.pipeline import store as stores
 from kinetree.pipeline.key import artifact_digest
-from kinetree.pipeline.store import FORMAT, MARKER, Record, Store, artifact_path, group_arrays
+from kinetree.pipeline.packed import packed
+from kinetree.pipeline.place import Folder
+from kinetree.pipeline.sealed import sealed
+from kinetree.pipeline.store import FORMAT, MARKER, Record, Store, artifact_path
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints
 from kinetree.schemas.dims import FRAME, VERTEX, XYZ
 
@@ -53,8 +57,14 @@ def field(vertices=4, frames=2, **changes):
     return Field(**{**held, **changes})
 
 
-def record(key, digest, files):
-    return Record(key, "field", {}, digest, files, {}, {}, [], 0.5, 1, "here", "now")
+def record(key, digest, size):
+    return Record(key, "field", {}, digest, size, {}, {}, [], 0.5, 1, "here", "now")
+
+
+def files_of(store, digest):
+    """What lies in the zip of an artifact, by path."""
+    with zipfile.ZipFile(Path(store.url) / artifact_path(digest)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
 
 
 def everything(folder):
@@ -82,22 +92,23 @@ def test_what_was_published_is_read_back_bit_for_bit(store, vertices, frames):
 
 
 def test_large_arrays_lie_in_several_chunks_and_come_back(store, monkeypatch):
-    monkeypatch.setattr(stores, "CHUNK_BYTES", 1024)
+    monkeypatch.setattr(groups, "CHUNK_BYTES", 1024)
     made = field(vertices=100, frames=7)
-    digest, files = store.publish(made)
-    assert len([name for name in files if name.startswith("positions/c/")]) == 7
+    digest, _ = store.publish(made)
+    assert len([name for name in files_of(store, digest) if name.startswith("positions/c/")]) == 7
     assert store.read(Field, digest) == made
 
 
 def test_arrays_of_zeros_are_written_too_so_that_a_lost_chunk_is_told_from_an_empty_one(store):
-    digest, files = store.publish(field(positions=np.zeros((2, 4, 3)), kept=np.zeros(4, dtype=bool)))
-    assert {"positions/c/0/0/0", "kept/c/0"} <= set(files)
+    digest, _ = store.publish(field(positions=np.zeros((2, 4, 3)), kept=np.zeros(4, dtype=bool)))
+    assert {"positions/c/0/0/0", "kept/c/0"} <= set(files_of(store, digest))
     assert not store.read(Field, digest).positions.any()
 
 
-def test_group_is_zarr_v3_with_dimension_names_and_units(store):
+def test_artifact_is_one_file_that_zarr_reads_alone_with_dimension_names_and_units(store):
     digest, _ = store.publish(field())
-    group = zarr.open_group(Path(store.url) / artifact_path(digest), mode="r")
+    assert [p.name for p in (Path(store.url) / "artifacts").rglob("*") if p.is_file()] == [f"{digest}.zip"]
+    group = zarr.open_group(ZipStore(Path(store.url) / artifact_path(digest), mode="r"), mode="r")
     assert group.metadata.zarr_format == 3
     assert group["positions"].metadata.dimension_names == ("frame", "vertex", "xyz")
     assert group["mean"].metadata.dimension_names in ((), None)
@@ -107,19 +118,19 @@ def test_group_is_zarr_v3_with_dimension_names_and_units(store):
     assert group.attrs["kinetree"]["schema"] == "Field"
     assert group.attrs["kinetree"]["values"] == {"words": ["a\nb", "[red]", "μ", ""], "rate": None}
     np.testing.assert_array_equal(group["positions"][...], field().positions)
+    group.store.close()
 
 
 def test_arrays_are_read_when_asked_for_and_once(store, monkeypatch):
     digest, _ = store.publish(field())
     back = store.read(Field, digest)
     asked = []
-    read = Store._array
-    monkeypatch.setattr(Store, "_array", lambda self, digest, name: asked.append(name) or read(self, digest, name))
+    monkeypatch.setattr(stores, "decoded", lambda files, spec: asked.append(spec.unit) or groups.decoded(files, spec))
     assert back.words == ("a\nb", "[red]", "μ", "")
     assert "not read yet" in repr(back)
     assert asked == []
     assert back.label is back.label
-    assert asked == ["label"]
+    assert asked == ["1"]
     with pytest.raises(ValueError, match="read-only"):
         back.label[0] = 3
 
@@ -136,31 +147,50 @@ def test_artifacts_that_differ_in_one_bit_are_two(store):
     assert store.publish(field(rate=1.0))[0] != store.publish(field())[0]
 
 
+def test_reading_one_array_reads_no_other(store, monkeypatch):
+    digest, size = store.publish(field(vertices=10_000, frames=20))
+    read = []
+    part, tail = Folder.part, Folder.tail
+
+    def watched(method):
+        def call(self, *asked):
+            found = method(self, *asked)
+            read.append(len(found[0] if isinstance(found, tuple) else found))
+            return found
+
+        return call
+
+    monkeypatch.setattr(Folder, "part", watched(part))
+    monkeypatch.setattr(Folder, "tail", watched(tail))
+    assert store.read(Field, digest).label[3] == 2
+    assert sum(read) < size / 20
+
+
 def test_no_reader_meets_half_an_artifact(store, monkeypatch):
     made = field()
     digest, _ = store.publish(made)
     store.discard(digest)
     seen = []
-    rename = Path.rename
+    replace = Path.replace
 
     def watched(path, target):
         seen.append((Path(store.url) / artifact_path(digest)).exists())
-        return rename(path, target)
+        return replace(path, target)
 
-    monkeypatch.setattr(Path, "rename", watched)
+    monkeypatch.setattr(Path, "replace", watched)
     store.publish(made)
     assert seen == [False]
     assert store.read(Field, digest) == made
 
 
 def test_record_is_written_and_read_back(store):
-    digest, files = store.publish(field())
-    made = record("ab" * 20, digest, files)
+    digest, size = store.publish(field())
+    made = record("ab" * 20, digest, size)
     store.write(made)
     assert store.record("ab" * 20) == made
-    assert list(store.records()) == [made]
+    assert list(store.records.all()) == [made]
     assert store.holds(made)
-    assert made.bytes == sum(files.values())
+    assert size == (Path(store.url) / artifact_path(digest)).stat().st_size
     assert store.record("cd" * 20) is None
 
 
@@ -168,22 +198,28 @@ def test_record_is_written_and_read_back(store):
 
 
 def damaged(store, path, change):
-    made = field()
-    digest, files = store.publish(made)
-    file = Path(store.url) / artifact_path(digest) / path
-    change(file)
-    return digest, files
+    """An artifact in whose zip one file was changed, with every checksum of the zip itself as it should be."""
+    digest, size = store.publish(field())
+    files = files_of(store, digest)
+    files[path] = change(files[path])
+    put_back(store, digest, files)
+    return digest, size
 
 
-def flip(file):
-    data = bytearray(file.read_bytes())
-    data[len(data) // 2] ^= 1
-    file.write_bytes(data)
+def put_back(store, digest, files):
+    whole = {name: data for name, data in files.items() if data is not None}
+    (Path(store.url) / artifact_path(digest)).write_bytes(packed(whole))
 
 
-@pytest.mark.parametrize(
-    "change", [flip, Path.unlink, lambda f: f.write_bytes(b""), lambda f: f.write_bytes(f.read_bytes()[:-3])]
-)
+def flip(data):
+    return data[: len(data) // 2] + bytes([data[len(data) // 2] ^ 1]) + data[len(data) // 2 + 1 :]
+
+
+def lost(data):
+    return None
+
+
+@pytest.mark.parametrize("change", [flip, lost, lambda data: b"", lambda data: data[:-3]])
 @pytest.mark.parametrize("path", ["positions/c/0/0/0", "kept/c/0", "mean/c", "label/zarr.json"])
 def test_lost_or_altered_arrays_are_noticed_on_reading(store, path, change):
     digest, _ = damaged(store, path, change)
@@ -194,26 +230,48 @@ def test_lost_or_altered_arrays_are_noticed_on_reading(store, path, change):
     assert str(noticed.value).endswith("; it will be computed again")
 
 
-@pytest.mark.parametrize(
-    "change", [Path.unlink, lambda f: f.write_bytes(b"{}"), lambda f: f.write_bytes(b"[1]"), lambda f: f.write_bytes(b"\xff")]
-)
+@pytest.mark.parametrize("change", [lost, lambda data: b"{}", lambda data: b"[1]", lambda data: b"\xff"])
 def test_lost_or_altered_metadata_is_noticed(store, change):
     digest, _ = damaged(store, "zarr.json", change)
-    with pytest.raises(DamagedArtifactError, match=r"it is missing|its metadata cannot be read"):
+    with pytest.raises(DamagedArtifactError, match=r"a file is missing|its metadata cannot be read"):
         store.read(Field, digest)
 
 
 def test_altered_value_is_noticed(store):
-    digest, _ = damaged(store, "zarr.json", lambda f: f.write_text(f.read_text().replace("[red]", "[blue]")))
+    digest, _ = damaged(store, "zarr.json", lambda data: data.replace(b"[red]", b"[blue]"))
     with pytest.raises(DamagedArtifactError, match="its attributes were altered"):
         store.read(Field, digest)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [(b'"length"', b'"degree"'), (b'"frame"', b'"angle"'), (b'"float64"', b'"uint64"'), (b"3", b"4")]
+)
+def test_altered_unit_dimension_dtype_or_shape_is_noticed(store, old, new):
+    digest, _ = damaged(store, "positions/zarr.json", lambda data: data.replace(old, new))
+    assert old in files_of(store, store.publish(field(rate=2.0))[0])["positions/zarr.json"]
+    with pytest.raises(DamagedArtifactError, match="array positions"):
+        store.group(Field, digest)
+
+
+def test_every_byte_of_the_zip_is_checked_or_harmless(store):
+    made = field(vertices=2, frames=1)
+    digest, _ = store.publish(made)
+    path = Path(store.url) / artifact_path(digest)
+    data = path.read_bytes()
+    noticed = 0
+    for place in range(0, len(data), 7):
+        path.write_bytes(data[:place] + bytes([data[place] ^ 0x21]) + data[place + 1 :])
+        try:
+            assert store.read(Field, digest) == made
+        except DamagedArtifactError:
+            noticed += 1
+    assert noticed > len(data) / 7 / 2
 
 
 def test_array_swapped_for_another_valid_one_is_noticed(store):
     digest, _ = store.publish(field())
     other, _ = store.publish(field(label=np.arange(4, dtype=np.int32) + 5))
-    top = Path(store.url)
-    shutil.copy(top / artifact_path(other) / "label/c/0", top / artifact_path(digest) / "label/c/0")
+    put_back(store, digest, {**files_of(store, digest), "label/c/0": files_of(store, other)["label/c/0"]})
     with pytest.raises(DamagedArtifactError, match="array label was altered"):
         assert store.read(Field, digest).label is None
 
@@ -228,31 +286,39 @@ def test_artifact_of_another_schema_is_not_taken_for_this_one(store):
 
 
 @pytest.mark.parametrize("change", [Path.unlink, lambda f: f.write_bytes(f.read_bytes() + b"x")])
-def test_record_holds_only_while_every_file_has_its_size(store, change):
-    digest, files = damaged(store, "kept/c/0", change)
-    assert not store.holds(record("ab" * 20, digest, files))
+def test_record_holds_only_while_its_artifact_has_its_size(store, change):
+    digest, size = store.publish(field())
+    change(Path(store.url) / artifact_path(digest))
+    assert not store.holds(record("ab" * 20, digest, size))
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", "{}", '{"key": "' + "ab" * 20 + '"}'])
 def test_unreadable_record_makes_nothing_fresh(store, text):
-    store.place.put(f"records/ab/{'ab' * 20}.json", text.encode())
+    store.place.put(f"records/{'ab' * 20}.json", text.encode())
     assert store.record("ab" * 20) is None
-    assert list(store.records()) == []
+    assert list(store.records.all()) == []
 
 
-@pytest.mark.parametrize("change", [{"artifact": "../../../victim"}, {"key": "cd" * 20}, {"files": 3}, {"surplus": 1}])
+@pytest.mark.parametrize("change", [{"artifact": "../../../victim"}, {"key": "cd" * 20}, {"bytes": "3"}, {"surplus": 1}])
 def test_forged_record_is_not_believed(store, change):
-    told = {**asdict(record("ab" * 20, "cd" * 20, {})), **change}
-    store.place.put(f"records/ab/{'ab' * 20}.json", json.dumps(told).encode())
+    told = {**asdict(record("ab" * 20, "cd" * 20, 3)), **change}
+    store.place.put(f"records/{'ab' * 20}.json", sealed(told))
     assert store.record("ab" * 20) is None
 
 
 def test_published_again_mends_what_was_lost(store):
     made = field()
-    digest, files = damaged(store, "positions/c/0/0/0", Path.unlink)
+    digest, size = damaged(store, "positions/c/0/0/0", lost)
     store.publish(made)
-    assert store.holds(record("ab" * 20, digest, files))
+    assert store.holds(record("ab" * 20, digest, size))
     assert store.read(Field, digest) == made
+
+
+def test_published_again_mends_what_was_altered_at_equal_size(store):
+    digest, size = damaged(store, "positions/c/0/0/0", flip)
+    assert store.holds(record("ab" * 20, digest, size))
+    store.publish(field())
+    assert store.read(Field, digest) == field()
 
 
 # ── what is and what is no store ────────────────────────────────────────────────────────────────────────────────────
@@ -279,7 +345,7 @@ def test_file_is_no_store(tmp_path):
         Store.at(tmp_path / "file")
 
 
-@pytest.mark.parametrize("marker", ['{"format": "kinetree.store/2"}', "{}", "[]", "\x00", "", '"kinetree.store/1"'])
+@pytest.mark.parametrize("marker", ['{"format": "kinetree.store/1"}', "{}", "[]", "\x00", "", '"kinetree.store/2"'])
 def test_store_of_another_format_is_refused_with_a_remedy(tmp_path, marker):
     (tmp_path / MARKER).write_text(marker)
     with pytest.raises(StoreError) as refused:
@@ -291,6 +357,15 @@ def test_store_of_another_format_is_refused_with_a_remedy(tmp_path, marker):
 def test_service_that_is_not_supported_is_refused(url):
     with pytest.raises(StoreError, match="is not supported yet; give a folder"):
         Store.at(url)
+
+
+def test_store_whose_marker_was_removed_is_still_a_store(store):
+    digest, _ = store.publish(field())
+    (Path(store.url) / MARKER).unlink()
+    again = Store.at(store.url)
+    again.create()
+    assert Store.at(store.url).exists
+    assert again.read(Field, digest) == field()
 
 
 def test_store_whose_first_writer_died_is_still_a_store(tmp_path):
@@ -306,7 +381,7 @@ def test_store_whose_first_writer_died_is_still_a_store(tmp_path):
 
 @pytest.mark.parametrize("name", ["nothing", "../records/ab", "../../etc/passwd", "", ".", "a/b", "\x1b[31m", "a\nb"])
 def test_run_that_is_not_there_is_refused_by_name(store, name):
-    store.place.put("records/ab.json", b'{"nodes": {}}')
+    store.place.put("records/ab.json", sealed({"nodes": {}}))
     with pytest.raises(UnknownNodeError) as refused:
         store.run(name)
     assert str(refused.value) == f"no run {name!r} in {store.url}; kinetree runs lists them"
@@ -315,8 +390,9 @@ def test_run_that_is_not_there_is_refused_by_name(store, name):
 @pytest.mark.parametrize("text", ["", "{", "[]", "3", "{}", '{"nodes": 3}'])
 def test_damaged_run_is_named_with_a_remedy(store, text):
     store.place.put("runs/one.json", text.encode())
-    with pytest.raises(StoreError, match=r"runs/one\.json is damaged; delete it"):
+    with pytest.raises(StoreError, match=r"runs/one\.json is damaged; kinetree verify --repair removes it"):
         store.run("one")
+    assert store.runs() == []
 
 
 def test_runs_are_listed_oldest_first(store):
@@ -330,8 +406,8 @@ def test_runs_are_listed_oldest_first(store):
 
 
 def test_full_disk_keeps_what_was_published(store, monkeypatch):
-    digest, files = store.publish(field())
-    store.write(record("ab" * 20, digest, files))
+    digest, size = store.publish(field())
+    store.write(record("ab" * 20, digest, size))
     before = everything(Path(store.url))
     write = Path.write_bytes
 
@@ -343,47 +419,15 @@ def test_full_disk_keeps_what_was_published(store, monkeypatch):
     with pytest.raises(StoreFullError, match="no space left"):
         store.publish(field(vertices=9))
     with pytest.raises(StoreFullError, match="no space left"):
-        store.write(record("cd" * 20, digest, files))
+        store.write(record("cd" * 20, digest, size))
     assert everything(Path(store.url)) == before
 
 
-# ── the user's own zarr ─────────────────────────────────────────────────────────────────────────────────────────────
-
-
-def test_arrays_and_attributes_of_any_group_are_read(tmp_path):
-    group = zarr.create_group(tmp_path / "g", attributes={"fps": 25, "unit": "mm"})
-    group.create_array("vertices", data=np.arange(6.0).reshape(2, 3))
-    held = group_arrays(tmp_path / "g")
-    np.testing.assert_array_equal(held["vertices"], np.arange(6.0).reshape(2, 3))
-    assert (held["fps"].item(), held["unit"].item()) == (25, "mm")
-
-
-def test_folder_that_is_no_group_is_refused_by_name(tmp_path):
-    (tmp_path / "zarr.json").write_text("hello")
-    with pytest.raises(StoreError, match="not a readable zarr group"):
-        group_arrays(tmp_path)
-
-
-class Bomb:
-    """Leaves a file where it is unpickled."""
-
-    def __init__(self, path):
-        self.path = path
-
-    def __reduce__(self):
-        return (Path.touch, (self.path,))
-
-
-@pytest.mark.parametrize("filters", [[{"id": "pickle"}], [{"id": "vlen-utf8"}, {"id": "pickle"}]])
-def test_nothing_in_a_users_zarr_is_unpickled(tmp_path, filters):
-    import pickle
-
-    group = tmp_path / "g"
-    (group / "vertices").mkdir(parents=True)
-    (group / ".zgroup").write_text('{"zarr_format": 2}')
-    told = {"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "compressor": None, "fill_value": None, "order": "C"}
-    (group / "vertices" / ".zarray").write_text(json.dumps({**told, "filters": filters}))
-    (group / "vertices" / "0").write_bytes(pickle.dumps(Bomb(tmp_path / "exploded")))
-    with pytest.raises(StoreError, match="not a readable zarr group"):
-        group_arrays(group)
-    assert not (tmp_path / "exploded").exists()
+def test_runs_that_used_the_same_share_one_list_of_nodes(store):
+    nodes = {f"points[{n}]": {"state": "ran", "key": "ab" * 20, "artifact": "cd" * 20} for n in range(9)}
+    store.write_run("1", {"nodes": nodes})
+    before = set(everything(Path(store.url)))
+    store.write_run("2", {"nodes": {name: {**node, "state": "fresh"} for name, node in nodes.items()}})
+    assert set(everything(Path(store.url))) - before == {"runs/2.json"}
+    assert store.run("1")["nodes"] == nodes
+    assert {node["state"] for node in store.run("2")["nodes"].values()} == {"fresh"}

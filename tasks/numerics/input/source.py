@@ -20,7 +20,11 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked, suffixes
 
-_ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
+ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
+UNPACKED_BYTES = 256 * 2**20
+"""An array of more bytes than this …"""
+UNPACKED_RATIO = 100
+"""… may not be more than this many times its bytes in the archive: packed meshes shrink to a tenth at best."""
 
 
 def natural_order(name: str) -> tuple[tuple[str | int, ...], str]:
@@ -88,7 +92,7 @@ class Frames:
         fps, unit       : (), may be missing
         raises          : SourceError if an array is missing, or of a shape, type or order that cannot be
         """
-        if missing := [key for key in _ARRAYS[:4] if key not in arrays]:
+        if missing := [key for key in ARRAYS[:4] if key not in arrays]:
             raise SourceError(f"{name}: no array {', '.join(missing)}; there are {', '.join(sorted(arrays)) or 'none'}")
         for key, kind, what in (("vertices", "f", "floating"), ("faces", "iu", "whole")):
             array = arrays[key]
@@ -173,7 +177,11 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     try:
         # opened here, because numpy leaves a file open that turns out to be no archive
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            arrays = {key: archive[key] for key in _ARRAYS if key in archive.files}
+            for key in ARRAYS:
+                _refuse_bomb(archive, key, path)
+            arrays = {key: archive[key] for key in ARRAYS if key in archive.files}
+    except SourceError:
+        raise
     except Exception as error:
         raise SourceError(
             f"{path}: cannot be read as .npz ({type(error).__name__}: {error}); an archive of plain arrays is needed"
@@ -181,6 +189,16 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     for array in arrays.values():
         array.flags.writeable = False
     return Frames.of(arrays, path)
+
+
+def _refuse_bomb(archive: Any, key: str, path: str) -> None:
+    """Refuses an array that would take much memory though little of it is stored."""
+    info = archive.zip.NameToInfo.get(f"{key}.npy")
+    if info is not None and info.file_size > UNPACKED_BYTES and info.file_size > UNPACKED_RATIO * info.compress_size:
+        raise SourceError(
+            f"{path}: {key}: {info.compress_size} bytes would unpack to {info.file_size};"
+            f" expected at most {UNPACKED_RATIO} times as many"
+        )
 
 
 def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:

@@ -1,0 +1,150 @@
+"""Many small files as one object: an uncompressed zip, of which any part can be read without the others."""
+
+import io
+import struct
+import zipfile
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+TAIL_BYTES = 2**16
+"""Read at once from the end of a zip: the list of what it holds, and most small ones whole."""
+_LOCAL = struct.Struct("<4s22xHH")
+"""What precedes a file in a zip: signature, lengths of its name and of what else stands before its bytes."""
+_SIGNATURE = b"PK\x03\x04"
+_WRITTEN = (1980, 1, 1, 0, 0, 0)
+"""The time of every file: equal files make equal zips."""
+
+
+class DamagedZipError(Exception):
+    """The bytes are no zip as this module writes them, or were altered."""
+
+
+class Parts(Protocol):
+    """Where a zip lies."""
+
+    def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
+        """The last bytes of an object, and how many it has in all; None where nothing is."""
+
+    def part(self, path: str, start: int, stop: int) -> bytes | None:
+        """The bytes from start to stop; None where nothing is."""
+
+
+def packed(files: Mapping[str, bytes], *, is_deflated: bool = False) -> bytes:
+    """The files as one zip, in their order."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED if is_deflated else zipfile.ZIP_STORED) as archive:
+        for name, data in files.items():
+            told = zipfile.ZipInfo(name, _WRITTEN)
+            told.compress_type = archive.compression
+            archive.writestr(told, data)
+    return out.getvalue()
+
+
+@dataclass(frozen=True)
+class Packed:
+    """The files of one uncompressed zip, read when they are asked for."""
+
+    place: Parts
+    path: str
+    spans: Mapping[str, tuple[int, int, int, int]]
+    """By name: where the file's entry begins, where the next begins, its size and its CRC-32."""
+    tail: bytes
+    size: int
+
+    @staticmethod
+    def at(place: Parts, path: str) -> "Packed | None":
+        """The zip at a path, of which only the list is read; None where nothing is.
+
+        raises : DamagedZipError
+        """
+        found = place.tail(path, TAIL_BYTES)
+        if found is None:
+            return None
+        try:
+            return Packed(place, path, _spans(*found), *found)
+        except _Outside:
+            whole = place.part(path, 0, found[1]) or b""  # the list alone is longer than the tail
+            return Packed(place, path, _spans(whole, len(whole)), whole, len(whole))
+
+    def read(self, names: Iterable[str]) -> dict[str, bytes]:
+        """The bytes of some files, in one piece where they lie beside each other; raises DamagedZipError, KeyError."""
+        spans = {name: self.spans[name] for name in names}
+        if not spans:
+            return {}
+        first, last = min(s[0] for s in spans.values()), max(s[1] for s in spans.values())
+        data = self._bytes(first, last)
+        return {name: _content(data[begin - first : end - first], size, crc) for name, (begin, end, size, crc) in spans.items()}
+
+    def _bytes(self, start: int, stop: int) -> bytes:
+        offset = self.size - len(self.tail)
+        if start >= offset:
+            return self.tail[start - offset : stop - offset]
+        data = self.place.part(self.path, start, stop)
+        if data is None or len(data) != stop - start:
+            raise DamagedZipError("it is missing or cut short")
+        return data
+
+
+class _Outside(Exception):
+    """More of the zip is needed than was read."""
+
+
+def _spans(tail: bytes, size: int) -> dict[str, tuple[int, int, int, int]]:
+    """Where every file lies, from the end of a zip."""
+    offset = size - len(tail)
+    window = _Window(tail, offset)
+    try:
+        with zipfile.ZipFile(window) as archive:
+            infos, end = sorted(archive.infolist(), key=lambda info: info.header_offset), archive.start_dir
+    except _Outside:
+        raise
+    except Exception as error:  # zipfile raises many kinds for altered bytes
+        raise DamagedZipError(f"its list of files cannot be read ({type(error).__name__})") from error
+    if any(i.compress_type != zipfile.ZIP_STORED or i.file_size != i.compress_size or i.flag_bits & 1 for i in infos):
+        raise DamagedZipError("its files are compressed or encrypted")
+    ends = [*(info.header_offset for info in infos[1:]), end]
+    spans = {i.filename: (i.header_offset, e, i.file_size, i.CRC) for i, e in zip(infos, ends, strict=True)}
+    if len(spans) != len(infos) or any(begin < 0 or begin + count > end for begin, end, count, _ in spans.values()):
+        raise DamagedZipError("its list of files contradicts itself")
+    return spans
+
+
+def _content(entry: bytes, size: int, crc: int) -> bytes:
+    if len(entry) < _LOCAL.size + size or entry[:4] != _SIGNATURE:
+        raise DamagedZipError("a file in it is cut short")
+    _, name, extra = _LOCAL.unpack_from(entry)
+    begin = _LOCAL.size + name + extra
+    data = entry[begin : begin + size]
+    if len(data) != size or zlib.crc32(data) != crc:
+        raise DamagedZipError("a file in it was altered")
+    return data
+
+
+class _Window(io.RawIOBase):
+    """The end of a file, as if it were all of it; what lies before cannot be read."""
+
+    def __init__(self, tail: bytes, offset: int) -> None:
+        self._tail, self._offset, self._at = tail, offset, 0
+
+    def seekable(self) -> bool:
+        return True
+
+    def readable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        self._at = offset + (0, self._at, self._offset + len(self._tail))[whence]
+        return self._at
+
+    def tell(self) -> int:
+        return self._at
+
+    def readinto(self, buffer: "bytearray | memoryview") -> int:  # type: ignore[override]
+        if self._at < self._offset:
+            raise _Outside
+        data = self._tail[self._at - self._offset :][: len(buffer)]
+        buffer[: len(data)] = data
+        self._at += len(data)
+        return len(data)

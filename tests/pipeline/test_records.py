@@ -1,0 +1,115 @@
+"""Records alone and in packs: what was written is found in either place, and what cannot be read is none."""
+
+import pytest
+
+from kinetree.pipeline.packed import packed
+from kinetree.pipeline.place import Folder
+from kinetree.pipeline.records import PACKED_FROM, Record, Records
+from kinetree.pipeline.sealed import sealed, unsealed
+
+KEYS = [f"{n:040x}" for n in range(PACKED_FROM)]
+
+
+def record(key, **changes):
+    return Record(**{
+        "key": key, "task": "points", "index": {"frame": 3}, "artifact": "ab" * 20, "bytes": 3, "params": {},
+        "code": {"a": "b"}, "inputs": [], "seconds": 0.5, "peak_bytes": 1, "host": "here", "created": "now", **changes,
+    })  # fmt: skip
+
+
+@pytest.fixture
+def place(tmp_path):
+    return Folder(tmp_path / "store")
+
+
+@pytest.fixture
+def records(place):
+    made = Records(place)
+    for key in KEYS:
+        made.put(record(key))
+    return made
+
+
+def test_records_are_found_alone_and_packed(place, records):
+    assert records.get(KEYS[3]) == Records(place).get(KEYS[3]) == record(KEYS[3])
+    records.pack("run", KEYS)
+    assert (place.names("records"), place.names("packs")) == ([], ["run.zip"])
+    assert [r.key for r in records.all()] == [r.key for r in Records(place).all()] == KEYS
+    assert records.get("f" * 40) is None
+
+
+def test_few_records_and_those_of_others_are_left_alone(place, records):
+    records.pack("run", KEYS[1:])
+    assert len(place.names("records")) == PACKED_FROM
+    records.put(record("f" * 40))
+    records.pack("run", KEYS)
+    assert place.names("records") == [f"{'f' * 40}.json"]
+
+
+def test_reader_that_looked_before_a_pack_finds_its_records_after(place, records):
+    reader = Records(place)
+    assert reader.get(KEYS[0])
+    records.pack("run", KEYS)
+    assert reader.get(KEYS[5]) == record(KEYS[5])
+
+
+def test_record_written_again_counts_before_the_packed_one(place, records):
+    records.pack("run", KEYS)
+    records.put(record(KEYS[0], seconds=7.0))
+    assert records.get(KEYS[0]).seconds == Records(place).get(KEYS[0]).seconds == 7.0
+
+
+def test_record_of_another_writer_is_found_at_once(place, records):
+    reader = Records(place)
+    assert reader.get("f" * 40) is None
+    records.put(record("f" * 40))
+    assert reader.get("f" * 40) == record("f" * 40)
+
+
+def test_removed_records_are_gone_wherever_they_lay(place, records):
+    records.pack("run", KEYS)
+    records.put(record("f" * 40))
+    records.remove([*KEYS[2:], "f" * 40])
+    assert records.listed() == Records(place).listed() == KEYS[:2]
+    records.remove(KEYS)
+    assert records.listed() == []
+    assert place.names("packs") == []
+
+
+def test_altered_pack_is_noticed_and_discarded(place, records):
+    records.pack("run", KEYS)
+    data = place.get("packs/run.zip")
+    for at in range(0, len(data), 97):
+        place.put("packs/run.zip", data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
+        found = Records(place)
+        sound = {r.key for r in found.all()}
+        assert all(r == record(r.key) for r in found.all())
+        assert found.damaged() or sound == set(KEYS)
+    place.put("packs/run.zip", b"PK")
+    found = Records(place)
+    assert found.damaged() == ["packs/run.zip"]
+    found.discard_damaged()
+    assert place.names("packs") == []
+
+
+def test_pack_of_somebody_else_is_none(place):
+    place.put("packs/x.zip", packed({f"{KEYS[0]}.json": sealed({"key": KEYS[0]}), "../../x": b"", "b.json": b"{}"}))
+    assert Records(place).listed() == KEYS[:1]
+    assert Records(place).get(KEYS[0]) is None
+
+
+@pytest.mark.parametrize("value", [{}, [], "", "μ", {"a": [1, 2.5, None, True]}, "x" * 1000])
+def test_what_was_sealed_is_unsealed(value):
+    assert unsealed(sealed(value)) == value
+
+
+@pytest.mark.parametrize("data", [None, b"", b"{}", b"{", sealed(3)[:-1], sealed(3) + b" ", b"[" * 10_000])
+def test_what_was_not_sealed_is_nothing(data):
+    assert unsealed(data) is None
+
+
+def test_no_altered_byte_of_what_was_sealed_goes_unnoticed():
+    data = sealed({"fps": 25})
+    for at in range(len(data)):
+        for bit in range(8):
+            assert unsealed(data[:at] + bytes([data[at] ^ 1 << bit]) + data[at + 1 :]) is None
