@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
 __all__ = ["METHODS", "VIEWS"]
 VIEWS = tuple(
-    f"kinetree.tasks.views.{shelf}" for shelf in ("input", "topology", "registration", "structure", "paper_2014", "results")
+    f"kinetree.tasks.views.{shelf}"
+    for shelf in ("input", "topology", "registration", "structure", "paper_2014", "paper_2009", "results")
 )
 """What people see of results, a module a shelf; each is imported when somebody looks."""
 provide(*VIEWS)

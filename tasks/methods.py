@@ -2,19 +2,25 @@
 
 mesoscopic: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
 what was measured to be better in place of some of its steps. mesoscopic-2014: the same to the paper's letter.
+reeb: Finding kinematic structure in time series volume data (Mukasa, Nobuhara, Maki, Matsuyama 2009): graphs inside the body
+instead of aligned surfaces.
 """
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.input import INPUT
+from kinetree.tasks.paper_2009 import PAPER_2009
 from kinetree.tasks.paper_2014 import PAPER_2014
 from kinetree.tasks.registration import REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
-from kinetree.tasks.results import FIGURES, FIGURES_2014, RESULTS
+from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, RESULTS
 from kinetree.tasks.structure import STRUCTURE
+from kinetree.tasks.structure.pose_refinement import pose_refinement
+from kinetree.tasks.structure.skeleton import skeleton
 from kinetree.tasks.topology import TOPOLOGY
 
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
     "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, frame_confidence, *FIGURES_2014, *RESULTS)),
+    "reeb": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, pose_refinement, skeleton, frame_confidence, *FIGURES_2009, *RESULTS)),
 }
 """The graph of each method, checked when this module is imported."""

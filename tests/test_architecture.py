@@ -16,7 +16,7 @@ from kinetree.tasks import METHODS
 from kinetree.tasks.input import INPUT
 
 ROOT = Path(__file__).resolve().parent.parent
-SHELVES = ("input", "topology", "registration", "structure", "paper_2014", "results")
+SHELVES = ("input", "topology", "registration", "structure", "paper_2014", "paper_2009", "results")
 """From left to right, as data flows."""
 FILES = [p for folder in ("errors", "pipeline", "schemas", "tasks") for p in sorted((ROOT / folder).rglob("*.py"))]
 NUMERICS = sorted(ROOT.glob("tasks/numerics/**/*.py"))

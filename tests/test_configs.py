@@ -22,7 +22,8 @@ def test_default_yaml_tells_every_default() -> None:
 
 @pytest.mark.parametrize("name", Reading.of({}, APPLICATION.presets).preset_names)
 def test_every_preset_is_a_configuration(name: str) -> None:
-    assert Pipeline.of(name).config.method == ("mesoscopic-2014" if name == "paper-2014" else "mesoscopic")
+    methods = {"paper-2014": "mesoscopic-2014", "paper-2009": "reeb"}
+    assert Pipeline.of(name).config.method == methods.get(name, "mesoscopic")
 
 
 @pytest.mark.parametrize("path", sorted(CONFIGS.glob("compute/*.yaml")), ids=lambda path: path.stem)

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 WHAT = (
-    "alignment", "angles", "cones", "confidence", "correlation", "elimination", "errors", "lengths", "merging", "mu",
-    "skeleton", "structure", "tree",
+    "alignment", "angles", "clusters", "coherence", "cones", "confidence", "correlation", "description", "elimination",
+    "endoskeleton", "errors", "lengths", "merging", "mu", "skeleton", "structure", "tree",
 )  # fmt: skip
 """What can be drawn of some method; `kinetree.tasks.results.plots` draws it, and refuses what a method does not have."""
 

@@ -5,6 +5,7 @@ from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.paper_figures import paper_figures
 from kinetree.tasks.results.ply import ply
+from kinetree.tasks.results.reeb_figures import reeb_figures
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.rignet import rignet
 from kinetree.tasks.results.segmentation import segmentation
@@ -28,4 +29,5 @@ RESULTS = (
     report,
 )
 FIGURES = (structure_figures,)
+FIGURES_2009 = (reeb_figures,)
 FIGURES_2014 = (paper_figures,)

@@ -15,6 +15,7 @@ from kinetree.tasks.results.plots.mesoscopic import lengths as lengths_2014
 from kinetree.tasks.results.plots.mesoscopic import merging as merging_2014
 from kinetree.tasks.results.plots.mesoscopic import structure as structure_2014
 from kinetree.tasks.results.plots.motion import angles
+from kinetree.tasks.results.plots.reeb import clusters, coherence, description, endoskeleton
 from kinetree.tasks.results.plots.structure import confidence, skeleton, tree
 
 if TYPE_CHECKING:
@@ -40,7 +41,17 @@ PLOTS: Plots = {**_SHARED, "elimination": elimination}
 """The pictures of the default method by name."""
 
 _OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-PLOTS_OF_METHOD: Mapping[str, Plots] = {"mesoscopic": PLOTS, "mesoscopic-2014": {**_SHARED, **_OF_2014}}
+_OF_2009: Plots = {
+    "endoskeleton": endoskeleton,
+    "coherence": coherence,
+    "clusters": clusters,
+    "description": description,
+}
+PLOTS_OF_METHOD: Mapping[str, Plots] = {
+    "mesoscopic": PLOTS,
+    "mesoscopic-2014": {**_SHARED, **_OF_2014},
+    "reeb": {name: plot for name, plot in _SHARED.items() if name not in _OF_2014} | {**_OF_2009},
+}
 """The pictures of each method."""
 
 

@@ -1,0 +1,81 @@
+"""The clusters of the integrated structure as a skeleton like any other."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.paper_2009.graph_motion import GraphMotion
+from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
+from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
+from kinetree.schemas.paper_2009.node_clusters import NodeClustersParams
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.paper_2009.edge_joints import NodeMotion, edge_joints
+from kinetree.tasks.numerics.paper_2009.node_clusters import part_motions
+from kinetree.tasks.numerics.structure import kinematic_tree as numerics
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
+from kinetree.tasks.structure.kinematic_tree import evidence_settings, tree_settings
+
+
+@task()
+def graph_skeleton(
+    integrated_structure: IntegratedStructure,
+    motions: Mapping[int, GraphMotion],
+    meshes: Mapping[int, Mesh],
+    sequence: Sequence,
+    params: GraphSkeletonParams,
+) -> KinematicTree:
+    """Places joints between clusters and gives the skeleton its skin, its lengths and its poses (2009, Sec. 2.4, 2.5)."""
+    s = integrated_structure
+    by_centres = params.joints == "centres"
+    tree, derivation = _centres(s, motions, meshes, params) if by_centres else (_edges(s, motions), None)
+    count, parts = len(tree.parents), int(s.part.max()) + 1
+    derived = derivation._asdict() if derivation else numerics.Derivation(
+        np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.full(parts, -1), (),
+        np.zeros(count), np.zeros(count),
+    )._asdict()  # fmt: skip
+    return KinematicTree(
+        frames=tuple(motions),
+        fps=sequence.fps,
+        unit=sequence.unit,
+        vertices=s.vertices,
+        faces=s.faces,
+        uncertain=needs_refinement(tree.confidence) if by_centres else np.zeros(len(motions), np.bool_),
+        **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
+        **{**derived, "dropped": tuple((d.part, d.reason) for d in derived["dropped"])},
+    )
+
+
+def _centres(
+    s: IntegratedStructure, motions: Mapping[int, GraphMotion], meshes: Mapping[int, Mesh], params: GraphSkeletonParams
+) -> tuple[numerics.KinematicTree, numerics.Derivation]:
+    """Joints where two clusters turn about each other, as for the default method (ours)."""
+    V, F, moved, frames = np.array(s.vertices), np.array(s.faces), list(motions.values()), tuple(motions)
+    x, confidence = np.stack([m.vertices for m in moved]), np.stack([m.confidence for m in moved])
+    area = Surface.of(V, F).area
+    evidence = FrameEvidence(
+        confidence,
+        np.stack([m.residual for m in moved]),
+        lambda t: (np.array(meshes[frames[t]].vertices), np.array(meshes[frames[t]].faces, np.int64)),
+        evidence_settings(params),
+    )
+    part = part_motions(V, x, confidence, area, np.array(s.part), NodeClustersParams().removal_cost)
+    leaves = np.array(s.leaf_vertex)
+    return numerics.kinematic_tree(
+        V, F, x, area, part.label, part.R, part.t, part.residual, leaves, confidence, evidence,
+        settings=tree_settings(params),
+    )  # fmt: skip
+
+
+def _edges(s: IntegratedStructure, motions: Mapping[int, GraphMotion]) -> numerics.KinematicTree:
+    """Joints amid the edges at which clusters meet."""
+    node, joint, parents, cluster = (np.array(getattr(s, n)) for n in ("node", "joint", "parents", "cluster"))
+    X, R = (np.stack([getattr(m, n) for m in motions.values()]) for n in ("position", "rotation"))
+    V, label, bound, weight, end, leaf = (
+        np.array(getattr(s, n)) for n in ("vertices", "label", "bound", "weight", "end", "leaf_vertex")
+    )
+    return edge_joints(NodeMotion(node, joint, parents, cluster, X, R), V, label, bound, weight, end, leaf, s.size)
