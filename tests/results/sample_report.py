@@ -109,7 +109,7 @@ def confident(
     none = np.zeros(len(frames))
     return FrameConfidence(
         frames=frames, residual=none, uncovered=none, unreliable=np.array([(unreliable or {}).get(f, 0.0) for f in frames]),
-        trusted=np.array([f not in failed for f in frames]),
+        inlier=np.array([f not in failed for f in frames]),
     )  # fmt: skip
 
 
