@@ -554,15 +554,24 @@ def test_store_whose_marker_is_damaged_is_refused(kinetree, walked):
 # ── schedulers ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "gopher://127.0.0.1:1", "[red]"])
-def test_scheduler_that_does_not_answer(kinetree, scans, monkeypatch, address):
+@pytest.mark.parametrize(
+    ("address", "expected", "words"),
+    [
+        ("tcp://127.0.0.1:1", 3, "check the address"),
+        ("gopher://127.0.0.1:1", 2, "unknown address scheme 'gopher'"),
+        ("[red]", 2, "not an address"),
+    ],
+)
+def test_scheduler_that_does_not_answer_is_to_be_tried_again_and_a_wrong_address_is_refused(
+    kinetree, scans, monkeypatch, address, expected, words
+):
     from kinetree.pipeline import clusters
 
     monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.2)
     code, _, complained = kinetree("run", "-i", "scans", "-o", "out", "--until", "mesh", "--scheduler", address, "-q")
-    assert code == 2
+    assert code == expected
     assert complained.startswith(f"kinetree: --scheduler {address}")
-    assert "check the address" in complained
+    assert words in complained
     code, printed, _ = kinetree("run", "out", "--until", "mesh", "--executor", "sync", "--json")
     assert (code, json.loads(printed)["nodes"]["ran"]) == (0, 3)
 
