@@ -146,6 +146,7 @@ def built_in(name: str, *examples: str) -> Command:
 _BUILT_IN = {
     "run": ("commands", "Run the steps that are out of date and say where the results are."),
     "gc": ("commands", "Delete from the store what no longer belongs to a run you keep."),
+    "verify": ("commands", "Read all of a store and say what is damaged; with --repair, compute that again."),
     "plan": ("queries", "Say what a run would compute and why, without computing anything."),
     "show": ("queries", "Show what a node holds and how it was made."),
     "why": ("queries", "Say whether a node is up to date and why."),

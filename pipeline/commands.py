@@ -1,6 +1,7 @@
 """The commands that compute or delete: `run` and `gc`."""
 
 import contextlib
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from kinetree.errors import ConfigError
+from kinetree.pipeline.application import current
 from kinetree.pipeline.options import (
     AsJson,
     Force,
@@ -104,23 +106,68 @@ def gc(
     keep_last: Annotated[
         int | None, typer.Option("--keep-last", min=0, help="Keep what the last N runs of each output folder need.")
     ] = None,
+    keep_days: Annotated[
+        float | None, typer.Option("--keep-days", min=0, metavar="DAYS", help="Keep what runs of the last days need as well.")
+    ] = None,
+    max_size: Annotated[
+        str | None,
+        typer.Option("--max-size", metavar="SIZE", help="Let go of the oldest runs until the store is no larger, e.g. 20GB."),
+    ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Delete nothing; only say what would be deleted.")] = False,
     store: StoreAt = None,
     as_json: AsJson = False,
 ) -> None:
     """Delete from the store what no longer belongs to a run you keep.
 
-    Without options the last run of each output folder is kept. A run that is under way keeps what it uses.
+    Without options the last run of each output folder is kept. A run that is under way keeps what it uses, whatever the size.
     """
     from kinetree.pipeline import gc as collection
 
     pipeline = pipeline_of(config, store=store)
-    garbage = collection.collect(pipeline.store, keep=keep or (), last=keep_last, dry=dry_run)
+    size = None if max_size is None else _bytes(max_size)
+    garbage = collection.collect(pipeline.store, keep=keep or (), last=keep_last, days=keep_days, size=size, dry=dry_run)
     if as_json:
         print_json(garbage.json())
     else:
         verb = "would delete" if dry_run else "deleted"
         out.print(f"{verb} {garbage} in {printable(pipeline.store.url)}", markup=False)
+
+
+def verify(
+    config: Target = None,
+    repair: Annotated[bool, typer.Option("--repair", help="Remove what is damaged and compute it again.")] = False,
+    store: StoreAt = None,
+    as_json: AsJson = False,
+) -> None:
+    """Read all of a store and say what is damaged; with --repair, compute that again.
+
+    Exit code 1 where something is damaged and was not repaired.
+    """
+    from kinetree.pipeline import verify as verifying
+
+    pipeline = pipeline_of(config, store=store)
+    found = verifying.verify(pipeline.store, current().methods().values())
+    if as_json:
+        print_json(found.json())
+    else:
+        for line in found.lines():
+            out.print(printable(line), markup=False)
+        out.print(f"{found.artifacts} artifacts read; {'nothing is damaged' if found.is_sound else 'damaged: see above'}")
+    if repair and not found.is_sound:
+        verifying.discard_damage(pipeline.store, found)
+        compute_and_report(pipeline, quiet=as_json)
+    elif not found.is_sound:
+        raise typer.Exit(1)
+
+
+def _bytes(size: str) -> int:
+    """A size such as 20GB or 512MiB in bytes; raises ConfigError."""
+    powers = {letter: power for power, letter in enumerate("kMGT", 1)}
+    written = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?([kMGT]i?)?B?", size.strip())
+    if written is None:
+        raise ConfigError(f"--max-size {size}: expected a size such as 20GB or 512MiB")
+    unit = written.group(2) or ""
+    return int(float(written.group(1)) * (1024 if unit.endswith("i") else 1000) ** powers.get(unit[:1], 0))
 
 
 @contextlib.contextmanager

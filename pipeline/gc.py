@@ -8,7 +8,8 @@ from typing import Any
 from kinetree.pipeline.heartbeat import lives
 from kinetree.pipeline.store import Store, artifact_path, list_path
 
-LEFTOVER_SECONDS = 24 * 3600.0
+DAY_SECONDS = 24 * 3600.0
+LEFTOVER_SECONDS = DAY_SECONDS
 """After this nobody is writing what lies half-written."""
 
 
@@ -35,11 +36,21 @@ class Garbage:
         return {**{name: list(getattr(self, name)) for name in names}, "bytes": self.bytes}
 
 
-def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None, dry: bool = False) -> Garbage:
+def collect(
+    store: Store,
+    *,
+    keep: Collection[str] = (),
+    last: int | None = None,
+    days: float | None = None,
+    size: int | None = None,
+    dry: bool = False,
+) -> Garbage:
     """Removes what none of the kept runs used: those named in `keep`, and the last ones of each output folder.
 
     keep   : names of runs; raises UnknownNodeError for one that is not on record
     last   : how many runs of each output folder to keep; None keeps 1 where `keep` is empty, else none
+    days   : runs that began within so many days are kept as well
+    size   : of these, named ones apart, the oldest are let go until the artifacts of the rest take no more bytes
     dry    : only says what would go
     A run that is under way, here or on another machine, keeps what it found fresh when it began and everything that was
     made since; so does one that was killed, until a later run into the same folder has taken its work over.
@@ -51,7 +62,11 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     unfinished = [run for run in _latest(runs) if not run["nodes"]] + [
         run for run in runs.values() if run["status"] == "running" and lives(run, store)
     ]
-    needed = {*keep, *_last(runs, count), *(run["name"] for run in unfinished)}
+    recent = [name for name, run in runs.items() if days is not None and run["epoch"] >= time.time() - days * DAY_SECONDS]
+    bound = {*keep, *(run["name"] for run in unfinished)}
+    needed = {*bound, *_last(runs, count), *recent}
+    if size is not None:
+        needed = _fitting(store, {name: runs[name] for name in sorted(needed)}, bound, size)
     keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
@@ -60,6 +75,18 @@ def collect(store: Store, *, keep: Collection[str] = (), last: int | None = None
     if not dry:
         _free(store, garbage)
     return garbage
+
+
+def _fitting(store: Store, runs: dict[str, dict[str, Any]], bound: Collection[str], size: int) -> set[str]:
+    """The runs without the oldest, as many as it takes until what the rest use is no larger than `size`."""
+    used = {name: {n["artifact"] for n in run["nodes"].values() if n.get("key")} for name, run in runs.items()}
+    sizes = {digest: store.place.size(artifact_path(digest)) or 0 for digests in used.values() for digest in digests if digest}
+    kept = set(runs)
+    for name in (name for name in runs if name not in bound):
+        if sum(sizes[d] for d in set().union(*(used[k] for k in kept)) if d) <= size:
+            break
+        kept.remove(name)
+    return kept
 
 
 def _last(runs: dict[str, dict[str, Any]], count: int) -> list[str]:

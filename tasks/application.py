@@ -102,7 +102,13 @@ APPLICATION = Application(
                 ),
             ),
         ),
-        Section("Care", (built_in("gc", "kinetree gc walk/ --dry-run", "kinetree gc walk/ --keep-last 3"),)),
+        Section(
+            "Care",
+            (
+                built_in("gc", "kinetree gc walk/ --dry-run", "kinetree gc walk/ --keep-days 30 --max-size 20GB"),
+                built_in("verify", "kinetree verify walk/", "kinetree verify walk/ --repair"),
+            ),
+        ),
     ),
     shortcuts=(
         Shortcut(

@@ -25,7 +25,7 @@ from kinetree.pipeline.key import forget_code
 HERE = Path(__file__).parent
 MAIN = """from kinetree.pipeline.application import Application, Section, built_in
 from kinetree.pipeline.cli import main
-COMMANDS = tuple(map(built_in, ("run", "plan", "show", "why", "graph", "tasks", "runs", "diff", "config", "gc")))
+COMMANDS = tuple(map(built_in, ("run", "plan", "show", "why", "graph", "tasks", "runs", "diff", "config", "gc", "verify")))
 def methods():
     from .toys import GRAPH
     return {"toy": GRAPH}
