@@ -16,7 +16,7 @@ class AnnuliParams(Params):
 
     thresholds: tuple[float, ...] = Field(default=THRESHOLDS, min_length=1)
     """θ_r of Eq. 12. Of several, the one that gives the most rigid areas is taken, as for Fig. 11, where it is 1.2."""
-    floor: float = Field(default=0.002, ge=0)
+    floor: float = Field(default=0.0005, gt=0)
     """Errors per vertex below this count as this much, share of the root of the area; without errors Eq. 11 would be 0 / 0."""
 
 

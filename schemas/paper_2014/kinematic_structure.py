@@ -8,5 +8,5 @@ from kinetree.schemas.array import Params
 class KinematicStructureParams(Params):
     """What the poses are fitted to."""
 
-    surface: float = Field(default=1.0, gt=0, le=100)
+    surface: float = Field(default=0.01, gt=0, le=100)
     """Weight of a rigid part's surface against one joint; the surface shows the roll of a bone, which joints do not."""

@@ -27,7 +27,7 @@ def cylinders(
     reference = interval_references[model]
     count, F = len(reference.vertices), reference.faces.astype(np.int64)
     of_cones = cone_consistency.annulus[:, cone_consistency.rows(model)].astype(np.int64)
-    cones = numerics.kinematic_cones(of_cones, integration.rigid)
+    cones = numerics.kinematic_cones(of_cones, integration.rigid, reference.area)
     intervals = _motions(model, interval_references, alignments, cut_correspondence, integration.floor)
 
     def clustering(annuli: list[Ints]) -> Flags:

@@ -1,7 +1,9 @@
 """Contract of annuli: which move as one, at every threshold."""
 
 import numpy as np
+import pytest
 from mesoscopic import mesoscopic
+from pydantic import ValidationError
 
 from kinetree.schemas.paper_2014.annuli import THRESHOLDS, AnnuliParams
 from kinetree.tasks.paper_2014.annuli import annuli
@@ -20,6 +22,11 @@ def test_annulus_at_the_joint_is_the_only_one_that_is_not_rigid() -> None:
 def test_annuli_are_of_the_interval_and_the_cone_of_the_index() -> None:
     for index, artifact in mesoscopic().annuli.items():
         assert (artifact.interval, artifact.cone) == index
+
+
+def test_floor_of_zero_is_refused_because_an_annulus_without_errors_has_no_ratio() -> None:
+    with pytest.raises(ValidationError, match="greater than 0"):
+        AnnuliParams(floor=0.0)
 
 
 def test_there_is_a_row_for_every_threshold() -> None:

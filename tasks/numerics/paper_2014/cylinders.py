@@ -20,6 +20,9 @@ class CylindersSettings(NamedTuple):
     least_area: float = 0.005
     """Smallest component of the undefined area that is extended into, share of the area of the body; smaller ones join the
     areas around them. Not recorded what it was chosen on. At 0 fragments between cones become joints of their own."""
+    least_annulus: float = 0.5
+    """Share of an annulus that must be its cone's alone; chosen as the greater part. Near 0 scraps count as rings, at 1
+    a cone ends where the first triangle is shared."""
 
 
 class Cylinder(NamedTuple):
@@ -66,28 +69,28 @@ class Areas(NamedTuple):
     last_annulus: Ints
 
 
-def kinematic_cones(annulus: Ints, rigid: Flags) -> list[Cylinder]:
-    """Kinematic cones without the rigid area farthest from their leaves where that overlaps, and without other overlaps.
+def kinematic_cones(annulus: Ints, rigid: Flags, area: Floats, settings: CylindersSettings | None = None) -> list[Cylinder]:
+    """Kinematic cones without the farthest overlapping rigid area and all beyond it, and without other overlaps (Sec. 6.2.2).
 
-    A rigid area that overlaps with another cone may be part of either, so all of it is cut off (Sec. 6.2.2). The area around
-    the leaf stays as far as it overlaps with nothing.
+    A rigid area that overlaps with another cone may be part of either, so all of it is cut off. What cones still share is
+    undefined, and so is an annulus that mostly is, with all beyond it (ours): the rest of it is no ring.
 
     annulus : (cone, vertex) annulus of every vertex, −1 beyond the cone
     rigid   : (cone, annulus) as integrated over the intervals
+    area    : (vertex,) mesh unit²
     """
+    least = (settings or CylindersSettings()).least_annulus
     overlapping = (annulus >= 0).sum(axis=0) > 1
-    cut = annulus.copy()
-    for n, own in enumerate(annulus):
-        last = int(own.max(initial=-1))
-        first = last
-        while first > 0 and rigid[n, first - 1] and rigid[n, last]:
-            first -= 1
-        if last >= 0 and first > 0 and rigid[n, last] and overlapping[own >= first].any():
-            cut[n, own >= first] = -1
+    cut = np.array([_without_shared_end(own, r, overlapping) for own, r in zip(annulus, rigid, strict=True)])
+    cut = cut.reshape(annulus.shape)
     claims = (cut >= 0).sum(axis=0)
     out = []
     for n, own in enumerate(cut):
         alone = np.where(claims == 1, own, -1)
+        length = int(own.max(initial=-1)) + 1
+        left, whole = (np.bincount(k[k >= 0], area[k >= 0], length) for k in (alone, own))
+        partial = np.flatnonzero(left < least * whole)
+        alone[alone >= partial.min(initial=length)] = -1
         out.append(Cylinder(n, alone, rigid[n, : int(alone.max(initial=-1)) + 1]))
     return out
 
@@ -181,6 +184,21 @@ def areas(cylinders: list[Cylinder], vertices: int, F: Ints) -> Areas:
         if (label == before).all():
             label[label < 0] = 0
     return Areas(label, *(np.array(column) for column in zip(*rows, strict=True)))
+
+
+def _without_shared_end(own: Ints, rigid: Flags, overlapping: Flags) -> Ints:
+    """(vertex,) the annuli of one cone up to the farthest rigid area that overlaps; all if none does, or only that of the leaf.
+
+    own, overlapping : (vertex,) annulus, −1 beyond the cone · whether another cone has it too
+    rigid            : (annulus,)
+    """
+    last = int(own.max(initial=-1))
+    is_shared = np.bincount(own[overlapping & (own >= 0)], minlength=last + 1) > 0
+    shared = np.flatnonzero(rigid[: last + 1] & is_shared)
+    if not len(shared):
+        return own
+    before = np.flatnonzero(~rigid[: shared[-1]])
+    return np.where(own > before[-1], -1, own) if len(before) else own
 
 
 def _widest_extension(cone_of: Ints, band: list[Ints], distance: Floats, area: Floats, E: Ints) -> tuple[int, Ints] | None:

@@ -12,10 +12,10 @@ Row = tuple[int, int, int]
 
 
 class JointTree(NamedTuple):
-    """A tree of nodes: each is a joint with the part that turns about it; the first is the root's part and has no joint.
+    """A tree of nodes: each joint is one, with the part that turns about it; the first is the root's part and has no joint.
 
     joint   : (node,) area of the joint, −1 for the root
-    part    : (node,) the rigid part that turns about the joint; −1 where only the joint's own area does
+    part    : (node,) the rigid part that turns about the joint, of several the largest; −1 where only the joint's own area does
     parents : (node,) −1 for the root; parents come before children
     """
 
@@ -47,22 +47,20 @@ def joint_tree(bone: Ints, bone_part: Ints, of_part: Flags, area: Floats, part_a
     joints = np.flatnonzero(of_part.any(axis=0) | np.isin(np.arange(count), bone))
     root = count + int(np.argmax(part_area)) if parts else int(joints[np.argmax(area[joints])]) if len(joints) else count
     rows: list[Row] = [(-1, root - count, -1) if root >= count else (-1, -1, -1)]
-    _append_nodes(rows, linked, root, count)
+    _append_nodes(rows, linked, root, count, part_area)
     return JointTree(*(np.array(column, np.int64) for column in zip(*rows, strict=True)))
 
 
-def _append_nodes(rows: list[Row], linked: dict[int, list[int]], root: int, count: int) -> None:
-    """Appends a node for every part beyond a joint, and for every joint beyond which there is none; parts begin at `count`."""
+def _append_nodes(rows: list[Row], linked: dict[int, list[int]], root: int, count: int, size: Floats) -> None:
+    """Appends a node for every joint with the largest of the parts beyond it, if there are any; parts begin at `count`.
+
+    The other parts beyond a joint follow its node, so that what hangs on them hangs on it.
+    """
     queue, visited = [(root, 0)], {root}
     for item, node in queue:
         for joint in sorted(j for j in linked.get(item, []) if j not in visited and j < count):
-            visited.add(joint)
             beyond = sorted(b for b in linked.get(joint, []) if b not in visited)
             parts = [b for b in beyond if b >= count]
-            for b in parts:
-                visited.add(b)
-                rows.append((joint, b - count, node))
-                queue.append((b, len(rows) - 1))
-            if len(parts) < len(beyond) or not parts:
-                rows.append((joint, -1, node))
-                queue.append((joint, len(rows) - 1))
+            visited.update((joint, *parts))
+            rows.append((joint, max(parts, key=lambda b: size[b - count]) - count if parts else -1, node))
+            queue += [(b, len(rows) - 1) for b in (*parts, joint)]

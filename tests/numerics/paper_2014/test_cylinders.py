@@ -28,27 +28,50 @@ def test_cones_overlap_at_the_branch_and_what_they_share_is_cut_off():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
     assert ((ANNULUS >= 0).sum(axis=0) > 1).any()
-    cut = kinematic_cones(ANNULUS, rigid)
+    cut = kinematic_cones(ANNULUS, rigid, AREA)
     assert [p.annulus.max() for p in cut] == [4, 4, 4], "the rigid area beyond the joint is cut off, the joint is not"
     assert (sum((p.annulus >= 0).astype(int) for p in cut) <= 1).all()
 
 
+def test_cone_whose_last_annulus_is_not_rigid_is_cut_before_the_rigid_area_that_is_shared():
+    shared = ((ANNULUS >= 0).sum(axis=0) > 1) & (ANNULUS[0] >= 0)
+    first, last = ANNULUS[0][shared].min(), ANNULUS[0].max()
+    assert last >= first + 2, "the shared end is long enough for a rigid area and a joint"
+    rigid = np.ones((3, 25), bool)
+    rigid[:, [first - 1, last]] = False
+    for cylinder in kinematic_cones(ANNULUS, rigid, AREA):
+        assert cylinder.annulus.max() == first - 1
+        assert not cylinder.rigid[-1], "it ends in the joint before the area that is cut off"
+
+
+def test_ring_that_is_mostly_shared_is_cut_off_with_all_beyond_and_one_that_is_mostly_its_own_stays():
+    band = np.arange(40) // 4  # ten rings of four vertices; another cone shares two of each from ring 6 on
+    other = np.where((band >= 6) & (np.arange(40) % 4 < 2), band, -1)
+    joints = np.zeros((2, 10), bool)
+    for own_area, last in ((1.1, 9), (0.9, 5)):
+        area = np.where(np.arange(40) % 4 < 2, 1.0, own_area)
+        cone, _ = kinematic_cones(np.stack([band, other]), joints, area)
+        assert cone.annulus.max() == last
+
+
 def test_cone_without_a_joint_keeps_what_is_its_own():
-    cut = kinematic_cones(ANNULUS, np.ones((3, 25), bool))
+    cut = kinematic_cones(ANNULUS, np.ones((3, 25), bool), AREA)
     for n, cylinder in enumerate(cut):
-        alone = (ANNULUS >= 0).sum(axis=0) == 1
-        assert ((cylinder.annulus >= 0) == (alone & (ANNULUS[n] >= 0))).all()
+        alone = ((ANNULUS >= 0).sum(axis=0) == 1) & (ANNULUS[n] >= 0)
+        whole = [k for k in range(ANNULUS[n].max() + 1) if alone[ANNULUS[n] == k].all()]
+        assert alone[cylinder.annulus >= 0].all()
+        assert np.isin(whole, cylinder.annulus).all()
 
 
 def test_cone_that_overlaps_with_nothing_is_left_whole():
-    (cylinder,) = kinematic_cones(ANNULUS[:1], np.ones((1, 25), bool))
+    (cylinder,) = kinematic_cones(ANNULUS[:1], np.ones((1, 25), bool), AREA)
     assert (cylinder.annulus == ANNULUS[0]).all()
 
 
 def test_cylinders_define_all_of_the_surface_and_nothing_twice():
     rigid = np.ones((3, 25), bool)
     rigid[:, 4] = False
-    cones = kinematic_cones(ANNULUS, rigid)
+    cones = kinematic_cones(ANNULUS, rigid, AREA)
     extensions = cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
     claimed = sum((p.annulus >= 0).astype(int) for p in (*cones, *extensions))
     assert claimed.max() == 1
@@ -60,7 +83,7 @@ def test_first_cylinder_is_the_extension_with_the_widest_range():
     rigid = np.ones((3, 25), bool)
     for cone, joint in enumerate((2, 5, 5)):
         rigid[cone, joint] = False
-    extensions = cylinders(kinematic_cones(ANNULUS, rigid), DISTANCE, AREA, F, all_rigid, 25)
+    extensions = cylinders(kinematic_cones(ANNULUS, rigid, AREA), DISTANCE, AREA, F, all_rigid, 25)
     assert extensions[0].cone == 0
 
 
@@ -69,7 +92,7 @@ def test_annuli_of_a_cylinder_are_numbered_from_its_near_end():
     rigid[:, 4] = False
     clustered = []
     extensions = cylinders(
-        kinematic_cones(ANNULUS, rigid), DISTANCE, AREA, F, lambda a: clustered.append(a) or all_rigid(a), 25
+        kinematic_cones(ANNULUS, rigid, AREA), DISTANCE, AREA, F, lambda a: clustered.append(a) or all_rigid(a), 25
     )
     for cylinder, annuli in zip(extensions, clustered, strict=True):
         reach = [DISTANCE[cylinder.cone][inside].mean() for inside in annuli]
@@ -81,7 +104,7 @@ def test_cone_whose_leaf_is_not_seen_is_not_extended():
     rigid[:, 4] = False
     unseen = DISTANCE.copy()
     unseen[0] = np.nan
-    extensions = cylinders(kinematic_cones(ANNULUS, rigid), unseen, AREA, F, all_rigid, 25)
+    extensions = cylinders(kinematic_cones(ANNULUS, rigid, AREA), unseen, AREA, F, all_rigid, 25)
     assert 0 not in {p.cone for p in extensions}
 
 
@@ -90,7 +113,7 @@ def test_body_without_cones_has_no_cylinders():
 
 
 def test_undefined_components_that_are_small_are_not_extended_into():
-    cones = kinematic_cones(ANNULUS, np.ones((3, 25), bool))
+    cones = kinematic_cones(ANNULUS, np.ones((3, 25), bool), AREA)
     assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25)
     assert cylinders(cones, DISTANCE, AREA, F, all_rigid, 25, CylindersSettings(least_area=1.1)) == []
 
