@@ -24,13 +24,14 @@ class IntervalReference(Artifact):
     size: float
     """Root of the area, length."""
     leaf: Annotated[Ints, Array("int32", LEAF)]
-    """The interval's fixed set of leaves: rows of `Leaves`, ascending."""
+    """The interval's fixed set of leaves: rows of `Leaves`, ascending; if tracked in one interval, the frame's extrema."""
     leaf_vertex: Annotated[Ints, Array("int32", LEAF)]
     """The reference's vertex at each leaf; −1 for a leaf that is not seen in the reference's frame."""
     coordinates: Annotated[Floats, Array("float64", LEAF, VERTEX, unit="length", finite=False)]
     """Geodesic coordinates of the reference: g(v, leaf); NaN outside the largest component and for a leaf not seen."""
     extremum: Annotated[Ints, Array("int32", LEAF, FRAME)]
-    """Which of the frame's extrema each leaf is, in every frame of the interval; −1 where it is not seen."""
+    """Which of the frame's extrema each leaf is, in every frame of the interval; −1 where it is not seen or, if tracked, not
+    needed: there a leaf is a vertex."""
     tracked: bool
     """Whether the sequence has fixed connectivity (Sec. 7): every vertex is its own image in all frames."""
 

@@ -16,6 +16,8 @@ class IntervalsParams(Params):
 
     rule: Literal["robust", "fixed"] = "robust"
     """robust: the threshold is found in the series itself; fixed: cut wherever C(t) is below `threshold`, as the paper does."""
+    tracked: Literal["cut", "whole"] = "cut"
+    """A sequence of fixed connectivity. cut: as every other; whole: one interval, as the paper skips Step I (Sec. 7)."""
     threshold: float = Field(default=0.95, ge=-1, le=1)
     """For the fixed rule: C(t) below which to cut; the paper gives no number."""
     high: float = Field(default=2.0, ge=0)

@@ -25,10 +25,17 @@ def interval_reference(
     leaves: Leaves,
     connectivity: Connectivity,
 ) -> IntervalReference:
-    """Takes the frame at the middle of the interval as the reference that is aligned to the others (2014, Sec. 5.3)."""
+    """Takes the frame at the middle of the interval as the reference that is aligned to the others (2014, Sec. 5.3).
+
+    With fixed connectivity and one interval its extrema are the leaves, which are followed by their vertices (Sec. 7).
+    """
     frames, (interval,) = tuple(mesh), index
-    leaf = np.flatnonzero(leaves.kept[interval])
-    extremum = leaves.rows[np.ix_(leaf, np.searchsorted(leaves.frames, frames))]
+    of_interval = np.flatnonzero(leaves.kept[interval])
+    leaf, extremum = (
+        _followed_by_vertex(frames, geodesic_coordinates)
+        if connectivity.fixed and len(leaves.kept) == 1
+        else (of_interval, leaves.rows[np.ix_(of_interval, np.searchsorted(leaves.frames, frames))])
+    )
     position = middle_frame(extremum >= 0)
     frame, row = frames[position], extremum[:, position]
     area, coordinates = geodesics[frame].area, geodesic_coordinates[frame]
@@ -45,6 +52,17 @@ def interval_reference(
         extremum=extremum,
         tracked=connectivity.fixed,
     )
+
+
+def _followed_by_vertex(
+    frames: tuple[int, ...], coordinates: Mapping[int, GeodesicCoordinates]
+) -> tuple[NDArray[np.integer], NDArray[np.integer]]:
+    """(leaf,) the extrema of the middle frame, and (leaf, frame) which extrema they are: known in that frame only."""
+    middle = middle_frame(np.ones((1, len(frames)), dtype=bool))
+    leaf = np.arange(len(coordinates[frames[middle]].extrema))
+    extremum = np.full((len(leaf), len(frames)), -1)
+    extremum[:, middle] = leaf
+    return leaf, extremum
 
 
 def _of_leaves(values: NDArray[np.generic], row: NDArray[np.integer], missing: float) -> NDArray[np.generic]:

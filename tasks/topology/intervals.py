@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
+from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals, IntervalsParams
@@ -13,8 +14,12 @@ from kinetree.tasks.numerics.topology import intervals as numerics
 
 
 @task()
-def intervals(correlation: Correlation, extrema: Mapping[int, Extrema], params: IntervalsParams) -> Intervals:
+def intervals(
+    correlation: Correlation, extrema: Mapping[int, Extrema], connectivity: Connectivity, params: IntervalsParams
+) -> Intervals:
     """Cuts the sequence at sharp drops of the correlation and where limbs join or part for good (2014, Sec. 4)."""
+    if params.tracked == "whole" and connectivity.fixed:
+        return _whole(tuple(extrema))
     cues = _cues(tuple(extrema.values()), params.step)
     if params.rule == "fixed":
         cut = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
@@ -38,6 +43,15 @@ def intervals(correlation: Correlation, extrema: Mapping[int, Extrema], params: 
         cue_names=(numerics.CORRELATION, *cues),
         threshold=params.threshold if params.rule == "fixed" else params.high,
     )
+
+
+def _whole(frames: tuple[int, ...]) -> Intervals:
+    """All frames as one interval: correspondence comes with the input (Sec. 7)."""
+    none = np.zeros(len(frames) - 1)
+    return Intervals(
+        frames=frames, begin=np.zeros(1, int), end=np.array([len(frames) - 1]), z=none, cues=(), strengths=none[None],
+        cue_names=(numerics.CORRELATION,), threshold=0.0,
+    )  # fmt: skip
 
 
 def _strength(cue: numerics.Cue) -> Floats:

@@ -51,6 +51,15 @@ def test_fixed_connectivity_is_decided_here() -> None:
     assert not reference_of(frames, 0, 2).tracked
 
 
+def test_leaves_of_fixed_connectivity_are_those_of_the_middle_frame_whatever_other_frames_see() -> None:
+    frames = {t: frame(t, anew=False, hidden=(1,) if t != 3 else ()) for t in range(7)}
+    assert reference_of(frames, 0, 6).leaf.tolist() != [0, 1, 2]
+    reference = reference_of(frames, 0, 6, connectivity=TRACKED)
+    assert reference.frame == 3
+    assert reference.leaf_vertex.tolist() == frames[3].extrema.vertices.tolist()
+    assert reference.coordinates.shape[0] == 3
+
+
 def test_genus_is_that_of_a_closed_surface_and_nought_for_an_open_one() -> None:
     reference = reference_of({t: frame(t) for t in range(3)}, 0, 2)
     ring = trimesh.creation.torus(3.0, 1.0)
