@@ -8,10 +8,7 @@ import trimesh
 
 from kinetree.pipeline import Pipeline
 from kinetree.pipeline.graph import Graph
-from kinetree.tasks.input.connectivity import connectivity
-from kinetree.tasks.input.mesh import mesh
-from kinetree.tasks.input.sequence import sequence
-from kinetree.tasks.input.source import source
+from kinetree.tasks.input import INPUT
 from kinetree.tasks.paper_2014.arap import arap
 from kinetree.tasks.paper_2014.cut_correspondence import cut_correspondence
 from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
@@ -25,8 +22,8 @@ from kinetree.tasks.topology.leaves import leaves
 from kinetree.tasks.topology.mu_histogram import mu_histogram
 
 STEPS = Graph.of(
-    (source, sequence, mesh, connectivity, geodesics, mu_histogram, correlation, extrema, intervals, leaves,
-     geodesic_coordinates, interval_reference, geodesic_mapping, arap, cut_correspondence)
+    (*INPUT, geodesics, mu_histogram, correlation, extrema, intervals, leaves, geodesic_coordinates,
+     interval_reference, geodesic_mapping, arap, cut_correspondence)
 )  # fmt: skip
 TOUCH = {"limb": "hand_r", "target": "hip_r", "begin": 5, "end": 9}
 HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
