@@ -67,6 +67,9 @@ def posed(
 ) -> Posed:
     """Fixed lengths: offsets that fit all frames best, then the poses that fit each frame best, in least squares (Sec. 6.3.2).
 
+    Both in turn, under a weight of the surface that falls to the one given: joints alone do not determine the roll of a bone,
+    and a fit that begins with them diverges.
+
     V, x      : (vertex, xyz) in the reference · (frame, vertex, xyz) mesh unit, NaN where not seen
     node      : (vertex,) node that carries it, −1 for none
     parents   : (node,) −1 for the root
@@ -76,28 +79,52 @@ def posed(
     surface   : weight of all vertices of a node against one joint
     """
     X, R, leaf = observed
-    rest = np.zeros((len(parents), 3))
-    rest[0] = root
-    for j in range(1, len(parents)):
-        rest[j] = rest[parents[j]] + _offset(R[:, parents[j]], X[:, j] - X[:, parents[j]])
-    leaf_rest = rest[leaf_node] + np.array([_offset(R[:, j], leaf[:, e] - X[:, j]) for e, j in enumerate(leaf_node)]).reshape(
-        -1, 3
-    )
-    carried = np.flatnonzero(node >= 0)
-    points = np.concatenate([rest, leaf_rest, V[carried]])
-    goal = np.concatenate([X, leaf, x[:, carried]], axis=1)
-    follows = np.concatenate([np.maximum(parents, 0), leaf_node, node[carried]])
-    share = surface / np.maximum(np.bincount(node[carried], minlength=len(parents)), 1)
-    weight = np.concatenate([np.ones(len(rest) + len(leaf_rest)), share[node[carried]]])
-    tau = np.where(np.isfinite(goal[:, :, 0]), weight, 0.0)
-    W = np.eye(len(parents))[follows]
-    start = Motion(rest, R, np.nan_to_num(X[:, 0]) - np.einsum("txy,y->tx", R[:, 0], root))
-    motion = fitted(sums(points, np.nan_to_num(goal), W, parents, tau), start, parents)
+    shift = np.nan_to_num(X[:, 0]) - np.einsum("txy,y->tx", R[:, 0], root)
+    motion = Motion(_joints_at_rest(R, X, parents, root), R, shift)
+    for share in _descending(surface):
+        rest = _joints_at_rest(motion.R, X, parents, root)
+        leaf_rest = rest[leaf_node] + _leaf_offsets(motion.R, X, leaf, leaf_node)
+        motion = _fitted(V, x, node, parents, observed, leaf_node, motion._replace(rest=rest), leaf_rest, share)
     positions = placed(motion, parents)
     distance = np.linalg.norm(positions - X, axis=2)
     drift = np.sqrt(np.nanmean(np.where(np.isfinite(distance).any(axis=0), distance, 0.0) ** 2, axis=0))
     ends = positions[:, leaf_node] + np.einsum("texy,ey->tex", motion.R[:, leaf_node], leaf_rest - rest[leaf_node])
     return Posed(motion, positions, ends, leaf_rest, drift, distance)
+
+
+def _descending(surface: float) -> list[float]:
+    """The weights under which poses are fitted: from a surface that weighs as a joint down to the one given, by tens."""
+    steps = max(1, round(-np.log10(surface)))
+    return np.geomspace(max(1.0, surface), surface, steps + 1).tolist()
+
+
+def _joints_at_rest(R: Floats, X: Floats, parents: Ints, root: Floats) -> Floats:
+    """(node, xyz) the joints in the reference: the offsets from their parents that fit all frames best."""
+    rest = np.zeros((len(parents), 3))
+    rest[0] = root
+    for j in range(1, len(parents)):
+        rest[j] = rest[parents[j]] + _offset(R[:, parents[j]], X[:, j] - X[:, parents[j]])
+    return rest
+
+
+def _leaf_offsets(R: Floats, X: Floats, leaf: Floats, leaf_node: Ints) -> Floats:
+    """(leaf, xyz) the offsets of the leaves from their joints, in the reference."""
+    return np.array([_offset(R[:, j], leaf[:, e] - X[:, j]) for e, j in enumerate(leaf_node)]).reshape(-1, 3)
+
+
+def _fitted(
+    V: Floats, x: Floats, node: Ints, parents: Ints, observed: Observed, leaf_node: Ints, start: Motion, leaf_rest: Floats,
+    surface: float,
+) -> Motion:  # fmt: skip
+    """The poses that fit joints, leaves and surfaces best, for joints that stay in the reference."""
+    carried = np.flatnonzero(node >= 0)
+    points = np.concatenate([start.rest, leaf_rest, V[carried]])
+    goal = np.concatenate([observed.joint, observed.leaf, x[:, carried]], axis=1)
+    follows = np.concatenate([np.maximum(parents, 0), leaf_node, node[carried]])
+    share = surface / np.maximum(np.bincount(node[carried], minlength=len(parents)), 1)
+    weight = np.concatenate([np.ones(len(start.rest) + len(leaf_rest)), share[node[carried]]])
+    tau = np.where(np.isfinite(goal[:, :, 0]), weight, 0.0)
+    return fitted(sums(points, np.nan_to_num(goal), np.eye(len(parents))[follows], parents, tau), start, parents)
 
 
 def _offset(R: Floats, apart: Floats) -> Floats:
