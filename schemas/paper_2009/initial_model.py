@@ -17,6 +17,8 @@ class InitialModelParams(Params):
 
     smoothing: float = Field(default=0.3, ge=0, le=2)
     """Width over which the surface blends from node to node, share of the distance between nodes."""
+    spacing: float = Field(default=0.04, ge=0, le=1)
+    """Least distance of nodes along a branch, share of the root of the area; nearer ones are one. 0 keeps every node."""
 
 
 class InitialModel(Artifact):

@@ -22,9 +22,16 @@ def coherent_intervals(pergs: Mapping[int, Perg], params: CoherentIntervalsParam
         ends=ends,
         loops=loops,
         reach=np.array([p.reach.max(initial=0.0) for p in pergs.values()]),
+        length=np.array([_length(p) for p in pergs.values()]),
         degrees=degrees,
         begin=runs.begin,
         end=runs.end,
         wanted_ends=runs.ends,
         wanted_branches=runs.branches,
     )
+
+
+def _length(graph: Perg) -> float:
+    """Length of a graph's edges, share of the root of its body's area."""
+    ends = graph.node[graph.edge]
+    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() / np.sqrt(graph.area.sum()))

@@ -57,7 +57,8 @@ def deformed_model(
         target = _target_graph(perg, model, leaves, frame)
         pose = numerics.drawn(tree, last, target, _forces(params), branches=params.branches)
         if params.surface:
-            pose = numerics.laid_on(tree, body, pose, Target.of(V, F, model.size, params.samples), params.hold)
+            surface = Target.of(V, F, model.size, params.samples)
+            pose = numerics.best_laid(tree, body, [pose, last], surface, params.hold)
     x = numerics.posed_surface(tree, body, pose)
     quality = alignment_quality(body.V, x, body.F, V, F, model.size, tracked=False)
     return {**pose._asdict(), "vertices": x, **quality._asdict()}

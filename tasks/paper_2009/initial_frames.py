@@ -7,7 +7,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals
 from kinetree.schemas.paper_2009.initial_frames import InitialFrames, InitialFramesParams
 from kinetree.schemas.paper_2009.similarity import Similarity
-from kinetree.tasks.numerics.arrays import Flags
+from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.paper_2009 import initial_frames as numerics
 
 
@@ -29,12 +29,19 @@ def initial_frames(intervals: CoherentIntervals, similarity: Similarity, params:
     S = np.array(similarity.similarity)
     structure, before, initial = np.full(count, -1), np.full(count, -1), []
     for number, span in enumerate(spans):
-        start = numerics.initial_frame(S[np.ix_(span, span)], candidate[span])
+        start = _start(S[np.ix_(span, span)], candidate[span], np.array(intervals.length)[span], params)
         reached = numerics.reached_from(S[np.ix_(span, span)], start, by_correlation=params.start == "correlation")
         structure[span] = number
         before[span] = np.where(reached >= 0, span[reached], -1)
         initial.append(int(span[start]))
     return InitialFrames(frames=intervals.frames, initial=np.array(initial), structure=structure, before=before, coherent=found)
+
+
+def _start(similarity: Floats, candidate: Flags, length: Floats, params: InitialFramesParams) -> int:
+    """Position of the initial frame within its structure."""
+    if params.initial == "similar":
+        return numerics.initial_frame(similarity, candidate)
+    return numerics.extended_frame(similarity, candidate, length)
 
 
 def _candidates(intervals: CoherentIntervals, spans: list[np.ndarray]) -> Flags:

@@ -32,7 +32,8 @@ def initial_model(
     graph, mesh = pergs[frame], meshes[frame]
     V, F = np.array(mesh.vertices), mesh.faces.astype(np.int64)
     of_graph = {name: np.array(getattr(graph, name)) for name in ("node", "edge", "loop", "area", "end", "of_vertex")}
-    body = graph_body(V, F, **of_graph, smoothing=params.smoothing)
+    spacing = params.spacing * extrema[frame].size
+    body = graph_body(V, F, **of_graph, smoothing=params.smoothing, spacing=spacing)
     return InitialModel(
         frame=frame,
         size=extrema[frame].size,

@@ -49,6 +49,7 @@ def graph_body(
     end: Ints,
     of_vertex: Ints,
     smoothing: float = 0.3,
+    spacing: float = 0.0,
 ) -> GraphBody:
     """The tree of a graph whose loops are opened; nodes without a piece of their own are left out.
 
@@ -56,11 +57,17 @@ def graph_body(
     node, area      : (node, xyz) · (node,) · edge, loop : (edge, 2) · (edge,) whether it closes a loop
     end             : (leaf,) node · of_vertex : (vertex,) node, −1 for none
     smoothing       : width over which the surface blends between nodes, share of the distance between them
+    spacing         : least distance of nodes along a chain, mesh unit; what is nearer goes with its neighbour
     """
-    order, above = _with_pieces(*_tree(len(node), edge[~loop], area), area, end)
+    outwards, before = _tree(len(node), edge[~loop], area)
+    stays = (area > 0.0) & _spaced(node, outwards, before, end, spacing)
+    stays[end] = True
+    order, above = _staying(outwards, before, stays)
     place = np.full(len(node), -1)
     place[order] = np.arange(len(order))
     parents = np.where(above >= 0, place[above], -1)
+    carrier = _carriers(node, outwards, before, stays)
+    place = np.where(carrier >= 0, place[np.maximum(carrier, 0)], -1)
     X = node[order]
     joint = np.where(parents[:, None] >= 0, (X + X[np.maximum(parents, 0)]) / 2, X)
     children = np.arange(1, len(order))
@@ -69,8 +76,8 @@ def graph_body(
     missing = label < 0
     if missing.any():
         label[missing] = cKDTree(X).query(V[missing])[1]
-    spacing = float(np.median(np.linalg.norm(X[links[:, 0]] - X[links[:, 1]], axis=1))) if len(links) else 0.0
-    bound, weight = heaviest(_blended(V, F, label, len(order), smoothing * spacing))
+    usual = float(np.median(np.linalg.norm(X[links[:, 0]] - X[links[:, 1]], axis=1))) if len(links) else 0.0
+    bound, weight = heaviest(_blended(V, F, label, len(order), smoothing * usual))
     ends = place[end]
     return GraphBody(X, parents, joint, end_branches(len(order), links, ends), ends, label, bound, weight)
 
@@ -93,10 +100,38 @@ def _tree(count: int, edge: Ints, area: Floats) -> tuple[list[int], Ints]:
     return order, before
 
 
-def _with_pieces(order: list[int], before: Ints, area: Floats, end: Ints) -> tuple[Ints, Ints]:
-    """The nodes that have a piece of the surface, in the same order · (node,) the one before each among them."""
-    stays = area > 0.0
-    stays[end] = True
+def _spaced(node: Floats, order: list[int], before: Ints, end: Ints, least: float) -> Flags:
+    """(node,) whether a node stays when those of a chain are to be so far from each other; ends and branch points stay."""
+    children = np.bincount(before[order][before[order] >= 0], minlength=len(node))
+    fixed = children != 1
+    fixed[order[0]] = fixed[end] = True
+    stays, last = np.ones(len(node), np.bool_), np.arange(len(node))
+    for n in order[1:]:
+        above = int(last[before[n]])
+        if np.linalg.norm(node[n] - node[above]) >= least:
+            continue
+        if not fixed[n]:
+            stays[n], last[n] = False, above
+        elif not fixed[above]:
+            stays[above] = False
+    return stays
+
+
+def _carriers(node: Floats, order: list[int], before: Ints, stays: Flags) -> Ints:
+    """(node,) the node that takes each node's piece: itself, or the nearer of those that stay before and behind it."""
+    up, down = np.full(len(node), -1), np.full(len(node), -1)
+    for n in order:
+        up[n] = n if stays[n] else up[before[n]] if before[n] >= 0 else -1
+    for n in reversed(order):
+        down[n] = n if stays[n] else down[n]
+        if before[n] >= 0 and not stays[before[n]] and down[n] >= 0:
+            down[before[n]] = down[n]
+    far = [np.linalg.norm(node - node[np.maximum(way, 0)], axis=1) + np.where(way < 0, np.inf, 0.0) for way in (up, down)]
+    return np.where(far[0] <= far[1], up, down)
+
+
+def _staying(order: list[int], before: Ints, stays: Flags) -> tuple[Ints, Ints]:
+    """The nodes that stay, in the same order · (node,) the one before each among them."""
     left = [n for n in order if stays[n]]
     above = []
     for n in left:

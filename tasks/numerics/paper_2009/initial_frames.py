@@ -14,6 +14,19 @@ def initial_frame(similarity: Floats, candidate: Flags) -> int:
     return int(own[np.argmax(similarity[np.ix_(own, own)].sum(axis=1))])
 
 
+def extended_frame(similarity: Floats, candidate: Flags, length: Floats) -> int:
+    """Position of the frame with the longest graph among the half of the candidates most similar to all of them (ours).
+
+    Limbs that are stretched are drawn in full, where bent ones are drawn with their corners cut.
+
+    length : (frame,) of all edges of a frame's graph
+    """
+    own = np.flatnonzero(candidate)
+    total = similarity[np.ix_(own, own)].sum(axis=1)
+    half = own[total >= np.median(total)]
+    return int(half[np.argmax(length[half])])
+
+
 def most_open_frames(count: Ints, loops: Ints) -> Flags:
     """(frame,) the frames with the fewest loops among those with the most ends, where no frame is coherent (ours)."""
     most = count == count.max()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kinetree.tasks.numerics.paper_2009.initial_frames import initial_frame, most_open_frames, reached_from
+from kinetree.tasks.numerics.paper_2009.initial_frames import extended_frame, initial_frame, most_open_frames, reached_from
 
 S = np.array([[1.0, 0.9, 0.2, 0.8], [0.9, 1.0, 0.3, 0.7], [0.2, 0.3, 1.0, 0.1], [0.8, 0.7, 0.1, 1.0]])
 
@@ -23,3 +23,8 @@ def test_most_similar_frame_that_was_reached_before_leads() -> None:
 
 def test_most_open_frames_have_most_ends_and_then_fewest_loops() -> None:
     assert most_open_frames(np.array([4, 5, 5, 5]), np.array([0, 2, 1, 1])).tolist() == [False, False, True, True]
+
+
+def test_extended_frame_is_the_longest_of_the_more_similar_half() -> None:
+    assert extended_frame(S, np.ones(4, bool), np.array([1.0, 2.0, 9.0, 3.0])) == 1
+    assert extended_frame(S, np.array([False, False, True, True]), np.array([1.0, 2.0, 9.0, 3.0])) == 2

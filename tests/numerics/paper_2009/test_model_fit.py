@@ -31,3 +31,6 @@ def test_tube_that_bends_is_followed_by_forces_and_laid_on_its_surface() -> None
     off = [np.linalg.norm(model_fit.posed_surface(model, skin, p) - W, axis=1).mean() for p in (rest, drawn, laid)]
     assert off[2] < 0.5 * off[1] < 0.5 * off[0]
     assert off[2] < 0.1
+    mirrored = drawn._replace(position=drawn.position * [1.0, -1.0, 1.0])
+    best = model_fit.best_laid(model, skin, [mirrored, drawn], Target.of(W, F, skin.size), 0.02)
+    assert np.linalg.norm(model_fit.posed_surface(model, skin, best) - W, axis=1).mean() < 0.15
