@@ -81,6 +81,12 @@ APPLICATION = Application(
                     "kinetree evaluate walk/ dance.bvh --set truth.unit=cm",
                     "kinetree evaluate walk/ other-run/skeleton.json --plot errors.png",
                 ),
+                _command(
+                    "compare",
+                    "Compare two runs of the same sequence: joints, errors, parameters.",
+                    "kinetree compare walk/ walk-paper/",
+                    "kinetree compare walk/ walk-paper/ --truth truth.json --output comparison.html",
+                ),
             ),
         ),
         Section("Configure", (built_in("config", "kinetree config > walk.yaml", "kinetree config paper-2014"),)),

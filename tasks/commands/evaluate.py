@@ -8,7 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from kinetree.errors import ConfigError, InputError, NodesFailedError
+from kinetree.errors import ConfigError
 from kinetree.pipeline.options import AsJson, Set, out, pipeline_of, print_json
 from kinetree.pipeline.printable import printable
 
@@ -57,20 +57,14 @@ def evaluate(
 
 def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list[str] | None = None) -> "Evaluation":
     """The comparison of a run with a truth; raises InputError where they are not of the same sequence."""
-    from kinetree.schemas.results.evaluation import Evaluation
+    from kinetree.tasks.compare import evaluated as of_pipeline
 
     paths = {"truth.file": truth, "truth.body": body}
     changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in paths.items() if path is not None]
-    pipeline = pipeline_of(run, sets=[*(sets or ()), *changes])
-    try:
-        stored = pipeline.computed("evaluation").artifact(Evaluation)
-    except NodesFailedError as error:
-        if f": {InputError.__name__}: " in str(error):
-            raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None
-        raise
-    if stored.summary is None:
+    evaluation = of_pipeline(pipeline_of(run, sets=[*(sets or ()), *changes]))
+    if evaluation is None:
         raise ConfigError(f"{run}: its input came without a true skeleton; name one, e.g. kinetree evaluate {run} truth.json")
-    return Evaluation.model_validate({**stored.plain(), **stored.arrays()})
+    return evaluation
 
 
 def _print(evaluation: "Evaluation") -> None:

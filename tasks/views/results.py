@@ -9,6 +9,7 @@ import numpy as np
 from kinetree.pipeline.views import files_of, leave_group, page_of, remarks_of
 from kinetree.schemas.array import Floats, Index
 from kinetree.schemas.results.bvh import Bvh
+from kinetree.schemas.results.comparison import Comparison, UnpairedJoint
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.exports import Exported
 from kinetree.schemas.results.glb import Glb
@@ -92,6 +93,66 @@ def segmentation_remarks(segmentation: Segmentation) -> tuple[str, ...]:
     unit = f" {segmentation.unit}" if segmentation.unit else ""
     mean = f"distance between the skinned mesh and the aligned meshes: {segmentation.error:.3g}{unit} root mean square"
     return (f"{mean}, 95 % below {segmentation.error_95:.3g}{unit}",)
+
+
+@files_of(Comparison)
+def comparison_files(comparison: Comparison, index: Index) -> Mapping[str, bytes]:
+    """comparison.json with all fields, missing errors as null."""
+    series = {name: _rounded(values) for name, values in comparison.arrays().items()}
+    content = {"format": "kinetree.comparison/1", **comparison.plain(), **series}
+    return {"comparison.json": (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()}
+
+
+def comparison_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
+    """Name of each figure and its value in both runs."""
+    rows = {
+        "method": [run.method for run in (comparison.a, comparison.b)],
+        "joints found": [_of(run.found, run.scored) for run in (comparison.a, comparison.b)],
+        "mean error": [_percent(run.percent) for run in (comparison.a, comparison.b)],
+        "mean error of joints both found": [_percent(run.common_percent) for run in (comparison.a, comparison.b)],
+        "spurious": ["–" if run.spurious is None else str(run.spurious) for run in (comparison.a, comparison.b)],
+        "joints": [str(run.joints) for run in (comparison.a, comparison.b)],
+        "leaves": [str(run.leaves) for run in (comparison.a, comparison.b)],
+        "bones": [str(run.bones) for run in (comparison.a, comparison.b)],
+        "frames": [str(run.frames) for run in (comparison.a, comparison.b)],
+        "seconds of computing": [f"{run.seconds:.1f}" for run in (comparison.a, comparison.b)],
+    }
+    of_truth = {"joints found", "mean error", "mean error of joints both found", "spurious"}
+    return [(name, *row) for name, row in rows.items() if comparison.truth or name not in of_truth]  # type: ignore[misc]
+
+
+@remarks_of(Comparison)
+def comparison_remarks(comparison: Comparison) -> tuple[str, ...]:
+    """By which rule joints are paired, how far they are apart, and which joints only one run has."""
+    unit = f" {comparison.unit}" if comparison.unit else ""
+    limit = f"{100 * comparison.limit:g} % of the height ({comparison.limit * comparison.height:.3g}{unit})"
+    paired = sum(pair.kind == "joint" for pair in comparison.pairs)
+    mean = "" if comparison.mean_percent is None else f", mean distance {comparison.mean_percent:.2f} % of the height"
+    lines = [f"the same joint in both: {paired} of {comparison.a.joints} and {comparison.b.joints}{mean}"]
+    for letter, only in (("A", comparison.only_a), ("B", comparison.only_b)):
+        if only:
+            lines.append(f"only in {letter}: {', '.join(map(unpaired_joint, only))}")
+    missing = [joint for joint in comparison.true_joints if joint.scored and (joint.a is None) != (joint.b is None)]
+    for letter, found in (("A", [j.name for j in missing if j.b is None]), ("B", [j.name for j in missing if j.a is None])):
+        if found:
+            lines.append(f"true joints found by {letter} alone: {', '.join(found)}")
+    rule = "two joints are the same if each is the nearest of its kind to the other, by the mean distance over all frames"
+    return (*lines, f"{rule}, and not farther than {limit}")
+
+
+def unpaired_joint(joint: UnpairedJoint) -> str:
+    """A joint that only one run has, with its kind where it is not a joint, and how far the nearest of the other run is."""
+    kind = "" if joint.kind in ("joint", joint.name) else f"{joint.kind} "
+    near = "" if joint.percent is None else f" (nearest {joint.nearest}, {joint.percent:.1f} %)"
+    return f"{kind}{joint.name}{near}"
+
+
+def _of(count: int | None, total: int | None) -> str:
+    return "–" if count is None else f"{count} of {total}"
+
+
+def _percent(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f} %"
 
 
 def _rounded(values: Floats) -> Any:

@@ -10,6 +10,8 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.hull import hull
+from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.mesh import mesh
 from kinetree.tasks.input.source import source
 from kinetree.tasks.results.evaluation import evaluation
@@ -28,4 +30,4 @@ def projection(source: Source, mesh: Mesh) -> Projection:
     return next(iter(observed(source.recipe or generated())[2].values()))
 
 
-GRAPH = Graph.of((source, truth, mesh, projection, skeleton, evaluation))
+GRAPH = Graph.of((source, truth, hull, isosurface, mesh, projection, skeleton, evaluation))

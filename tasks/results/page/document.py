@@ -47,7 +47,7 @@ def document(page: Page) -> str:
     sections = [*page.sections, Section("run", "What ran", run)]
     parts = {
         "title": escape(page.title),
-        "style": _file("style.css"),
+        "style": page_file("style.css"),
         "nav": "".join(f'<a href="#{s.anchor}">{escape(s.heading)}</a> ' for s in sections),
         "facts": "".join(f"<li>{escape(name)} <b>{escape(value)}</b></li>" for name, value in page.facts),
         "warnings": warnings(page.warnings),
@@ -60,11 +60,12 @@ def document(page: Page) -> str:
         "scene": as_script(page.scene.description),
         "payload": page.scene.block,
         "run": RUN,
-        "three": _file("vendor/three.min.js"),
-        "viewer": _file("viewer.js"),
-        "legend": "".join(_legend(name, colour) for name, colour in LEGEND.items()),
+        "three": page_file("vendor/three.min.js"),
+        "player": page_file("player.js"),
+        "viewer": page_file("viewer.js"),
+        "legend": "".join(legend_entry(name, colour) for name, colour in LEGEND.items()),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], _file("page.html"))
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], page_file("page.html"))
 
 
 def as_script(value: Any) -> str:
@@ -125,11 +126,11 @@ def _text(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _legend(name: str, colour: str) -> str:
+def legend_entry(name: str, colour: str) -> str:
     """One entry of the legend below the player."""
     return f'<span><span class="key" style="background:{colour}"></span> {escape(name)}</span>'
 
 
-def _file(name: str) -> str:
+def page_file(name: str) -> str:
     """The text of a file beside this module."""
     return files("kinetree.tasks.results.page").joinpath(name).read_text(encoding="utf-8")

@@ -54,6 +54,7 @@ def scene(
     intervals: Intervals,
     limits: Limits,
     up: int = 1,
+    axes: Floats | None = None,
 ) -> Scene:
     """The moving body, reduced to what a page can hold.
 
@@ -61,10 +62,11 @@ def scene(
 
     alignments, projections, meshes : by source frame number
     up                              : axis that points up, see `view`
+    axes                            : directions of the view, as `view` gives them; None for those of these meshes
     """
     selected_frames = evenly_spread(len(skeleton.frames), limits.frames)
     frames = [skeleton.frames[t] for t in selected_frames]
-    axes = view([meshes[frame].vertices for frame in frames], up)
+    axes = view([meshes[frame].vertices for frame in frames], up) if axes is None else axes
     selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
     inputs = _coarse_inputs([meshes[f] for f in frames], [projections[f] for f in frames], skeleton, limits.input_vertices)
