@@ -31,7 +31,8 @@ def _methods(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def computed(out: Path, method: str, **blocks: Any) -> str:
     config = {"output": str(out), "method": method, "source": {"synth": SYNTH}, "compute": {"executor": "sync"}, **blocks}
-    assert Pipeline.of(config, methods=METHODS).run()["status"] == "done"
+    summary = Pipeline.of(config, methods=METHODS).run()
+    assert summary["status"] == "done", summary["failures"]
     return str(out)
 
 
@@ -58,11 +59,11 @@ def test_tables_say_what_each_run_found_and_in_what_they_differ(runs: tuple[str,
     assert result.exit_code == 0, result.exception
     rows = {line.split("  ")[0]: line.split() for line in result.output.splitlines()}
     scored = rows["joints found"][-1]
-    assert rows["joints found"][2:] == [scored, "of", scored, str(int(scored) - 3), "of", scored]
+    assert rows["joints found"][2:] == [scored, "of", scored, str(int(scored) - 1), "of", scored]
     assert rows["frames"][1:] == ["4", "4"]
     assert rows["method"][1:] == ["mesoscopic", "one-armed"]
     assert rows["mesh.merge"][1:] == ["1e-07", "1e-06"]
-    assert "true joints found by A alone: shoulder_r, elbow_r, wrist_r" in result.output
+    assert "true joints found by A alone: shoulder_r" in result.output
     assert "only in A: shoulder_r (nearest" in result.output
     assert "only in B" not in result.output
     assert "each is the nearest of its kind to the other" in result.output
@@ -121,7 +122,7 @@ def test_what_cannot_be_compared_is_refused_in_words(runs: tuple[str, str], tmp_
     unfinished = refused(runs[0], config)
     assert isinstance(unfinished, UnknownNodeError)
     assert str(unfinished).startswith(f"{config} is not finished: ")
-    fewer = computed(tmp_path / "fewer", "mesoscopic", source={"synth": SYNTH, "frames": ":3"})
+    fewer = computed(tmp_path / "fewer", "mesoscopic", source={"synth": {**SYNTH, "frames": 3}})
     assert "has 4 frames, 0 to 3 and" in str(refused(runs[0], fewer))
     assert "compute one of them again with --frames" in str(refused(runs[0], fewer))
     finer = computed(tmp_path / "finer", "mesoscopic", source={"synth": {**SYNTH, "vertices": 700}})

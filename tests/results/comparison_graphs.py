@@ -19,7 +19,8 @@ from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.evaluation.body import blended_skin
 
-LIMB = ("shoulder_r", "elbow_r", "wrist_r", "hand_r")
+LIMB = ("shoulder_r", "hand_r")
+"""What a human of a few frames has of an arm: its elbow and wrist turn too little to be scored."""
 
 
 @task(over="frame")
@@ -66,6 +67,7 @@ def without(skeleton: Skeleton, *names: str) -> Skeleton:
     )  # fmt: skip
 
 
+@task()
 def skeleton(source: Mapping[int, Source]) -> Skeleton:
     """The truth without an arm."""
     return without(perfect(next(iter(source.values())).recipe or generated()), *LIMB)
@@ -73,4 +75,4 @@ def skeleton(source: Mapping[int, Source]) -> Skeleton:
 
 SHOWN = (alignment, intervals, leaves, up_direction)
 WHOLE = Graph.of((*true_skeleton_graph.GRAPH.tasks, *SHOWN))
-ONE_ARMED = Graph.of((*(t for t in true_skeleton_graph.GRAPH.tasks if t.name != "skeleton"), task()(skeleton), *SHOWN))
+ONE_ARMED = Graph.of((*(t for t in true_skeleton_graph.GRAPH.tasks if t.name != "skeleton"), skeleton, *SHOWN))
