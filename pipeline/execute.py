@@ -21,6 +21,7 @@ from kinetree.pipeline.memory import peak_bytes, reset_peak
 from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
+from kinetree.pipeline.threads import blas, limited
 from kinetree.schemas.array import Artifact, Index
 
 LIBRARIES = ("kinetree", "numpy", "scipy", "numba", "trimesh", "zarr", "dask", "pydantic")
@@ -150,7 +151,8 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         values["params"] = task.params.model_validate(step.params)
     if task.asks_index:
         values["index"] = _asked_index(task, step)
-    artifact = task(**values)
+    with limited(task.threads):
+        artifact = task(**values)
     if type(artifact) is not task.returns:
         raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
     digest, size = bench.store.publish(artifact)
@@ -169,7 +171,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         peak_bytes=peak_bytes(),
         host=socket.gethostname(),
         created=datetime.now(UTC).isoformat(timespec="milliseconds"),
-        versions=versions(),
+        versions={**versions(), "blas": blas()},
         asks_index=task.asks_index,
     )
     bench.store.write(record)

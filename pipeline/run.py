@@ -22,8 +22,6 @@ from kinetree.pipeline.parcels import steps_of
 from kinetree.pipeline.schedule import DONE, Entry, Schedule
 from kinetree.pipeline.sight import Sight
 
-RETRIES = 1
-"""How often a node is tried again, alone, after dask gave it up because its workers died."""
 LOOK_AGAIN = 0.1
 """Seconds after which the run looks for new workers, and again for a record that was not there."""
 
@@ -138,7 +136,7 @@ class _Loop:
         for entry in rest:
             self.schedule.put_back(entry.node)
         self._lost[first.node] += 1
-        if isinstance(error, LostWorkerError) and self._lost[first.node] <= RETRIES:
+        if isinstance(error, LostWorkerError) and self._lost[first.node] <= first.task.retries:
             self._suspects.append(first)
         else:
             self._tell_all([first], [Result("failed", error=type(error).__name__, message=str(error) or repr(error))])
@@ -180,7 +178,8 @@ class _Loop:
 
     def _submit(self, parcel: list[Entry]) -> None:
         number, first = next(self._numbers), parcel[0]
-        name = f"{first.node.task}-{'-'.join(map(str, first.node.at))}-{(first.key or '')[:8]}-{number}"
+        tasks = "+".join(dict.fromkeys(entry.node.task for entry in parcel))
+        name = f"{tasks}-{'-'.join(map(str, first.node.at))}-{(first.key or '')[:8]}-{number}"
         future = self.launch.submit(name, self.schedule.store.url, steps_of(self.schedule, parcel), self.sight)
         self._parcels[number] = parcel
         self.out[number] = future

@@ -79,6 +79,10 @@ class Task(Generic[P, R]):
     """Whether it runs only when it is named."""
     asks_index: bool = False
     """Whether it is told its index, which then is part of its key."""
+    threads: int = 1
+    """How many threads its libraries use."""
+    retries: int = 1
+    """How often a node is tried again, alone, after dask gave it up because its workers died."""
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """The function itself."""
@@ -114,18 +118,30 @@ class Task(Generic[P, R]):
 
 
 def task(
-    *, over: str = "", along: type[Artifact] | None = None, on_request: bool = False
+    *,
+    over: str = "",
+    along: type[Artifact] | None = None,
+    on_request: bool = False,
+    threads: int = 1,
+    retries: int = 1,
 ) -> Callable[[Callable[P, R]], Task[P, R]]:
     """Declares a function as a task; see the module's docstring for what its signature says.
 
     over       : the fan-out, a path of dimensions; "" runs once
     along      : the artifact class whose `previous` orders the traversal, for a task that reads at the previous member
     on_request : whether a run leaves it out unless it is named, or something that reads it
+    threads    : how many threads its libraries (BLAS, OpenMP, numba) use; more than one has a process to itself
+    retries    : how often a node is tried again, alone, after dask gave it up because its workers died; an error of the task
+                 is never tried again
     raises     : GraphError, at import, where the signature does not say enough
     """
 
     def declare(function: Callable[P, R]) -> Task[P, R]:
-        return replace(_declared(function, over, along, is_origin=False), on_request=on_request)
+        declared = _declared(function, over, along, is_origin=False)
+        if threads < 1 or retries < 0:
+            what = f"threads is {threads} and retries is {retries}"
+            raise GraphError(f"{declared.name} ({declared.where}): {what}; expected at least 1 and 0")
+        return replace(declared, on_request=on_request, threads=threads, retries=retries)
 
     return declare
 

@@ -174,7 +174,7 @@ def test_a_long_chain_needs_no_stack(toys):
 
 def test_frames_travel_whole_and_the_deepest_go_first(toys):
     """With one parcel out at a time, a frame's nodes are sent together, not task by task."""
-    sent = []
+    sent, names = [], []
     schedule = toys.pipeline().schedule(until=["smooth"])
     schedule.store.create()
 
@@ -183,6 +183,7 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
 
         from kinetree.pipeline.execute import execute
 
+        names.append(name.partition("-")[0])
         sent.append([step.label for step in steps])
         return SynchronousExecutor().submit(execute, url, steps, sight)
 
@@ -190,3 +191,4 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
 
     run(schedule, Launcher(submit, 1), Watch())
     assert sent == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]
+    assert set(names) == {"points+smooth"}

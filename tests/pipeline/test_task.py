@@ -282,3 +282,9 @@ def test_worker_finds_a_task_by_its_name():
     assert (found.name, found.module) == ("mesh", "kinetree.tasks.input.mesh")
     with pytest.raises(GraphError, match=r"^kinetree\.tasks\.input\.mesh:clean is not a task$"):
         load("kinetree.tasks.input.mesh:clean")
+
+
+def test_threads_and_retries_that_make_no_sense_are_refused():
+    for limits in ({"threads": 0}, {"retries": -1}):
+        with pytest.raises(GraphError, match=r"expected at least 1 and 0"):
+            task(over="street/house", **limits)(house.function)
