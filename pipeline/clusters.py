@@ -3,23 +3,31 @@
 import asyncio
 import concurrent.futures
 import contextlib
+import importlib
+import json
 import logging
 import signal
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
-from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin
+from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, performance_report
 
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
+from kinetree.pipeline.config import Compute
 
 CONNECT_SECONDS = 10
+FOLLOW_SECONDS = 0.25
+"""How often the scheduler is asked for its workers."""
 
 
 @contextlib.contextmanager
 def local(workers: int, memory: str | None) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends."""
-    with _quiet(), contextlib.ExitStack() as stack:
+    with contextlib.ExitStack() as stack:
         cluster = stack.enter_context(
             LocalCluster(
                 n_workers=workers,
@@ -40,26 +48,123 @@ def local(workers: int, memory: str | None) -> Iterator[Client]:
 
 
 @contextlib.contextmanager
-def at(address: str) -> Iterator[Client]:
-    """A scheduler that somebody else runs; raises ClusterError where nobody answers or it has no workers."""
-    with _quiet():
-        yield from _at(address)
+def connected(compute: Compute, client: Client | None = None) -> Iterator[Client]:
+    """The client handed in, or one of the cluster that the configuration names; raises ClusterError, ConfigError."""
+    with _quiet(), contextlib.ExitStack() as stack:
+        if client is None and (compute.scheduler or compute.scheduler_file):
+            client = stack.enter_context(at(compute))
+        elif client is None and compute.cluster:
+            client = stack.enter_context(started(compute))
+        elif client is None:
+            client = stack.enter_context(local(compute.worker_count, compute.memory))
+        if compute.performance_report is not None:
+            if find_spec("bokeh") is None:
+                raise ConfigError("--performance-report: bokeh is not installed; pip install 'kinetree[cluster]'")
+            stack.enter_context(client.as_current())
+            stack.enter_context(performance_report(filename=compute.performance_report))
+        yield client
 
 
-def _at(address: str) -> Iterator[Client]:
+@contextlib.contextmanager
+def at(compute: Compute) -> Iterator[Client]:
+    """A scheduler that somebody else runs; raises ClusterError where nobody answers."""
+    asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
     try:
+        address = compute.scheduler or json.loads(Path(str(compute.scheduler_file)).read_text())["address"]
         client = Client(address, timeout=CONNECT_SECONDS)
-    except ValueError as error:
-        raise ConfigError(f"--scheduler {address}: not an address ({error}); expected one such as tcp://host:8786") from None
+    except (ValueError, KeyError) as error:
+        raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
     except (OSError, TimeoutError) as error:
         raise ClusterError(
-            f"--scheduler {address}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
-            " check the address and that the scheduler runs (dask scheduler), or leave --scheduler out"
+            f"{asked}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
+            " check the address and that the scheduler runs (dask scheduler), or leave the option out"
         ) from error
     with client:
-        if not client.scheduler_info()["workers"]:
-            raise ClusterError(f"--scheduler {address}: the scheduler has no workers; start some (dask worker {address})")
         yield client
+
+
+@contextlib.contextmanager
+def started(compute: Compute) -> Iterator[Client]:
+    """Workers that a class of the configuration starts, gone when the block ends."""
+    with contextlib.ExitStack() as stack:
+        cluster = stack.enter_context(cluster_of(compute))
+        if compute.adapt is not None:
+            cluster.adapt(minimum=compute.adapt[0], maximum=compute.adapt[1])
+        else:
+            cluster.scale(compute.workers or 1)
+        yield stack.enter_context(Client(cluster))
+
+
+def cluster_of(compute: Compute) -> Any:
+    """The cluster that a configuration names by class and options; raises ConfigError, ClusterError."""
+    module, _, name = str(compute.cluster).partition(":")
+    try:
+        made = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise ConfigError(f"compute.cluster {compute.cluster}: {error}; pip install 'kinetree[cluster]'") from None
+    try:
+        return made(**compute.options)
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"compute.options: {compute.cluster} refuses them: {error}") from None
+    except (OSError, RuntimeError) as error:
+        raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
+
+
+@dataclass
+class Workers:
+    """How many workers and threads there are, asked for in the background."""
+
+    patience: float
+    """Seconds without any worker after which a run gives up."""
+    count: int = 0
+    threads: int = 0
+    _seen: float = field(default_factory=time.monotonic)
+
+    def hear(self, threads: Mapping[str, int]) -> None:
+        """Threads by worker, as the scheduler knows them now."""
+        self.count, self.threads = len(threads), sum(threads.values())
+        if self.count:
+            self._seen = time.monotonic()
+
+    def check(self) -> None:
+        """Raises ClusterError where there was no worker for too long."""
+        if time.monotonic() - self._seen > max(self.patience, 2 * FOLLOW_SECONDS):
+            raise ClusterError(
+                f"no worker for {self.patience:g} s; start some (dask worker ADDRESS), or give a queue more time"
+                " (--wait-workers N,SECONDS)"
+            )
+
+
+@contextlib.contextmanager
+def followed(client: Client, compute: Compute) -> Iterator[Workers]:
+    """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not."""
+    wanted, seconds = compute.wanted_workers
+    workers = Workers(seconds)
+    following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
+    try:
+        until = time.monotonic() + seconds
+        while workers.count < wanted:
+            if time.monotonic() > until:
+                raise ClusterError(
+                    f"--wait-workers {wanted}: {workers.count} workers are there after {seconds:g} s; start more, or wait"
+                    " longer (--wait-workers N,SECONDS)"
+                )
+            time.sleep(0.05)
+        yield workers
+    finally:
+        following.cancel()
+
+
+async def _follow(client: Client, workers: Workers) -> None:
+    while True:
+        with contextlib.suppress(OSError, TimeoutError):  # a scheduler that does not answer is the client's to notice
+            workers.hear(await client.scheduler.ncores())
+        await asyncio.sleep(FOLLOW_SECONDS)
+
+
+def dashboard(client: Client) -> str:
+    """Address of the dashboard; empty where its scheduler has none."""
+    return str(client.dashboard_link or "") if find_spec("bokeh") is not None else ""
 
 
 @dataclass(frozen=True)
@@ -95,11 +200,6 @@ class Remote:
     def cancel(self) -> None:
         """Takes it back where it has not begun."""
         self.future.cancel()
-
-
-def slots(client: Client) -> int:
-    """How many parcels the workers compute at the same time."""
-    return max(1, sum(int(n) for n in client.nthreads().values()))
 
 
 class _Deaf(WorkerPlugin):  # type: ignore[misc]

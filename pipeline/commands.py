@@ -52,6 +52,22 @@ def run(
         str | None,
         typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a dask scheduler that runs at this address."),
     ] = None,
+    scheduler_file: Annotated[
+        Path | None,
+        typer.Option("--scheduler-file", metavar="FILE", help="The same, for a scheduler that wrote its address to this file."),
+    ] = None,
+    wait_workers: Annotated[
+        str | None,
+        typer.Option(
+            "--wait-workers",
+            metavar="N[,SECONDS]",
+            help="Begin when N workers are there; give up after SECONDS without them, or without any (300).",
+        ),
+    ] = None,
+    performance_report: Annotated[
+        Path | None,
+        typer.Option("--performance-report", metavar="FILE", help="Write dask's report on the run, a page of HTML."),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")] = False,
     log_json: Annotated[
         Path | None,
@@ -67,7 +83,15 @@ def run(
     from kinetree.pipeline.inspect import Pipeline
 
     pipeline = pipeline_of(config, output, store, sets)
-    compute = configuration.with_compute(pipeline.config, workers=workers, executor=executor, scheduler=scheduler)
+    files = {"scheduler_file": scheduler_file, "performance_report": performance_report}
+    compute = configuration.with_compute(
+        pipeline.config,
+        workers=workers,
+        executor=executor,
+        scheduler=scheduler,
+        wait_workers=wait_workers,
+        **{name: str(file.absolute()) for name, file in files.items() if file is not None},
+    )
     chosen = {"until": until, "force": force, "made_with": made_with}
     compute_and_report(Pipeline.of(compute), **chosen, quiet=quiet, log_json=log_json, as_json=as_json)
 

@@ -25,6 +25,10 @@ M = TypeVar("M", bound=BaseModel)
 RUN_KEYS = ("extends", "method", "output", "store", "compute")
 
 
+WAIT_SECONDS = 300.0
+"""How long a run goes on without any worker."""
+
+
 class Compute(BaseModel):
     """Where and how wide a run is computed; never part of a key."""
 
@@ -38,6 +42,19 @@ class Compute(BaseModel):
     """Memory limit of one worker process, e.g. 4GB; None sets none."""
     scheduler: str | None = Field(default=None, min_length=1)
     """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
+    scheduler_file: str | None = Field(default=None, min_length=1)
+    """File in which a running dask scheduler left its address; takes precedence over executor."""
+    wait_workers: str | None = Field(default=None, pattern=r"^[1-9][0-9]*(,[0-9]+(\.[0-9]+)?)?$")
+    """Workers to wait for before anything is computed, and for how many seconds at most, e.g. 4,600; default: as they come, and
+    300 s without any before the run gives up."""
+    cluster: str | None = Field(default=None, pattern=r"^[\w.]+:\w+$")
+    """Class that starts workers, as module:class, e.g. dask_jobqueue:SLURMCluster; takes precedence over executor."""
+    options: dict[str, Any] = {}
+    """What that class is called with."""
+    adapt: tuple[int, int] | None = None
+    """Fewest and most workers of that class, which come and go with the work; None takes as many as `workers` says."""
+    performance_report: str | None = Field(default=None, exclude=True)
+    """File for dask's own report on a run."""
 
     @field_validator("memory")
     @classmethod
@@ -45,6 +62,17 @@ class Compute(BaseModel):
         if size is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", size):
             raise ValueError("expected a size such as 4GB or 512MiB")
         return size
+
+    @property
+    def is_cluster(self) -> bool:
+        """Whether nodes are computed by workers of dask and not in this process."""
+        return self.executor == "processes" or any((self.scheduler, self.scheduler_file, self.cluster))
+
+    @property
+    def wanted_workers(self) -> tuple[int, float]:
+        """Workers to wait for, and seconds to wait for them or for any."""
+        count, _, seconds = (self.wait_workers or "0").partition(",")
+        return int(count), float(seconds or WAIT_SECONDS)
 
     @property
     def worker_count(self) -> int:
@@ -147,7 +175,8 @@ def with_compute(config: Config, **changes: Any) -> Config:
     """The configuration with some of its compute settings replaced; None leaves one as it is."""
     given = {k: v for k, v in changes.items() if v is not None}
     if "executor" in given:
-        given.setdefault("scheduler", None)  # a scheduler that only the file names gives way to what is asked for now
+        given.update({name: given.get(name) for name in ("scheduler", "scheduler_file", "cluster")})
+        # a scheduler that only the file names gives way to what is asked for now
     return replace(config, compute=checked(Compute, {**config.compute.model_dump(), **given}, "compute"))
 
 

@@ -31,6 +31,10 @@ class Watch:
         self.layout(entries)
         self.fresh(e for e in entries if e.state == "fresh" and not e.task.is_origin)
 
+    def dashboard(self, link: str) -> None:
+        """Dask shows what its workers do on a page."""
+        self._tell("dashboard", link=link)
+
     def layout(self, nodes: Iterable[Entry]) -> None:
         """More of the graph is known: how many nodes each task has by now."""
         self._tell("layout", totals=dict(Counter(e.node.task for e in nodes if not e.task.is_origin)))

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from dask.local import SynchronousExecutor
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.execute import Step, execute
 from kinetree.pipeline.sight import Sight
@@ -29,49 +30,59 @@ class Future(Protocol):
         """Takes it back where it has not begun."""
 
 
+def _nothing() -> None:
+    """Nothing is to be looked after in this process."""
+
+
 @dataclass(frozen=True)
 class Launcher:
     """Where parcels go: `submit(name, store_url, steps, sight)` gives a future of their results."""
 
     submit: Callable[[str, str, tuple[Step, ...], Sight], Future]
-    window: int
-    """How many parcels may be out at once: enough that no worker waits, few enough that the deepest go first."""
+    window: Callable[[], int]
+    """How many parcels may be out now: enough that no worker waits, few enough that the deepest go first."""
     is_apart: bool = True
     """Whether nodes run elsewhere than in the thread that runs the loop."""
     is_elsewhere: bool = False
     """Whether nodes run in other processes than the one that runs the loop."""
+    look_after: Callable[[], None] = _nothing
+    """Called now and then; raises ClusterError where nobody computes any more."""
+    dashboard: str = ""
+    """Address of dask's dashboard; empty where there is none."""
 
 
 @contextlib.contextmanager
 def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
     """The launcher that a configuration asks for, or one on a `distributed.Client` handed in."""
+    if client is not None or compute.is_cluster:
+        from kinetree.pipeline import clusters
+
+        with clusters.connected(compute, client) as found, clusters.followed(found, compute) as workers:
+            yield _on_client(found, workers, compute)
+        return
+    if compute.performance_report is not None:
+        raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")
     with contextlib.ExitStack() as stack:
-        if client is None and compute.scheduler:
-            from kinetree.pipeline import clusters
-
-            client = stack.enter_context(clusters.at(compute.scheduler))
-        elif client is None and compute.executor == "processes":
-            from kinetree.pipeline import clusters
-
-            client = stack.enter_context(clusters.local(compute.worker_count, compute.memory))
-        if client is not None:
-            yield _on_client(client)
-        elif compute.executor == "threads":
+        if compute.executor == "threads":
             pool = ThreadPoolExecutor(compute.worker_count)
             # an interrupted run does not wait for nodes that may take minutes: what they publish is whole or nothing
             stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-            yield Launcher(lambda _, *work: pool.submit(execute, *work), 2 * compute.worker_count)
+            yield Launcher(lambda _, *work: pool.submit(execute, *work), lambda: 2 * compute.worker_count)
         else:
             here = SynchronousExecutor()
-            yield Launcher(lambda _, *work: here.submit(execute, *work), 1, is_apart=False)
+            yield Launcher(lambda _, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
 
 
-def _on_client(client: Any) -> Launcher:
+def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:
     from kinetree.pipeline import clusters
 
     run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
+    expected = compute.workers or 1
 
     def submit(name: str, url: str, steps: tuple[Step, ...], sight: Sight) -> Future:
         return clusters.Remote.of(client, client.submit(execute, url, steps, sight, key=f"{name}-{run}", pure=False))
 
-    return Launcher(submit, 3 * clusters.slots(client), is_elsewhere=True)
+    def window() -> int:
+        return 3 * max(expected, int(workers.threads))
+
+    return Launcher(submit, window, is_elsewhere=True, look_after=workers.check, dashboard=clusters.dashboard(client))

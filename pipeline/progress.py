@@ -87,6 +87,8 @@ class LiveProgress:
 
     def hear(self, event: dict[str, Any]) -> None:
         """Counts an event; the table redraws itself."""
+        if event["event"] == "dashboard":
+            self._live.console.print(f"dashboard: {event['link']}", markup=False, highlight=False, soft_wrap=True)
         self._rows.hear(event)
 
     def _table(self) -> Table:
@@ -119,6 +121,8 @@ class PlainProgress:
     def hear(self, event: dict[str, Any]) -> None:
         """Counts an event and prints what is worth a line."""
         self._rows.hear(event)
+        if event["event"] == "dashboard":
+            self._say(f"dashboard: {event['link']}")
         if event["event"] == "failed":
             self._say(f"{event['node']}: failed: {event['message']}")
         if event["event"] == "finish":

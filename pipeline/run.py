@@ -32,6 +32,8 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
     raises : StoreError, ClusterError where going on makes no sense; KeyboardInterrupt; either way the store is whole
     """
     forget_reads()
+    if launch.dashboard:
+        watch.dashboard(launch.dashboard)
     loop = _Loop(schedule, launch, watch, Sight.of(schedule.store))
     try:
         with _interruptible(loop):
@@ -89,13 +91,13 @@ class _Loop:
     def send(self) -> bool:
         """Sends ready nodes while the window has room; True if any went."""
         sent = False
-        for entry in self.schedule.ready() if len(self.out) < self.launch.window else ():
+        for entry in self.schedule.ready() if len(self.out) < self.launch.window() else ():
             if entry.key in self._twins:
                 self._twins[entry.key].append(entry.node)
                 continue
             self._send(entry)
             sent = True
-            if len(self.out) >= self.launch.window:
+            if len(self.out) >= self.launch.window():
                 break
         if self._suspects and not self.out:
             self._submit([self._suspects.popleft()])
@@ -110,6 +112,7 @@ class _Loop:
         """Waits for one parcel, for a while, and tells the schedule what became of it."""
         if self.launch.is_elsewhere and time.monotonic() > self._look_at:
             self.sight.confirm(self.schedule.store)
+            self.launch.look_after()
             self._look_at = time.monotonic() + LOOK_AGAIN
         try:
             number, future = self._done.get(timeout=LOOK_AGAIN if self.launch.is_elsewhere else None)

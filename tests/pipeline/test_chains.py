@@ -189,6 +189,6 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
 
     from kinetree.pipeline.events import Watch
 
-    run(schedule, Launcher(submit, 1), Watch())
+    run(schedule, Launcher(submit, lambda: 1), Watch())
     assert sent == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]
     assert set(names) == {"points+smooth"}

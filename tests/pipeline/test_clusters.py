@@ -1,0 +1,98 @@
+"""Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
+
+import json
+import time
+
+import pytest
+from distributed import Client, LocalCluster
+
+from kinetree.errors import ClusterError, ConfigError
+from kinetree.pipeline import clusters
+from kinetree.pipeline.clusters import Workers, cluster_of
+from kinetree.pipeline.config import Compute
+from kinetree.pipeline.inspect import Pipeline
+
+NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+
+
+@pytest.fixture
+def empty(toys):
+    """A cluster that has no worker yet."""
+    with LocalCluster(**NONE) as cluster:
+        yield cluster
+
+
+def test_workers_that_come_late_are_waited_for_and_found_by_a_scheduler_file(toys, empty, tmp_path):
+    file = tmp_path / "scheduler.json"
+    file.write_text(json.dumps({"address": empty.scheduler_address}))
+    process = toys.start("run", str(toys.yaml()), "--scheduler-file", str(file), "--quiet")
+    toys.until(lambda: (toys.output / "store" / "tmp").exists() and toys.pipeline().runs(), "the run begins", process)
+    assert toys.executions() == []
+    empty.scale(1)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert len(toys.executions()) == 40
+
+
+def test_without_workers_a_run_gives_up_with_3_and_says_so(toys, empty):
+    where = ("--scheduler", empty.scheduler_address, "--wait-workers", "1,0.5")
+    done = toys.command("run", str(toys.yaml()), *where, "--quiet")
+    assert done.returncode == 3
+    assert "--wait-workers 1: 0 workers are there after 0.5 s" in done.stderr
+    assert toys.executions() == []
+
+
+def test_workers_that_all_go_away_end_the_run_in_words():
+    workers = Workers(patience=0.0)
+    workers.hear({"a": 1, "b": 2})
+    assert (workers.count, workers.threads) == (2, 3)
+    workers.check()
+    workers._seen = time.monotonic() - 60
+    with pytest.raises(ClusterError, match="no worker for 0 s"):
+        workers.check()
+
+
+def test_the_window_follows_the_threads_that_live(toys, empty):
+    from kinetree.pipeline.launch import launcher
+
+    with Client(empty) as client, launcher(Compute(executor="processes"), client) as launch:
+        assert launch.window() >= 3
+        before = launch.window()
+        empty.scale(2)
+        toys.until(lambda: launch.window() == 2 * before or launch.window() == 6, "the window grows")
+
+
+def test_a_cluster_is_named_by_class_and_options(toys, tmp_path):
+    options = {**NONE, "processes": False}
+    compute = {"cluster": "distributed:LocalCluster", "options": options, "workers": 1}
+    assert toys.run(until=("smooth",), compute=compute).told["status"] == "done"
+    with pytest.raises(ConfigError, match="compute.cluster nowhere:Cluster: No module named 'nowhere'"):
+        cluster_of(Compute(cluster="nowhere:Cluster"))
+
+
+def test_the_preset_for_slurm_asks_the_queue_for_what_it_says():
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    compute = Pipeline.of({"compute": "slurm"}).config.compute
+    cluster = cluster_of(compute)
+    try:
+        assert isinstance(cluster, jobqueue.SLURMCluster)
+        script = cluster.job_script()
+        assert "#SBATCH --cpus-per-task=8" in script
+        assert "#SBATCH -t 04:00:00" in script
+        assert "--nworkers 8" in script
+        with pytest.raises(ConfigError, match="compute.options: dask_jobqueue:SLURMCluster refuses them"):
+            cluster_of(compute.model_copy(update={"options": {"nonsense": 1}}))
+    finally:
+        cluster.close()
+
+
+def test_an_address_that_is_none_is_the_users_to_mend(toys, tmp_path):
+    (tmp_path / "scheduler.json").write_text("{}")
+    with pytest.raises(ConfigError, match="--scheduler-file .*: not an address"):
+        toys.run(compute={"scheduler_file": str(tmp_path / "scheduler.json")})
+    assert clusters.CONNECT_SECONDS > 0
+
+
+def test_a_report_of_dask_needs_workers(toys, tmp_path):
+    with pytest.raises(ConfigError, match="--performance-report: dask reports on workers"):
+        toys.run(compute={"executor": "threads", "performance_report": str(tmp_path / "report.html")})
