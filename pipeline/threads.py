@@ -54,12 +54,14 @@ _limit = _Limit()
 def limited(threads: int = 1) -> Iterator[None]:
     """Inside the block BLAS, OpenMP and numba use so many threads per task in this process."""
     _limit.enter(threads)
-    own = _controller(len(sys.modules)).select(user_api="openmp").limit(limits=threads)
     try:
-        _limit_numba(threads)
-        yield
+        _limit_numba(threads)  # first, since it may load OpenMP
+        own = _controller(len(sys.modules)).select(user_api="openmp").limit(limits=threads)
+        try:
+            yield
+        finally:
+            own.restore_original_limits()
     finally:
-        own.restore_original_limits()
         _limit.leave()
 
 
