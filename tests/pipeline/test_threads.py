@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
-from kinetree.pipeline.store import Store
 from kinetree.pipeline.threads import blas, limited
 
 MATRIX = np.random.default_rng(0).normal(size=(4, 4))
@@ -96,7 +95,8 @@ def test_a_task_has_one_thread_wherever_it_is_computed(toys, executor, monkeypat
 
 def test_the_instruction_set_of_blas_is_on_record(toys):
     toys.run(until=("smooth",))
-    (record, *_) = Store.at(toys.output / "store").records()
+    schedule = toys.pipeline().schedule(until=["smooth"])
+    (record, *_) = [entry.record for entry in schedule.entries.values() if entry.record is not None]
     assert record.versions["blas"] == blas()
     assert "openblas" in blas()
 
