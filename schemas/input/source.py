@@ -18,7 +18,7 @@ class SourceParams(Params):
     synth: SynthParams | None = None
     """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"
-    """The frames wanted, as start:stop:step over the sequence's own numbering, e.g. 10:60:2."""
+    """The frames wanted, as start:stop:step over the numbers of the frames, which are those in the files' names: 10:60:2."""
 
 
 class Source(Artifact):
@@ -40,6 +40,8 @@ class Source(Artifact):
     """The files that calibrate the cameras of silhouettes."""
     masks: Annotated[tuple[str, ...], Location()] = ()
     """The mask of every camera in the calibration's order, empty where a camera has none; one npz may hold all."""
+    series: Annotated[tuple[int, int], Location()] = (0, 0)
+    """First and last frame number of the whole series; a truth without frame numbers is held against them."""
     fps: float | None = None
     """Frames a second as the file states it; None where it does not."""
     unit: str | None = None

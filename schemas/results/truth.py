@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params, PathLike
 from kinetree.schemas.dims import FRAME, JOINT, VERTEX, XYZ
@@ -16,6 +17,9 @@ class TruthParams(Params):
     """A truth.json as kinetree synth writes it, the skeleton.json of another run, or a BVH; empty: no evaluation."""
     body: Annotated[str, PathLike()] = ""
     """An npz of the true body with skinning weights, from which the true part of every vertex is known; empty: none."""
+    first: int | None = Field(default=None, ge=0)
+    """Number of the frame that the truth begins with, where its file does not number frames; None: the sequence's first if
+    both have as many frames, else 0."""
     unit: str | None = None
     """Unit of the truth's coordinates where its file has none, e.g. cm; None: the sequence's unit."""
 
@@ -27,6 +31,8 @@ class Truth(Artifact):
     """Name of the file, for messages; synth for a generated sequence; empty where there is no truth."""
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
+    numbered: bool = False
+    """Whether the numbers are stated; else they are 0, 1, 2, … until they are held against the sequence."""
     fps: float | None
     """Frames a second; None where not known."""
     unit: str | None

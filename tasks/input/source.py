@@ -14,10 +14,11 @@ from kinetree.pipeline.key import array_digest, digest, file_digest
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
-from kinetree.schemas.input.source import Source, SourceParams
+from kinetree.schemas.input.source import Kind, Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
+from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers, selected_frames
 from kinetree.tasks.numerics.input.input_kind import input_kind
 from kinetree.tasks.numerics.input.silhouettes import mask_files, read_masks, read_packed_masks
 from kinetree.tasks.numerics.input.source import (
@@ -26,7 +27,6 @@ from kinetree.tasks.numerics.input.source import (
     mesh_files,
     read_npz,
     refuse_unreadable,
-    selected_frames,
     written,
 )
 from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
@@ -44,45 +44,45 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     return _chosen(_found(params.input, files), params.frames, params.input)
 
 
-def _found(where: str, files: Files) -> list[Source]:
-    """Every frame at a path, a pattern or in a packed sequence."""
+def _found(where: str, files: Files) -> dict[int, Source]:
+    """Every frame at a path, a pattern or in a packed sequence, by number."""
     path = written(Path(where))
     if _is_zarr(path):
-        return _packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)
+        return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
     kind, found = input_kind(where)
     if kind == "silhouettes":
         return _silhouettes(path, files)
     if kind == "packed silhouettes":
-        return _packed_silhouettes([written(p) for p in found], files)
-    if kind == "volumes":
-        contents = files.digests([written(p) for p in found])
-        return [Source(content=c, path=str(p), kind="volume") for c, p in zip(contents, found, strict=True)]
-    if kind == "packed volumes":
-        return _packed_volumes(path, files)
-    if path.suffix == ".npz":
-        return _packed(path, "npz", files)
-    paths = [written(p) for p in mesh_files(where)]
+        return _numbered(_packed_silhouettes([written(p) for p in found], files), found)
+    if kind == "packed volumes" or (kind == "meshes" and path.suffix == ".npz"):
+        return dict(enumerate(_packed_volumes(path, files) if kind == "packed volumes" else _packed(path, "npz", files)))
+    paths = [written(p) for p in (found if kind == "volumes" else mesh_files(where))]
+    form: Kind = "volume" if kind == "volumes" else "file"
     contents = files.digests(paths)
-    return [Source(content=c, path=str(p)) for c, p in zip(contents, paths, strict=True)]
+    return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
 
 
-def _generated(written: str, frames: int) -> list[Source]:
+def _numbered(sources: Sequence[Source], paths: Sequence[Path]) -> dict[int, Source]:
+    """The frames of numbered files, by number."""
+    return dict(zip(frame_numbers(paths), sources, strict=True))
+
+
+def _generated(written: str, frames: int) -> dict[int, Source]:
     """Every frame of a synthetic sequence."""
     generated = body(written)
     unit, fps = generated.figure.unit, generated.fps
-    return [
-        Source(content=digest(["synth", written, t]), path="synth", part=t, kind="synth", recipe=written, fps=fps, unit=unit)
-        for t in range(frames)
-    ]
+    stated = {"path": "synth", "kind": "synth", "recipe": written, "fps": fps, "unit": unit}
+    return {t: Source(content=digest(["synth", written, t]), part=t, **stated) for t in range(frames)}
 
 
-def _chosen(sources: Sequence[Source], frames: str, where: str) -> dict[int, Source]:
-    """The frames wanted, by number."""
-    chosen = selected_frames(frames, len(sources), where)
+def _chosen(sources: Mapping[int, Source], frames: str, where: str) -> dict[int, Source]:
+    """The frames wanted, by number, each of which knows the first and last number of all."""
+    chosen = selected_frames(frames, list(sources), where)
     if len(chosen) < 2:
         held = f"frames {frames!r} selects" if len(sources) > 1 else f"{where}: there is"
         raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
-    return {frame: sources[frame] for frame in chosen}
+    series = min(sources), max(sources)
+    return {frame: sources[frame].model_copy(update={"series": series}) for frame in chosen}
 
 
 def surface(frame_source: Source) -> tuple[Floats, Ints]:
@@ -151,12 +151,12 @@ def name(frame_source: Source) -> str:
     return file if frame_source.part is None else f"{file}, frame {frame_source.part}"
 
 
-def _silhouettes(folder: Path, files: Files) -> list[Source]:
+def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
     """Every frame of a folder with a folder of images for every camera."""
     calibrated, calibration, contents = _calibrated(folder, files)
     frames = mask_files(folder, calibration)
     digests = dict(zip(paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths), strict=True))
-    return [
+    made = [
         Source(
             content=digest(["silhouettes", contents, [digests[p] if p else "" for p in masks]]),
             path=str(folder),
@@ -169,6 +169,8 @@ def _silhouettes(folder: Path, files: Files) -> list[Source]:
         )
         for number, masks in frames
     ]
+    numbers = [number for number, _ in frames]
+    return dict(zip(numbers if are_frame_numbers(numbers) else range(len(made)), made, strict=True))
 
 
 def _packed_silhouettes(found: Sequence[Path], files: Files) -> list[Source]:

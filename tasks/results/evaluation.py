@@ -32,7 +32,7 @@ from kinetree.tasks.numerics.results.evaluation.split_joints import SplitTree, s
 from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors, tree_edit_distance
 from kinetree.tasks.numerics.results.evaluation.tree_match import tree_match_distance
 from kinetree.tasks.numerics.results.units import unit_factor
-from kinetree.tasks.results.truth import synthetic, true_carriers
+from kinetree.tasks.results.truth import numbered, synthetic, true_carriers
 
 
 class Comparison(NamedTuple):
@@ -75,6 +75,7 @@ def evaluation(
         none = np.zeros(len(skeleton.frames))
         return Evaluation(truth="", frames=skeleton.frames, unit=skeleton.unit, height=0.0, joints=(), spurious=(),
                           true_frames=0, summary=None, error=none[:, None][:, :0], detection=none, distance=none)  # fmt: skip
+    truth = numbered(truth, source)
     compared = _comparison(skeleton, truth, params)
     rate, distance = (f(compared.X, compared.Y[:, _moving(truth)]) for f in (detection_rate, nearest_distance))
     of_frames_and_parts = {

@@ -73,7 +73,7 @@ def report(
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
-        warnings=warnings(skeleton, intervals, leaves, frame_confidence, alignment, mesh),
+        warnings=warnings(skeleton, sequence, intervals, leaves, frame_confidence, alignment, mesh),
         scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
         sections=[
             Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, structure_figures)),

@@ -3,6 +3,7 @@
 import re
 import zipfile
 import zlib
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -36,6 +37,22 @@ def truth(params: TruthParams, files: object) -> Truth:
 def synthetic(recipe: str) -> Truth:
     """The truth of a generated sequence, computed from the recipe of its frames."""
     return _artifact(truth_of_json(body(recipe).truth(), SYNTH), SYNTH, None)
+
+
+def numbered(truth: Truth, source: Mapping[int, Source]) -> Truth:
+    """The truth with the numbers of the sequence's frames; one whose file has no numbers begins with the sequence.
+
+    raises : InputError where it may begin elsewhere: the sequence does not begin with frame 0 and has another number of frames
+    """
+    first, last = next((frame.series for frame in source.values()), (0, 0))
+    if truth.numbered or not truth.frames or first == 0:
+        return truth
+    if len(truth.frames) != last - first + 1:
+        raise InputError(
+            f"{truth.source}: {len(truth.frames)} frames without numbers, but the sequence has frames {first} to {last};"
+            " set truth.first to the number of the truth's first frame, or give the file a list `frames`"
+        )
+    return truth.model_copy(update={"frames": tuple(range(first, last + 1)), "numbered": True})
 
 
 def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> tuple[Ints, Ints] | None:
@@ -84,13 +101,15 @@ def _artifact(motion: TrueMotion | None, source: str, params: TruthParams | None
     """The artifact of a motion; without joints where there is none."""
     if motion is None:
         motion = TrueMotion((), (), (), (), (), (), np.zeros((0, 0, 3)), None, None, None)
+    first = params.first if params is not None and not motion.numbered else None
     vertices: NDArray[np.float32] = np.zeros((len(motion.X), 0, 3), np.float32)
     carrier, end = np.zeros(0, np.int32), np.zeros(0, np.int32)
     if params is not None and params.body:
         vertices, carrier, end = _body(Path(params.body), motion)
     return Truth(
         source=source,
-        frames=motion.frames,
+        frames=motion.frames if first is None else tuple(range(first, first + len(motion.frames))),
+        numbered=motion.numbered or first is not None,
         fps=motion.fps,
         unit=motion.unit or (params.unit if params else None),
         height=motion.height,

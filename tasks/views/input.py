@@ -1,9 +1,31 @@
 """Views of the artifacts of the shelf `input`."""
 
+import math
+from itertools import pairwise
+
 from kinetree.pipeline.views import remarks_of
 from kinetree.schemas.input.connectivity import Connectivity, Odd
 from kinetree.schemas.input.hull import Hull
 from kinetree.schemas.input.isosurface import Isosurface
+from kinetree.schemas.input.sequence import Sequence
+
+NAMED_GAPS = 8
+"""Most gaps that one sentence names."""
+
+
+@remarks_of(Sequence)
+def sequence_remarks(sequence: Sequence) -> tuple[str, ...]:
+    """Names the frames that the numbering leaves out."""
+    steps = [b - a for a, b in pairwise(sequence.frames)]
+    step = math.gcd(*steps) or 1
+    gaps = [(a + step, b - step) for a, b in pairwise(sequence.frames) if b - a > step]
+    if not gaps:
+        return ()
+    count = sum((last - first) // step + 1 for first, last in gaps)
+    named = ", ".join(str(first) if first == last else f"{first} to {last}" for first, last in gaps[:NAMED_GAPS])
+    more = f" and {len(gaps) - NAMED_GAPS} more gaps" if len(gaps) > NAMED_GAPS else ""
+    are = "frame is" if count == 1 else "frames are"
+    return (f"{count} {are} missing: {named}{more}; the frames before and after a gap are taken as neighbours",)
 
 
 @remarks_of(Connectivity)

@@ -3,6 +3,7 @@
 import pytest
 
 from kinetree.errors import SourceError
+from kinetree.pipeline.views import remarks
 from kinetree.schemas.input.sequence import Sequence, SequenceParams
 from kinetree.schemas.input.source import Source
 from kinetree.tasks.input.sequence import sequence
@@ -38,3 +39,23 @@ def test_files_that_disagree_are_refused_with_the_key_that_settles_it():
 def test_rate_that_is_none_is_refused(fps):
     with pytest.raises(ValueError, match="fps"):
         SequenceParams(fps=fps)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ((0, 1, 2), ()),
+        ((0, 2, 4), ()),
+        ((5,), ()),
+        ((0, 1, 3), ("1 frame is missing: 2; the frames before and after a gap are taken as neighbours",)),
+        ((1, 3, 9, 11, 15), ("3 frames are missing: 5 to 7, 13; the frames before and after a gap are taken as neighbours",)),
+    ],
+)
+def test_frames_that_the_numbering_leaves_out_are_named(numbers, words):
+    assert remarks(Sequence(frames=numbers, fps=None, unit=None)) == words
+
+
+def test_many_gaps_are_counted():
+    (words,) = remarks(Sequence(frames=tuple(range(0, 90, 3)) + (88, 89), fps=None, unit=None))
+    assert words.startswith("58 frames are missing: 1 to 2, 4 to 5,")
+    assert "22 to 23 and 21 more gaps;" in words

@@ -76,9 +76,10 @@ PACKED = pytest.mark.parametrize(
 # ── folders and patterns ────────────────────────────────────────────────────────────────────────────────────────────
 
 
-def test_folder_is_frames_in_natural_order_numbered_from_zero(found, scans):
+def test_folder_is_frames_in_natural_order_with_the_numbers_of_their_names(found, scans):
     frames = found("scans")
-    assert list(frames) == [0, 1, 2, 3]
+    assert list(frames) == [1, 2, 9, 10]
+    assert {s.series for s in frames.values()} == {(1, 10)}
     assert [name(s) for s in frames.values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
     assert all((s.part, s.kind, s.fps, s.unit) == (None, "file", None, None) for s in frames.values())
 
@@ -91,7 +92,7 @@ def test_pattern_chooses_files(found, scans):
 
 @pytest.mark.parametrize(
     ("frames", "numbers"),
-    [(":", [0, 1, 2, 3]), ("1:3", [1, 2]), ("::2", [0, 2]), ("-2:", [2, 3]), ("1:99", [1, 2, 3]), (" 0 : 4 : 3 ", [0, 3])],
+    [(":", [1, 2, 9, 10]), ("1:3", [1, 2]), ("::2", [1, 9]), ("-2:", [9, 10]), ("2:99", [2, 9, 10]), (" 1 : 11 : 9 ", [1, 10])],
 )
 def test_chosen_frames_keep_their_numbers(found, scans, frames, numbers):
     whole, chosen = found("scans"), found("scans", frames)
@@ -103,15 +104,16 @@ def test_frame_is_its_bytes_whatever_its_name_age_and_folder(found, scans, tmp_p
     before = {t: artifact_digest(s) for t, s in found("scans").items()}
     os.utime(scans / "frame_1.off", (1, 1))
     shutil.copytree(scans, tmp_path / "moved")
-    (tmp_path / "moved" / "frame_1.off").rename(tmp_path / "moved" / "frame_0.off")
+    for t in (1, 2, 9, 10):
+        (tmp_path / "moved" / f"frame_{t}.off").rename(tmp_path / "moved" / f"walk_{t}.off")
     assert {t: artifact_digest(s) for t, s in found("moved").items()} == before
     (scans / "frame_2.off").write_text(off(7))
     after = {t: artifact_digest(s) for t, s in found("scans").items()}
-    assert [t for t in before if before[t] != after[t]] == [1]
+    assert [t for t in before if before[t] != after[t]] == [2]
 
 
 def test_surface_is_the_users_own_vertices_and_faces(found, scans):
-    vertices, faces = surface(found("scans")[1])
+    vertices, faces = surface(found("scans")[2])
     np.testing.assert_array_equal(vertices, V * 2)
     np.testing.assert_array_equal(faces, F)
 
@@ -120,15 +122,15 @@ def test_file_that_changes_between_planning_and_reading_is_refused(found, scans)
     frames = found("scans")
     (scans / "frame_2.off").write_text(off(3))
     with pytest.raises(SourceError, match=r"^frame_2\.off: the file changed while the run was under way; run again$"):
-        surface(frames[1])
-    surface(frames[0])
+        surface(frames[2])
+    surface(frames[1])
 
 
 def test_file_that_vanishes_between_planning_and_reading_is_refused(found, scans):
     frames = found("scans")
     (scans / "frame_2.off").unlink()
     with pytest.raises(MeshError, match=r"frame_2\.off: there is no such file"):
-        surface(frames[1])
+        surface(frames[2])
 
 
 def test_unreadable_file_fails_when_it_is_read_and_not_before(found, scans, monkeypatch):
@@ -143,10 +145,10 @@ def test_unreadable_file_fails_when_it_is_read_and_not_before(found, scans, monk
 
     monkeypatch.setattr(remembering, "file_digest", refuse)
     frames = found("scans")
-    assert frames[1].content == "unreadable: Permission denied"
+    assert frames[2].content == "unreadable: Permission denied"
     assert len(frames) == 4
     with pytest.raises(SourceError, match=r"frame_2\.off: the file changed"):
-        surface(frames[1])
+        surface(frames[2])
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
@@ -236,7 +238,7 @@ def test_frames_backwards_or_beyond_are_refused(found, scans):
     with pytest.raises(SourceError, match="the step must be positive; time runs forward"):
         found("scans", "::-1")
     with pytest.raises(SourceError, match="selects none of the 4 frames of"):
-        found("scans", "8:")
+        found("scans", "11:")
 
 
 def test_single_frame_is_refused_because_nothing_moves(found, scans):

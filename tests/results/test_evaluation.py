@@ -6,11 +6,12 @@ from results.true_skeletons import generated, observed, perfect
 
 from kinetree.errors import InputError
 from kinetree.pipeline import views
+from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.evaluation import EvaluationParams
 from kinetree.schemas.results.truth import TruthParams
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.formats.bvh import bvh
-from kinetree.tasks.results.truth import synthetic, truth
+from kinetree.tasks.results.truth import numbered, synthetic, truth
 
 RECIPE = generated()
 PERFECT = perfect(RECIPE)
@@ -215,6 +216,21 @@ def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
     assert result.summary.found == result.summary.scored > 5
     assert result.summary.percent < 1e-3
     assert result.summary.spurious == 0
+
+
+def numbered_from(first, last, frames):
+    """The sources of some frames of a series."""
+    return {t: Source(content=str(t), path="x", series=(first, last)) for t in frames}
+
+
+def test_truth_without_numbers_begins_with_the_sequence_where_both_are_as_long():
+    given = numbered(TRUTH, numbered_from(1, 6, (2, 4)))
+    assert given.frames == (1, 2, 3, 4, 5, 6)
+    assert numbered(TRUTH, numbered_from(0, 3, (0, 3))) == TRUTH
+    stated = TRUTH.model_copy(update={"numbered": True})
+    assert numbered(stated, numbered_from(1, 6, (2, 4))) == stated
+    with pytest.raises(InputError, match=r"6 frames without numbers, but the sequence has frames 1 to 5; set truth\.first to"):
+        numbered(TRUTH, numbered_from(1, 5, (2, 4)))
 
 
 def test_truth_with_too_few_frames_is_refused():

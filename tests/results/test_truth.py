@@ -38,6 +38,14 @@ def test_file_and_recipe_of_the_same_body_say_the_same(file: Path) -> None:
     assert true.model_copy(update={"source": "synth"}) == synthetic(RECIPE)
 
 
+def test_user_says_with_which_frame_a_truth_without_numbers_begins(file: Path) -> None:
+    assert (read(file=str(file)).frames, read(file=str(file)).numbered) == ((0, 1, 2), False)
+    assert (read(file=str(file), first=4).frames, read(file=str(file), first=4).numbered) == ((4, 5, 6), True)
+    true = json.loads(file.read_text())
+    file.write_text(json.dumps({**true, "frames": [1, 2, 5]}))
+    assert (read(file=str(file), first=4).frames, read(file=str(file)).numbered) == ((1, 2, 5), True)
+
+
 def test_file_that_changed_is_read_again(file: Path) -> None:
     before = read(file=str(file))
     true = json.loads(file.read_text())

@@ -8,7 +8,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.input import silhouettes, volumes
 from kinetree.tasks.numerics.input.calibration import calibration_files
 from kinetree.tasks.numerics.input.formats import suffixes
-from kinetree.tasks.numerics.input.source import natural_order
+from kinetree.tasks.numerics.input.source import natural_order, regular
 
 Held = Literal["meshes", "silhouettes", "packed silhouettes", "volumes", "packed volumes"]
 
@@ -23,16 +23,15 @@ def input_kind(where: str) -> tuple[Held, list[Path]]:
     """
     path = Path(where).expanduser()
     if path.is_dir():
-        files = [p for p in path.iterdir() if p.is_file() and not p.name.startswith(".")]
-        if any(p.suffix.lower() in suffixes() for p in files):
+        there = [p for p in path.iterdir() if not p.name.startswith(".")]
+        if any(p.suffix.lower() in suffixes() for p in there):
             return "meshes", []
         if silhouettes.camera_folders(path):
             return "silhouettes", []
         known = set(calibration_files(path))
-        return _of_files([p for p in files if p not in known])
+        return _of_files([p for p in there if p not in known])
     if glob.has_magic(str(path)):
-        found = [Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file()]  # noqa: PTH207
-        return _of_files(found)
+        return _of_files([Path(p) for p in glob.glob(str(path), recursive=True)])  # noqa: PTH207
     if path.is_file() and path.suffix.lower() == ".npy":
         return "packed volumes", [path]
     if path.is_file() and path.suffix.lower() == ".npz":
@@ -42,8 +41,9 @@ def input_kind(where: str) -> tuple[Held, list[Path]]:
     return "meshes", []
 
 
-def _of_files(files: list[Path]) -> tuple[Held, list[Path]]:
+def _of_files(there: list[Path]) -> tuple[Held, list[Path]]:
     """Silhouettes or volumes among the files of one suffix; meshes where they are neither."""
+    files = [p for p in there if p.is_file()]
     kinds = {p.suffix.lower() for p in files}
     found = sorted(files, key=lambda p: [natural_order(part) for part in p.parts])
     if len(kinds) != 1 or not kinds <= set(volumes.SUFFIXES):
@@ -52,6 +52,7 @@ def _of_files(files: list[Path]) -> tuple[Held, list[Path]]:
                 f"{found[0].parent}: images, but no folder for each camera; silhouettes are CAMERA/FRAME.png and a calibration"
             )
         return "meshes", []
+    regular(there, kinds)
     if kinds == {".npz"} and silhouettes.ARRAY in volumes.npz_shapes(found[0]):
         return "packed silhouettes", found
     return "volumes", found

@@ -7,7 +7,7 @@ is opened, and whatever cannot be a mesh is refused with its name and the reason
 import glob
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
@@ -41,15 +41,16 @@ def mesh_files(where: Path | str) -> list[Path]:
 
     Other files (textures, truth.json) and hidden ones are passed over.
 
-    raises : SourceError if there is nothing of the name, no mesh in it, or meshes of several formats
+    raises : SourceError if there is nothing of the name, no mesh in it, meshes of several formats, or what is no file
+             under the name of a mesh
     """
     path = Path(where).expanduser()
     if path.is_dir():
-        files = [p for p in path.iterdir() if p.is_file() and not p.name.startswith(".")]
+        files = regular([p for p in path.iterdir() if not p.name.startswith(".")], suffixes())
         pattern = ""
     elif glob.has_magic(str(path)):
         # Path.glob takes no absolute pattern
-        files = [Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file()]  # noqa: PTH207
+        files = regular([Path(p) for p in glob.glob(str(path), recursive=True)], suffixes())  # noqa: PTH207
         pattern = "matches of "
     else:
         raise SourceError(_not_a_folder(path))
@@ -135,21 +136,19 @@ def read_npz(path: Path | str) -> Frames:
     return _frames(str(path.resolve()), state.st_size, state.st_mtime_ns)
 
 
-def selected_frames(text: str, count: int, where: str) -> range:
-    """The frames that start:stop:step selects of `count`; raises SourceError where it is no range or selects nothing."""
-    parts = text.split(":")
-    try:
-        start, stop, step = ([int(p) if p.strip() else None for p in parts] + [None, None])[:3]
-        if len(parts) not in (2, 3):
-            raise ValueError
-        chosen = range(count)[slice(start, stop, step)]
-    except ValueError:
-        raise SourceError(f"frames {text!r}: write start:stop or start:stop:step, e.g. 10:60:2") from None
-    if step is not None and step < 0:
-        raise SourceError(f"frames {text!r}: the step must be positive; time runs forward")
-    if not chosen:
-        raise SourceError(f"frames {text!r} selects none of the {count} frames of {where}")
-    return chosen
+def regular(found: Iterable[Path], frames: Collection[str]) -> list[Path]:
+    """The files among what was found; what is none is passed over.
+
+    frames : suffixes of frames, in lower case
+    raises : SourceError where what has such a suffix is no file: leaving it out would be a frame that vanishes
+    """
+    there = list(found)
+    files = [path for path in there if path.is_file()]
+    lost = sorted(path for path in set(there) - set(files) if path.suffix.lower() in frames)
+    if lost:
+        more = f" (and {len(lost) - 1} more)" if len(lost) > 1 else ""
+        raise SourceError(f"{lost[0]}{more}: {_not_a_file(lost[0])}; put the frame's file there, or take the name away")
+    return files
 
 
 def written(path: Path) -> Path:
@@ -232,6 +231,13 @@ def _unit(arrays: Mapping[str, Any]) -> str | None:
     word = unit[0] if len(unit) else ""
     text = (word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)).strip()
     return None if text in ("", "unknown") else text
+
+
+def _not_a_file(path: Path) -> str:
+    """What lies under the name of a frame and is no file."""
+    if path.is_symlink() and not path.exists():
+        return f"a link to {path.readlink()}, which is not there"
+    return "a folder under the name of a frame" if path.is_dir() else "neither a file nor a folder (a pipe, socket or device)"
 
 
 def _not_a_folder(path: Path) -> str:

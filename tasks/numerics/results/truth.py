@@ -39,6 +39,7 @@ class TrueMotion:
     turns   : (joint,) range of turning against the parent over the clip, degrees; NaN where it is not known
     scored  : (joint,) whether a result should have it
     frames  : (frame,) source frame numbers, ascending
+    numbered: whether the file states them; else they are 0, 1, 2, …
     X       : (frame, joint, xyz) in the truth's unit
     height  : of the body, in the truth's unit; errors are given as shares of it; None where it is not known
     unit    : of lengths; None where it is not known
@@ -55,6 +56,7 @@ class TrueMotion:
     height: float | None
     unit: str | None
     fps: float | None
+    numbered: bool = False
 
 
 def read_truth(text: str, name: str) -> TrueMotion:
@@ -145,6 +147,7 @@ def truth_of_json(content: Any, name: str, settings: TruthSettings | None = None
         height=_positive(content.get("height"), f"{name}: height"),
         unit=_unit(content.get("unit")),
         fps=_positive(content.get("fps"), f"{name}: fps"),
+        numbered=content.get("frames") is not None,
     )
 
 

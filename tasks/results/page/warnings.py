@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.structure.skeleton import Skeleton
@@ -13,6 +14,7 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.formats.rig import skinned
+from kinetree.tasks.views.input import sequence_remarks
 from kinetree.tasks.views.registration import frame_confidence_remarks
 from kinetree.tasks.views.structure import skeleton_remarks
 from kinetree.tasks.views.topology import leaf_losses
@@ -36,6 +38,7 @@ class WarningLimits(NamedTuple):
 
 def warnings(
     skeleton: Skeleton,
+    sequence: Sequence,
     intervals: Intervals,
     leaves: Leaves,
     frame_confidence: FrameConfidence,
@@ -46,7 +49,11 @@ def warnings(
 
     alignments, meshes : by source frame number
     """
-    return [*_of_skeleton(skeleton, alignments), *_of_frames(intervals, leaves, frame_confidence, meshes)]
+    return [
+        *_of_skeleton(skeleton, alignments),
+        *sequence_remarks(sequence),
+        *_of_frames(intervals, leaves, frame_confidence, meshes),
+    ]
 
 
 def skin_distance(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> float:

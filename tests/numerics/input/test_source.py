@@ -1,6 +1,7 @@
 """Laws of listing and of packed sequences: natural order, frames as they were stacked, the words of every refusal."""
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -38,9 +39,36 @@ def test_order_of_names_does_not_depend_on_the_order_they_were_found_in(names, r
 def test_folder_lists_its_meshes_in_natural_order_and_passes_over_the_rest(tmp_path):
     for name in ("frame_10.ply", "frame_2.ply", "frame_1.PLY", ".hidden.ply", "truth.json", "skin.png"):
         written(tmp_path, name, b"")
-    (tmp_path / "folder.ply").mkdir()
+    (tmp_path / "folder").mkdir()
     assert [p.name for p in mesh_files(tmp_path)] == ["frame_1.PLY", "frame_2.ply", "frame_10.ply"]
     assert [p.name for p in mesh_files(str(tmp_path))] == ["frame_1.PLY", "frame_2.ply", "frame_10.ply"]
+
+
+def dangling(path):
+    path.symlink_to("nowhere.ply")
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (dangling, "a link to nowhere.ply, which is not there"),
+        (Path.mkdir, "a folder"),
+        (os.mkfifo, "neither a file nor a folder"),
+    ],
+)
+@pytest.mark.parametrize("pattern", ["", "*.ply", "f*"])
+def test_what_is_no_file_under_the_name_of_a_frame_is_refused_and_not_passed_over(tmp_path, make, words, pattern):
+    for name in ("f0.ply", "f2.ply"):
+        written(tmp_path, name, b"")
+    make(tmp_path / "f1.ply")
+    with pytest.raises(SourceError, match=rf"f1\.ply: {words}.*; put the frame's file there, or take the name away"):
+        mesh_files(tmp_path / pattern)
+
+
+def test_link_to_a_file_is_a_file(tmp_path):
+    written(tmp_path, "f0.ply", b"")
+    (tmp_path / "f1.ply").symlink_to("f0.ply")
+    assert len(mesh_files(tmp_path)) == 2
 
 
 def test_pattern_lists_what_it_matches_across_folders(tmp_path):
@@ -97,7 +125,6 @@ def test_single_file_is_refused_as_a_sequence(tmp_path):
 
 
 # ── reading ─────────────────────────────────────────────────────────────────────────────────────────────────────────
-
 
 
 def sequence(fixed=False):
