@@ -17,16 +17,47 @@ HUMAN = {"figure": "human", "frames": 13, "vertices": 1000, "contacts": [TOUCH]}
 DOG = {"figure": "quadruped", "frames": 4, "vertices": 500}
 
 
-def ran(output: Path, executor: str = "sync", **blocks: Any) -> Pipeline:
+STEP_TWO = ("arap", "cut_correspondence")
+
+
+def ran(output: Path, executor: str = "sync", until: tuple[str, ...] = (), **blocks: Any) -> Pipeline:
     given = {"method": "mesoscopic-2014", "output": str(output), "compute": {"executor": executor}, **blocks}
     pipeline = Pipeline.of(given)
-    assert pipeline.run()["status"] == "done"
+    assert pipeline.run(until=until)["status"] == "done"
     return pipeline
+
+
+def artifact(pipeline: Pipeline, node: str, **index: int) -> Any:
+    return pipeline.artifact(node, **index)
+
+
+def written(folder: Path, *meshes: trimesh.Trimesh) -> dict[str, Any]:
+    folder.mkdir()
+    for t, one in enumerate(meshes):
+        one.export(folder / f"frame_{t}.ply")
+    return {"input": str(folder)}
 
 
 @pytest.fixture(scope="module")
 def human(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
     return ran(tmp_path_factory.mktemp("human"), source={"synth": HUMAN}, geodesics={"bases": 30})
+
+
+def test_each_interval_has_one_mesh_that_follows_the_body_whoever_computes_it(human: Pipeline, tmp_path: Path) -> None:
+    other = ran(tmp_path, "threads", STEP_TWO, source={"synth": HUMAN}, geodesics={"bases": 30})
+    cuts = artifact(human, "intervals")
+    assert len(cuts.begin) == 3
+    for i in range(3):
+        reference = artifact(human, "interval_reference", interval=i)
+        assert len(reference.leaf) == (5, 4, 5)[i]
+        for t in reference.frames:
+            here = artifact(human, "arap", interval=i, frame=t)
+            assert len(here.vertices) == len(reference.vertices)
+            assert here.residual.mean() < 0.03 * reference.size
+            assert here == artifact(other, "arap", interval=i, frame=t)
+    across = artifact(human, "cut_correspondence")
+    assert across.surplus(0, at_end=True), "the hand on the hip has no leaf behind the cut"
+    assert across == artifact(other, "cut_correspondence")
 
 
 def test_human_whose_hand_touches_the_hip_becomes_one_tree_with_a_pose_in_every_frame(human: Pipeline) -> None:
@@ -71,13 +102,23 @@ def test_preset_of_the_paper_reaches_the_end_and_the_same_whoever_computes_it(tm
     assert skeleton == other.artifact("kinematic_structure")
 
 
-def test_ball_becomes_one_rigid_part_and_the_run_says_so(tmp_path: Path) -> None:
-    (tmp_path / "scans").mkdir()
-    for t in range(2):
-        ball = trimesh.creation.icosphere(subdivisions=2).apply_scale(1 + 0.1 * t)
-        ball.faces = np.roll(ball.faces, 7 * t, axis=0)
-        ball.export(tmp_path / "scans" / f"frame_{t}.ply")
-    pipeline = ran(tmp_path / "out", source={"input": str(tmp_path / "scans")}, geodesics={"bases": 20})
-    assert any("one rigid part" in text for _, text in pipeline.remarks())
-    skeleton: Any = pipeline.artifact("kinematic_structure")
-    assert skeleton.kinds == ("root",)
+def test_ball_is_followed_by_nothing_and_becomes_one_rigid_part_and_the_run_says_so(tmp_path: Path) -> None:
+    balls = [trimesh.creation.icosphere(subdivisions=2).apply_scale(1 + 0.1 * t) for t in range(2)]
+    balls[1].faces = np.roll(balls[1].faces, 7, axis=0)
+    pipeline = ran(tmp_path / "out", source=written(tmp_path / "scans", *balls), geodesics={"bases": 20})
+    assert (artifact(pipeline, "geodesic_mapping", interval=0, frame=1).image == -1).all()
+    assert artifact(pipeline, "arap", interval=0, frame=1).uncovered > 0.9
+    remarks = [text for _, text in pipeline.remarks()]
+    assert any("interval 0 has no leaf" in text for text in remarks)
+    assert any("one rigid part" in text for text in remarks)
+    assert artifact(pipeline, "kinematic_structure").kinds == ("root",)
+
+
+def test_tracked_vertices_pass_unchanged(tmp_path: Path) -> None:
+    boxes = [trimesh.creation.box(extents=[1, 1, 4 + t]).subdivide().subdivide() for t in range(3)]
+    scans = written(tmp_path / "scans", *boxes)
+    pipeline = ran(tmp_path / "out", until=STEP_TWO, source=scans, geodesics={"bases": 20})
+    for t in range(3):
+        here = artifact(pipeline, "arap", interval=0, frame=t)
+        np.testing.assert_array_equal(here.vertices, artifact(pipeline, "mesh", frame=t).vertices)
+        assert (here.confidence == 1.0).all()
