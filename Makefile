@@ -20,9 +20,10 @@ lint: $(READY)
 types: $(READY)
 	$(BIN)/mypy
 
-# files go to the processes in the order in which they are collected: those that take longest first
+# files go to the processes in the order in which they are collected: those that take longest first;
+# one thread of BLAS in each, since the processes fill the cores
 tests: $(READY)
-	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder
 
 # half as much processor time again, so it stands apart
 coverage: $(READY)

@@ -38,6 +38,8 @@ SYNTAX = {"body"}
 """Names of fields of Python's syntax trees."""
 PLOTTED = sorted(ROOT.glob("tasks/results/plots/*.py"))
 BORDER = "tasks/input/source.py"
+DOORS = ("kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.groups")
+"""What the border alone may know of the loom."""
 
 
 @cache
@@ -80,38 +82,39 @@ def shelf(module: str) -> str | None:
     return None
 
 
-@pytest.mark.parametrize("path", FILES, ids=name)
-def test_one_file_each_imports_dask_distributed_and_zarr(path: Path) -> None:
-    for library, home in ALONE.items():
-        if name(path) != home:
-            assert library not in outside(imports(path))
+def test_one_file_each_imports_dask_distributed_and_zarr() -> None:
+    for path in FILES:
+        for library, home in ALONE.items():
+            if name(path) != home:
+                assert library not in outside(imports(path)), name(path)
 
 
-@pytest.mark.parametrize("path", NUMERICS, ids=name)
-def test_numerics_know_numbers_and_nothing_of_the_loom(path: Path) -> None:
-    assert outside(imports(path)) <= NUMERIC | (READERS if shelf(module(path)) == "input" else set())
-    assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.errors")
+def test_numerics_know_numbers_and_nothing_of_the_loom() -> None:
+    for path in NUMERICS:
+        assert outside(imports(path)) <= NUMERIC | (READERS if shelf(module(path)) == "input" else set()), name(path)
+        assert not ours(imports(path), "kinetree.tasks.numerics", "kinetree.errors"), name(path)
 
 
-@pytest.mark.parametrize("path", SCHEMAS, ids=name)
-def test_schemas_know_only_schemas(path: Path) -> None:
-    assert outside(imports(path)) <= {"numpy", "pydantic", "pydantic_core"}
-    assert not ours(imports(path), "kinetree.schemas", "kinetree.errors")
+def test_schemas_know_only_schemas() -> None:
+    for path in SCHEMAS:
+        assert outside(imports(path)) <= {"numpy", "pydantic", "pydantic_core"}, name(path)
+        assert not ours(imports(path), "kinetree.schemas", "kinetree.errors"), name(path)
 
 
-@pytest.mark.parametrize("path", OPERATIONS, ids=name)
-def test_tasks_know_their_declaration_and_only_the_source_the_world_outside(path: Path) -> None:
-    border = ["kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.groups"] if name(path) == BORDER else []
-    assert not ours(imports(path), "kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.errors", *border)
+def test_tasks_know_their_declaration_and_only_the_source_the_world_outside() -> None:
+    for path in OPERATIONS:
+        border = DOORS if name(path) == BORDER else ()
+        allowed = ("kinetree.tasks", "kinetree.schemas", "kinetree.pipeline.task", "kinetree.errors", *border)
+        assert not ours(imports(path), *allowed), name(path)
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("pipeline/*.py")), ids=name)
-def test_the_loom_imports_no_product_and_no_mathematics(path: Path) -> None:
-    assert not {m for m in imports(path) if m.startswith(("kinetree.tasks", "kinetree.configs"))}
-    assert not {m for m in imports(path) if m.startswith("kinetree.schemas.")} - {
-        m for m in imports(path) if m.startswith(("kinetree.schemas.array", "kinetree.schemas.dims"))
-    }
-    assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"})
+def test_the_loom_imports_no_product_and_no_mathematics() -> None:
+    for path in sorted(ROOT.glob("pipeline/*.py")):
+        assert not {m for m in imports(path) if m.startswith(("kinetree.tasks", "kinetree.configs"))}, name(path)
+        assert not {m for m in imports(path) if m.startswith("kinetree.schemas.")} - {
+            m for m in imports(path) if m.startswith(("kinetree.schemas.array", "kinetree.schemas.dims"))
+        }, name(path)
+        assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"}), name(path)
 
 
 def texts(path: Path) -> list[str]:
@@ -122,25 +125,25 @@ def texts(path: Path) -> list[str]:
     return [str(node.value) for node in strings if node not in bare]
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("pipeline/*.py")), ids=name)
-def test_the_loom_says_no_word_of_the_product(path: Path) -> None:
+def test_the_loom_says_no_word_of_the_product() -> None:
     operations = {task.name for graph in METHODS.values() for task in graph.tasks} | set(METHODS)
-    said = set(texts(path)) - {"key.py": OURS, "bindings.py": SYNTAX, "statements.py": SYNTAX}.get(path.name, set())
-    assert not {text for text in said if PRODUCT.search(text)}
-    assert not said & operations
-    assert not {text for text in said if re.search(rf"\b({'|'.join(operations)})\.[a-z_]+=", text)}
+    for path in sorted(ROOT.glob("pipeline/*.py")):
+        said = set(texts(path)) - {"key.py": OURS, "bindings.py": SYNTAX, "statements.py": SYNTAX}.get(path.name, set())
+        assert not {text for text in said if PRODUCT.search(text)}, name(path)
+        assert not said & operations, name(path)
+        assert not {text for text in said if re.search(rf"\b({'|'.join(operations)})\.[a-z_]+=", text)}
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if shelf(module(p)) is not None], ids=name)
-def test_a_shelf_imports_only_from_shelves_to_its_left(path: Path) -> None:
-    mine = SHELVES.index(str(shelf(module(path))))
-    right = {m for m in imports(path) if (other := shelf(m)) is not None and SHELVES.index(other) > mine}
-    assert not right
+def test_a_shelf_imports_only_from_shelves_to_its_left() -> None:
+    for path in [p for p in FILES if shelf(module(p)) is not None]:
+        mine = SHELVES.index(str(shelf(module(path))))
+        right = {m for m in imports(path) if (other := shelf(m)) is not None and SHELVES.index(other) > mine}
+        assert not right, name(path)
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("tasks/numerics/geometry/*.py")), ids=name)
-def test_geometry_stands_below_all_shelves(path: Path) -> None:
-    assert not {m for m in imports(path) if shelf(m) is not None}
+def test_geometry_stands_below_all_shelves() -> None:
+    for path in sorted(ROOT.glob("tasks/numerics/geometry/*.py")):
+        assert not {m for m in imports(path) if shelf(m) is not None}, name(path)
 
 
 def test_no_module_imports_itself_in_a_ring() -> None:
@@ -153,19 +156,19 @@ def test_no_module_imports_itself_in_a_ring() -> None:
     assert list(nx.simple_cycles(graph)) == []
 
 
-@pytest.mark.parametrize("path", OPERATIONS, ids=name)
-def test_every_operation_has_one_stem_on_one_shelf_behind_every_door(path: Path) -> None:
-    place = path.parent.name
-    assert (ROOT / "schemas" / place / path.name).is_file()
-    assert (ROOT / "tests" / place / f"test_{path.name}").is_file()
-    numeric = [p for p in NUMERICS if path.stem in (p.stem, p.parent.name)]
-    assert {shelf(module(p)) for p in numeric} <= {place}, f"numerics of {path.stem} stand on another shelf"
+def test_every_operation_has_one_stem_on_one_shelf_behind_every_door() -> None:
+    for path in OPERATIONS:
+        place = path.parent.name
+        assert (ROOT / "schemas" / place / path.name).is_file(), name(path)
+        assert (ROOT / "tests" / place / f"test_{path.name}").is_file()
+        numeric = [p for p in NUMERICS if path.stem in (p.stem, p.parent.name)]
+        assert {shelf(module(p)) for p in numeric} <= {place}, f"numerics of {path.stem} stand on another shelf"
 
 
-@pytest.mark.parametrize("path", [p for p in SCHEMAS if p.parent.name in SHELVES and p.name != "__init__.py"], ids=name)
-def test_every_schema_has_its_operation(path: Path) -> None:
-    shared = {"exports", "pose"}  # what several operations leave in one form
-    assert path.stem in shared or (ROOT / "tasks" / path.parent.name / path.name).is_file()
+def test_every_schema_has_its_operation() -> None:
+    for path in [p for p in SCHEMAS if p.parent.name in SHELVES and p.name != "__init__.py"]:
+        shared = {"exports", "pose"}  # what several operations leave in one form
+        assert path.stem in shared or (ROOT / "tasks" / path.parent.name / path.name).is_file(), name(path)
 
 
 @pytest.mark.parametrize("place", SHELVES)
@@ -175,10 +178,10 @@ def test_a_shelf_lists_all_of_its_tasks(place: str) -> None:
     assert {module(p) for p in here if re.search(r"^@(task|origin)\(", p.read_text(), re.MULTILINE)} <= listed
 
 
-@pytest.mark.parametrize("path", NUMERICS, ids=name)
-def test_every_numeric_file_is_tried_by_laws(path: Path) -> None:
+def test_every_numeric_file_is_tried_by_laws() -> None:
     tried = {m for test in ROOT.glob("tests/numerics/**/test_*.py") for m in imports(test)}
-    assert path.name == "__init__.py" or module(path) in tried
+    for path in NUMERICS:
+        assert path.name == "__init__.py" or module(path) in tried, name(path)
 
 
 def unread(graph: Graph) -> set[str]:

@@ -17,6 +17,19 @@ BLOCKS = re.findall(r"```python\n# (\S+\.py)\n(.*?)```", TEXT, re.DOTALL)
 (PATCH,) = re.findall(r"```diff\n(.*?)```", TEXT, re.DOTALL)
 COPIED = ("errors", "pipeline", "tasks", "schemas", "configs", "tests", ".typing", "pyproject.toml")
 
+ONE_AFTER_ANOTHER = """
+import json, sys
+from kinetree.tasks.application import main
+for arguments in json.loads(sys.argv[1]):
+    sys.argv[1:] = arguments
+    try:
+        main()
+    except SystemExit as end:
+        if end.code:
+            raise
+"""
+"""Runs command lines in one process: each process would import everything anew."""
+
 
 def patched(patch: str, root: Path) -> None:
     """Applies a unified diff whose hunks give enough context to be found once each."""
@@ -50,9 +63,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def run(root: Path, *command: str) -> str:
     """Runs Python on the copy, whose packages come before the installed ones; gives what it printed."""
     environment = {**os.environ, "PYTHONPATH": str(root / ".typing")}
-    done = subprocess.run(
-        [sys.executable, *command], cwd=root, env=environment, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, *command], cwd=root, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -69,10 +80,13 @@ def test_the_new_operation_keeps_the_laws_of_the_house(copy: Path) -> None:
 
 
 def test_the_new_operation_runs_takes_its_parameter_and_is_drawn(copy: Path, tmp_path: Path) -> None:
-    program = "from kinetree.tasks.application import main; main()"
     out, picture = str(tmp_path / "out"), tmp_path / "extent.png"
-    run(copy, "-c", program, "run", "demo", "--output", out, "--frames", "0:3", "--executor", "sync", "--until", "extent")
-    run(copy, "-c", program, "plot", out, "extent", "-o", str(picture))
+    commands = [
+        ["run", "demo", "--output", out, "--frames", "0:3", "--executor", "sync", "--until", "extent"],
+        ["plot", out, "extent", "-o", str(picture)],
+        ["plan", out, "--set", "extent.quantile=0.1", "--until", "extent", "--json"],
+    ]
+    printed = run(copy, "-c", ONE_AFTER_ANOTHER, json.dumps(commands))
     assert picture.read_bytes().startswith(b"\x89PNG")
-    plan = json.loads(run(copy, "-c", program, "plan", out, "--set", "extent.quantile=0.1", "--until", "extent", "--json"))
+    plan = json.loads(printed[printed.index("{") :])
     assert {row["task"] for row in plan["tasks"] if set(row["states"]) - {"fresh"}} == {"extent"}
