@@ -48,8 +48,12 @@ class FinishedRun:
         there = pipeline.inspect()
         try:
             return FinishedRun(str(run), pipeline, there, there.artifact(Skeleton))
-        except UnknownNodeError as error:
-            raise UnknownNodeError(f"{run} is not finished: {error}; kinetree run {run} finishes it") from None
+        except UnknownNodeError:
+            stale = next((node for node in there.plan.nodes if node.state == "stale"), "nothing of it is computed")
+            raise UnknownNodeError(
+                f"{run} is not finished, or was computed by another version or with other parameters: {stale};"
+                f" kinetree run {run} computes what is missing"
+            ) from None
 
     def by_frame(self, cls: type[A]) -> dict[int, A]:
         """The artifacts of one class by source frame number."""

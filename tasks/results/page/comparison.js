@@ -11,6 +11,7 @@ class ComparedPlayer extends Player {
     this.only = new Set(only);
     this.marked = null;
     for (const j of this.only) this.balls.setColorAt(j, new THREE.Color(colour));
+    this.balls.instanceColor.needsUpdate = true;
     this.marks = [[0.026, 0x000000], [0.021, 0xffffff]].map(([radius, color], k) => {
       const material = new THREE.MeshBasicMaterial({ color, depthTest: false, transparent: true });
       const mark = new THREE.Mesh(new THREE.SphereGeometry(scene.size * radius, 20, 14), material);

@@ -60,8 +60,10 @@ class _Rows:
         share = 100.0 / c.height
         self.all: list[dict[str, Any]] = []
         for k, joint in enumerate(c.true_joints):
-            curves = [_curve("a", "A, error", c.error_a[:, k] * share), _curve("b", "B, error", c.error_b[:, k] * share)]
-            self._add(f"{joint.name}: error, % of the height", joint.a, joint.b, curves)
+            one, two = (_curve(run, run.upper(), e[:, k] * share) for run, e in (("a", c.error_a), ("b", c.error_b)))
+            curves = [*([one] if joint.a else []), *([two] if joint.b else [])]
+            what = "error, % of the height" if curves else "missing in both runs"
+            self._add(f"{joint.name}: {what}", joint.a, joint.b, curves)
         for k, pair in enumerate(c.pairs):
             curve = _curve("both", "distance between A and B", c.distance[:, k] * share)
             self._add(f"{pair.a} in A, {pair.b} in B: distance, % of the height", pair.a, pair.b, [curve])

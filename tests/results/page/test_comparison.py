@@ -11,7 +11,8 @@ from results.rigged_bodies import spider
 from results.sample_report import playing
 
 from kinetree.tasks.results.comparison import compared_run, comparison
-from kinetree.tasks.results.page.comparison import comparison_document
+from kinetree.tasks.results.formats.colours import KINDS
+from kinetree.tasks.results.page.comparison import ONLY_HERE, comparison_document
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -103,6 +104,18 @@ def test_joint_of_one_run_alone_is_marked_there_alone(opened: Any) -> None:
     opened.click("#only button:text-is('knee')")
     assert of_both(opened, "player.marked === null ? null : player.scene.joints[player.marked].name") == ["knee", None]
     assert opened.inner_text("#chart-name") == "knee: only in A"
+
+
+def test_joint_of_one_run_alone_has_a_colour_of_its_own(opened: Any) -> None:
+    colours = opened.evaluate(
+        "() => ['arm', 'knee'].map((name) => { const p = kinetree.players[0], c = p.renderer.domElement;"
+        " const j = p.scene.joints.findIndex((k) => k.name === name);"
+        " const v = p.point('joints', p.scene.joints.length, j).project(p.camera);"
+        " const flat = new OffscreenCanvas(c.width, c.height).getContext('2d'); flat.drawImage(c, 0, 0);"
+        " const pixel = flat.getImageData((v.x + 1) / 2 * c.width, (1 - v.y) / 2 * c.height, 1, 1).data;"
+        " return '#' + [0, 1, 2].map((k) => pixel[k].toString(16).padStart(2, '0')).join('').toUpperCase(); })"
+    )
+    assert colours == [KINDS["joint"], ONLY_HERE]
 
 
 def test_joint_clicked_in_a_body_is_chosen(opened: Any) -> None:
