@@ -20,6 +20,8 @@ from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 from kinetree.pipeline.config import Compute
 
 CONNECT_SECONDS = 10
+ALLOWED_DEATHS = 1
+"""How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
 FOLLOW_SECONDS = 0.25
 """How often the scheduler is asked for its workers."""
 
@@ -36,6 +38,7 @@ def local(workers: int, memory: str | None) -> Iterator[Client]:
                 memory_limit=memory or 0,
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
+                scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
             )
         )
         client = stack.enter_context(Client(cluster))
