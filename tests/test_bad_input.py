@@ -81,23 +81,22 @@ def refused(kinetree, tmp_path):
 
 
 @pytest.fixture
-def failed(kinetree, scans, tmp_path):
-    """Runs over three frames of which number 1 is bad: exit code 1, the others are done; gives the message of frame 1."""
+def left_out(kinetree, scans, tmp_path):
+    """Runs over three frames of which number 1 is bad and may be dropped: the others are done; gives the reason."""
 
     def run(name="1.off"):
-        code, printed, complained = kinetree(
-            "run", "-i", "scans", "-o", "out", "--until", "connectivity", "--executor", "sync", "-q"
-        )
-        assert (code, printed) == (1, "")
-        left = json.loads((tmp_path / "out" / "run.json").read_text())
-        assert left["status"] == "failed"
-        assert left["nodes"] == {"ran": 2, "fresh": 0, "failed": 1, "skipped": 1}
-        (failure,) = left["failures"]
-        assert failure["node"] == "mesh[frame=1]"
-        assert complained.startswith(f"mesh[frame=1]: {failure['error']}: ")
-        assert complained.count("\n") == 1
-        assert name in failure["message"]
-        return failure["message"].removeprefix(f"{scans / name}: ")
+        for until, ran in (("connectivity", 3), ("sequence", 1)):
+            code, printed, complained = kinetree(
+                "run", "-i", "scans", "-o", "out", "--until", until, "--set", "source.bad_share=0.4", "--executor", "sync", "-q"
+            )
+            assert (code, printed, complained) == (0, "", "")
+            left = json.loads((tmp_path / "out" / "run.json").read_text())
+            assert left["nodes"] == {"ran": ran, "fresh": 0, "failed": 0, "skipped": 0}
+        values = json.loads(kinetree("show", "sequence", "out", "--json")[1])["values"]
+        assert values["frames"] == [0, 2]
+        (bad,) = values["dropped"]
+        assert bad["frame"] == 1
+        return bad["reason"].removeprefix(f"{name}: ")
 
     return run
 
@@ -207,7 +206,7 @@ BAD_FRAMES = {
     "huge index": (off(F=[[0, 1, 2**70]]), "the file is damaged"),
     "NaN": (off(V=[[0, 0, "nan"], *V[1:]]), "1 of 4 vertices are NaN or infinite, the first is vertex 0"),
     "infinity": (off(V=[*V[:3], [0, "inf", 0]]), "1 of 4 vertices are NaN or infinite, the first is vertex 3"),
-    "no area": (off(V=V * 0), "the coordinates are damaged"),
+    "no area": (off(V=V * 0), "its faces have no area"),
     "flat line": (off(V=V * [1, 0, 0]), "faces have no area"),
     "claims a billion": ("OFF\n1000000000 1000000000 0\n0 0 0\n", "the file is cut short"),
     "claims less than none": ("OFF\n-4 4 0\n0 0 0\n", "the file is cut short"),
@@ -216,24 +215,31 @@ BAD_FRAMES = {
 
 
 @pytest.mark.parametrize("name", BAD_FRAMES)
-def test_bad_frame_fails_alone(failed, scans, name):
+def test_bad_frame_is_left_out_alone(left_out, scans, name):
     content, told = BAD_FRAMES[name]
     (scans / "1.off").write_bytes(content if isinstance(content, bytes) else content.encode())
-    message = failed()
-    assert told in message
+    assert told in left_out()
 
 
-def test_frame_made_whole_again_is_all_that_runs(failed, kinetree, scans, tmp_path):
+def test_bad_frames_beyond_the_share_or_against_the_users_word_are_refused(refused, scans):
+    (scans / "1.off").write_bytes(b"hello")
+    told = "frame 1: 1.off: does not begin with OFF"
+    assert refused("-i", "scans").startswith(f"1 of 3 frames cannot be used (source.bad_share allows 0.2): {told}")
+    message = refused("-i", "scans", "--set", "source.bad_share=0.5", "--set", "source.on_bad_frame=fail")
+    assert message.startswith(f"1 of 3 frames cannot be used (set source.on_bad_frame=drop to go on without them): {told}")
+
+
+def test_frame_made_whole_again_runs_with_the_frame_that_named_it(left_out, kinetree, scans, tmp_path):
     good = (scans / "1.off").read_bytes()
     (scans / "1.off").write_bytes(good[:40])
-    failed()
+    left_out()
     (scans / "1.off").write_bytes(good)
     code, printed, _ = kinetree("run", "out", "--until", "connectivity", "--json")
     assert code == 0
-    assert json.loads(printed)["nodes"] == {"ran": 2, "fresh": 2, "failed": 0, "skipped": 0}
+    assert json.loads(printed)["nodes"] == {"ran": 3, "fresh": 1, "failed": 0, "skipped": 0}
 
 
-def test_frame_that_cannot_be_opened_fails_alone(failed, scans, monkeypatch):
+def test_frame_that_cannot_be_opened_is_left_out_alone(left_out, scans, monkeypatch):
     read = Path.read_bytes
     open_ = Path.open
 
@@ -246,7 +252,7 @@ def test_frame_that_cannot_be_opened_fails_alone(failed, scans, monkeypatch):
     monkeypatch.setattr(
         Path, "open", lambda path, *rest, **named: refuse(path, *rest, call=lambda p, *r: open_(p, *r, **named))
     )
-    assert failed() == "cannot be read: Permission denied; check its permissions"
+    assert left_out() == "cannot be read: Permission denied; check its permissions"
 
 
 @pytest.mark.parametrize("claim", [10**9, 2**31, 2**64, -1], ids=str)
@@ -258,8 +264,8 @@ def test_header_that_claims_more_than_the_file_holds(kinetree, tmp_path, claim):
         (folder / f"{t}.ply").write_bytes(ply(4, 4, body))
     (folder / "1.ply").write_bytes(ply(claim, 4, body))
     code, _, complained = kinetree("run", "-i", "scans", "-o", "out", "--until", "mesh", "--executor", "sync", "-q")
-    assert code == 1
-    assert f"{folder / '1.ply'}: its header claims {claim} × vertex in " in complained
+    assert code == 2
+    assert f"frame 1: 1.ply: its header claims {claim} × vertex in " in complained
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
@@ -408,15 +414,15 @@ def test_names_of_files_are_printed_as_they_are_and_never_obeyed(kinetree, scans
         (scans / f"{t}.off").rename(scans / f"{t}{name}.off")
     (scans / f"1{name}.off").write_text("hello")
     folder = f"out{name}"
-    code, printed, complained = kinetree("run", "-i", "scans", "-o", folder, "--until", "connectivity", "--executor", "sync")
-    assert code == 1
-    assert len(printed.splitlines()) == 2
-    assert all(line.startswith(("mesh", "sequence", "connectivity")) for line in complained.splitlines())
+    to = ["-o", folder, "--set", "source.bad_share=0.4"]
+    code, printed, complained = kinetree("run", "-i", "scans", *to, "--until", "sequence", "--executor", "sync")
+    assert code == 0
+    assert "frame 1" in printed + complained
     for text in (printed, complained):
         assert not set(text) & set("\x1b\x9b\u202e")
     if name.isprintable():
-        assert f"1{name}.off: does not begin with OFF" in complained
-    for command in (["plan"], ["why", "mesh[1]"], ["show", "source[1]"], ["runs"], ["gc", "--dry-run"], ["graph"]):
+        assert f"1{name}.off: does not begin with OFF" in printed + complained
+    for command in (["plan"], ["why", "mesh[2]"], ["show", "source[0]"], ["runs"], ["gc", "--dry-run"], ["graph"]):
         code, printed, complained = kinetree(*command, folder)
         assert (code, complained) == (0, "")
         assert not set(printed) & set("\x1b\x9b\u202e")

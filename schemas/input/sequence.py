@@ -3,6 +3,7 @@
 from pydantic import Field
 
 from kinetree.schemas.array import Artifact, Params
+from kinetree.schemas.input.source import BadFrame
 
 
 class SequenceParams(Params):
@@ -23,3 +24,5 @@ class Sequence(Artifact):
     """Frames a second; None where nobody knows. No step depends on it."""
     unit: str | None
     """Unit of all lengths; None where nobody knows. No step depends on it."""
+    dropped: tuple[BadFrame, ...] = ()
+    """Frames that were left out because they cannot be of the same body."""

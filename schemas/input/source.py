@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
+from pydantic import Field
+
 from kinetree.errors import ArtifactError
 from kinetree.schemas.array import Artifact, Index, Location, Params, PathLike
 from kinetree.schemas.input.synth import SynthParams
@@ -19,6 +21,19 @@ class SourceParams(Params):
     """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"
     """The frames wanted, as start:stop:step over the numbers of the frames, which are those in the files' names: 10:60:2."""
+    on_bad_frame: Literal["drop", "fail"] = "drop"
+    """Meshes that cannot be read, or stand out in size, place or pieces: drop goes on without them, fail refuses the run."""
+    bad_share: float = Field(default=0.2, ge=0, lt=1)
+    """Largest share of the frames that is dropped; with more of them the run is refused."""
+
+
+class BadFrame(Params):
+    """A frame that is left out of the sequence."""
+
+    frame: int
+    """Its number."""
+    reason: str
+    """Why, in words."""
 
 
 class Source(Artifact):
@@ -46,6 +61,9 @@ class Source(Artifact):
     """Frames a second as the file states it; None where it does not."""
     unit: str | None = None
     """Unit of length as the file states it; None where it does not."""
+
+    dropped: tuple[BadFrame, ...] = ()
+    """Frames that were left out directly after this one, or before it if it is the first."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:
         """One hull for silhouettes, one isosurface for silhouettes or a volume, none for a mesh."""

@@ -21,4 +21,5 @@ def sequence(source: Mapping[int, Source], params: SequenceParams) -> Sequence:
         frames=tuple(source),
         fps=params.fps if params.fps is not None else next(iter(rates), None),
         unit=params.unit if params.unit is not None else next(iter(units), None),
+        dropped=tuple(sorted((bad for s in source.values() for bad in s.dropped), key=lambda bad: bad.frame)),
     )

@@ -1,21 +1,23 @@
 """Where the frames are: meshes, silhouettes or volumes, a file each or in one file that holds all, or a synthetic body."""
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
-from kinetree.errors import SourceError, StoreError
+from kinetree.errors import MeshError, SourceError, StoreError
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.groups import is_array, opened_array, user_arrays
 from kinetree.pipeline.key import array_digest, digest, file_digest
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
-from kinetree.schemas.input.source import Kind, Source, SourceParams
+from kinetree.schemas.input.source import BadFrame, Kind, Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
 from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers, selected_frames
@@ -41,7 +43,60 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
         return _chosen(_generated(recipe(params.synth), params.synth.frames), params.frames, "the synthetic sequence")
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
-    return _chosen(_found(params.input, files), params.frames, params.input)
+    return _usable(_chosen(_found(params.input, files), params.frames, params.input), params, files)
+
+
+def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -> dict[int, Source]:
+    """The frames without those that cannot be of the same body as the others; the frame before a dropped one names it.
+
+    raises : SourceError where there are more of them than may be dropped
+    """
+    bad = bad_frames(_measured(sources, files))
+    refuse_bad(bad, len(sources), params.bad_share if params.on_bad_frame == "drop" else None)
+    good = [t for t in sources if t not in bad]
+    if bad and len(good) < 2:
+        refuse_bad(bad, len(sources), None)
+    after: dict[int, list[BadFrame]] = {}
+    for t, reason in bad.items():
+        before = max((g for g in good if g < t), default=good[0])
+        after.setdefault(before, []).append(BadFrame(frame=t, reason=reason))
+    return {t: sources[t].model_copy(update={"dropped": tuple(after[t])}) if t in after else sources[t] for t in good}
+
+
+def _measured(sources: Mapping[int, Source], files: Files) -> dict[int, FrameMeasures | str]:
+    """What the surface of every frame is like, or why it cannot be read; nothing where frames are no meshes yet."""
+    kinds = {s.kind for s in sources.values()}
+    if kinds <= {"npz", "zarr"}:
+        path, kind = Path(next(iter(sources.values())).path), kinds.pop()
+        held = files.parts(path, f"{kind}/measures/1", lambda where: _measures_of_parts(where, kind))
+        return {t: _parsed(held[s.part or 0]) for t, s in sources.items()}
+    if kinds == {"file"}:
+        return {t: _parsed(files.parts(Path(s.path), "measures/1", _measures_of_file)[0]) for t, s in sources.items()}
+    return {}
+
+
+def _measures_of_file(path: Path) -> Sequence[str]:
+    """The measures of a mesh file as JSON, or why it cannot be read."""
+    try:
+        refuse_unreadable(path)
+        return [json.dumps(frame_measures(*read_mesh(path)))]
+    except (MeshError, SourceError) as error:
+        return [json.dumps(str(error).replace(f"{path.parent}{os.sep}", ""))]
+
+
+def _measures_of_parts(path: Path, kind: str) -> Sequence[str]:
+    """The measures of all frames of one file as JSON."""
+    frames = _packed_frames(path, kind)
+    return [json.dumps(frame_measures(*frames.mesh(t))) for t in range(len(frames))]
+
+
+def _parsed(text: str) -> FrameMeasures | str:
+    """Measures, or the reason why there are none, from JSON."""
+    held = json.loads(text)
+    if isinstance(held, str):
+        return held
+    area, size, (x, y, z), vertices, pieces = held
+    return FrameMeasures(area, size, (x, y, z), vertices, pieces)
 
 
 def _found(where: str, files: Files) -> dict[int, Source]:

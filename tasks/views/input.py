@@ -10,15 +10,31 @@ from kinetree.schemas.input.isosurface import Isosurface
 from kinetree.schemas.input.sequence import Sequence
 
 NAMED_GAPS = 8
-"""Most gaps that one sentence names."""
+"""Most gaps or frames that one sentence names."""
 
 
 @remarks_of(Sequence)
 def sequence_remarks(sequence: Sequence) -> tuple[str, ...]:
-    """Names the frames that the numbering leaves out."""
-    steps = [b - a for a, b in pairwise(sequence.frames)]
+    """Names the frames that were left out, and those that the numbering leaves out."""
+    return (*_dropped(sequence), *_missing(sequence))
+
+
+def _dropped(sequence: Sequence) -> tuple[str, ...]:
+    """The frames that were left out, with the reasons."""
+    if not (bad := sequence.dropped):
+        return ()
+    named = "; ".join(f"frame {each.frame}: {each.reason}" for each in bad[:NAMED_GAPS])
+    more = f"; and {len(bad) - NAMED_GAPS} more" if len(bad) > NAMED_GAPS else ""
+    return (f"{len(bad)} of {len(sequence.frames) + len(bad)} frames were left out of everything: {named}{more}",)
+
+
+def _missing(sequence: Sequence) -> tuple[str, ...]:
+    """The frames that the numbering leaves out."""
+    dropped = {bad.frame for bad in sequence.dropped}
+    numbers = sorted({*sequence.frames, *dropped})
+    steps = [b - a for a, b in pairwise(numbers)]
     step = math.gcd(*steps) or 1
-    gaps = [(a + step, b - step) for a, b in pairwise(sequence.frames) if b - a > step]
+    gaps = [(a + step, b - step) for a, b in pairwise(numbers) if b - a > step]
     if not gaps:
         return ()
     count = sum((last - first) // step + 1 for first, last in gaps)

@@ -5,7 +5,7 @@ import pytest
 from kinetree.errors import SourceError
 from kinetree.pipeline.views import remarks
 from kinetree.schemas.input.sequence import Sequence, SequenceParams
-from kinetree.schemas.input.source import Source
+from kinetree.schemas.input.source import BadFrame, Source
 from kinetree.tasks.input.sequence import sequence
 
 
@@ -59,3 +59,13 @@ def test_many_gaps_are_counted():
     (words,) = remarks(Sequence(frames=tuple(range(0, 90, 3)) + (88, 89), fps=None, unit=None))
     assert words.startswith("58 frames are missing: 1 to 2, 4 to 5,")
     assert "22 to 23 and 21 more gaps;" in words
+
+
+def test_frames_that_were_left_out_are_named_with_the_reason_and_are_no_gap():
+    given = frames((None, None), (None, None), (None, None))
+    given[3] = given[2].model_copy(update={"dropped": (BadFrame(frame=4, reason="torn"),)})
+    given[0] = given[0].model_copy(update={"dropped": (BadFrame(frame=2, reason="empty"),)})
+    del given[2]
+    made = sequence(given, SequenceParams())
+    assert (made.frames, [bad.frame for bad in made.dropped]) == ((0, 1, 3), [2, 4])
+    assert remarks(made) == ("2 of 5 frames were left out of everything: frame 2: empty; frame 4: torn",)

@@ -25,7 +25,7 @@ def off(scale=1.0):
 
 def packed(frames=3, **changes):
     arrays = {
-        "vertices": np.concatenate([V * (t + 1) for t in range(frames)]), "faces": F,
+        "vertices": np.concatenate([V * (1 + t / 10) for t in range(frames)]), "faces": F,
         "vertex_offsets": np.arange(frames + 1) * 4, "face_offsets": np.array([0, 4]),
         "fps": np.array(25.0), "unit": np.array("mm"),
     }  # fmt: skip
@@ -52,7 +52,7 @@ def scans(tmp_path):
     folder = tmp_path / "scans"
     folder.mkdir()
     for t in (1, 2, 10, 9):
-        (folder / f"frame_{t}.off").write_text(off(t))
+        (folder / f"frame_{t}.off").write_text(off(1 + t / 10))
     return folder
 
 
@@ -107,14 +107,14 @@ def test_frame_is_its_bytes_whatever_its_name_age_and_folder(found, scans, tmp_p
     for t in (1, 2, 9, 10):
         (tmp_path / "moved" / f"frame_{t}.off").rename(tmp_path / "moved" / f"walk_{t}.off")
     assert {t: artifact_digest(s) for t, s in found("moved").items()} == before
-    (scans / "frame_2.off").write_text(off(7))
+    (scans / "frame_2.off").write_text(off(1.7))
     after = {t: artifact_digest(s) for t, s in found("scans").items()}
     assert [t for t in before if before[t] != after[t]] == [2]
 
 
 def test_surface_is_the_users_own_vertices_and_faces(found, scans):
     vertices, faces = surface(found("scans")[2])
-    np.testing.assert_array_equal(vertices, V * 2)
+    np.testing.assert_array_equal(vertices, V * 1.2)
     np.testing.assert_array_equal(faces, F)
 
 
@@ -133,22 +133,43 @@ def test_file_that_vanishes_between_planning_and_reading_is_refused(found, scans
         surface(frames[2])
 
 
-def test_unreadable_file_fails_when_it_is_read_and_not_before(found, scans, monkeypatch):
-    from kinetree.pipeline import files as remembering
+def test_frame_that_is_spoilt_is_dropped_and_named_by_the_one_before_it(files, scans):
+    def usable(**changes):
+        return source(SourceParams(input=str(scans), bad_share=0.5, **changes), files)
 
-    digest = remembering.file_digest
+    before = usable()
+    (scans / "frame_9.off").write_text(off(1900.0))
+    after = usable()
+    assert list(after) == [1, 2, 10]
+    (bad,) = after[2].dropped
+    assert (bad.frame, after[1].dropped, after[10].dropped) == (9, (), ())
+    assert bad.reason.startswith("its size is ")
+    assert bad.reason.endswith("is it in another unit?")
+    assert [t for t in after if artifact_digest(after[t]) != artifact_digest(before[t])] == [2]
+    (scans / "frame_9.off").write_text(off(1.9))
+    (scans / "frame_1.off").write_text("hello")
+    ((named_by, reason),) = [(t, s.dropped[0].reason) for t, s in usable().items() if s.dropped]
+    assert named_by == 2
+    assert reason.startswith("frame_1.off: does not begin with OFF")
+    assert list(usable(frames="2:")) == [2, 9, 10]
+    with pytest.raises(SourceError, match=r"1 of 4 frames cannot be used \(set source\.on_bad.*frame 1: frame_1\.off"):
+        usable(on_bad_frame="fail")
 
-    def refuse(path):
-        if path.name == "frame_2.off":
-            raise PermissionError(13, "Permission denied", str(path))
-        return digest(path)
 
-    monkeypatch.setattr(remembering, "file_digest", refuse)
-    frames = found("scans")
-    assert frames[2].content == "unreadable: Permission denied"
-    assert len(frames) == 4
-    with pytest.raises(SourceError, match=r"frame_2\.off: the file changed"):
-        surface(frames[2])
+def test_bad_frames_that_leave_less_than_two_are_refused(files, scans):
+    for t in (2, 9, 10):
+        (scans / f"frame_{t}.off").write_text("hello")
+    with pytest.raises(SourceError, match="3 of 4 frames cannot be used"):
+        source(SourceParams(input=str(scans), bad_share=0.9), files)
+
+
+@PACKED
+def test_packed_frame_of_another_size_is_dropped(found, tmp_path, where, write):
+    scales = [1, 1.1, 1000, 1.2, 1.1, 1]
+    write(tmp_path / where, frames=6, vertices=np.concatenate([V * s for s in scales]))
+    frames = found(where)
+    assert list(frames) == [0, 1, 3, 4, 5]
+    assert [bad.frame for bad in frames[1].dropped] == [2]
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
@@ -163,7 +184,7 @@ def test_packed_sequence_is_its_frames_with_rate_and_unit(found, tmp_path, where
     assert name(frames[2]) == f"{where}, frame 2"
     for t, each in frames.items():
         vertices, faces = surface(each)
-        np.testing.assert_array_equal(vertices, V * (t + 1))
+        np.testing.assert_array_equal(vertices, V * (1 + t / 10))
         np.testing.assert_array_equal(faces, F)
 
 
@@ -179,7 +200,7 @@ def test_packed_frames_keep_their_identity_when_others_are_appended_or_changed(f
     before = {t: artifact_digest(s) for t, s in found(where).items()}
     path = tmp_path / where
     shutil.rmtree(path) if path.is_dir() else path.unlink()
-    write(path, frames=4, vertices=np.concatenate([V, 9 * V, 3 * V, 4 * V]))
+    write(path, frames=4, vertices=np.concatenate([V, 1.9 * V, 1.2 * V, 1.3 * V]))
     after = {t: artifact_digest(s) for t, s in found(where).items()}
     assert [t for t in before if before[t] == after[t]] == [0, 2]
     assert len(after) == 4
@@ -191,9 +212,9 @@ def test_packed_sequence_that_changes_between_planning_and_reading_is_refused(fo
     frames = found(where)
     surface(frames[1])
     if where.endswith("zarr"):
-        zarr.open_group(tmp_path / where)["vertices"][4:8] = 9 * V  # in place: only a chunk changes
+        zarr.open_group(tmp_path / where)["vertices"][4:8] = 1.9 * V  # in place: only a chunk changes
     else:
-        write(tmp_path / where, vertices=np.concatenate([V, 9 * V, 3 * V]), unit=np.array("cm"))
+        write(tmp_path / where, vertices=np.concatenate([V, 1.9 * V, 1.2 * V]), unit=np.array("cm"))
     with pytest.raises(SourceError, match=f"^{where}, frame 1: the file changed while the run was under way; run again$"):
         surface(frames[1])
     surface(frames[0])

@@ -1,0 +1,135 @@
+"""Which frames of a sequence cannot be of the same body as the others: sizes, places and pieces against the medians (ours)."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.arrays import Faces, Floats
+from kinetree.tasks.numerics.geometry.normals import face_areas
+
+
+class BadFrameSettings(NamedTuple):
+    """Beyond which a frame is not of the same body; far outside of what poses, contacts and lost limbs do."""
+
+    area: float = 3.0
+    """Factor between a frame's area and the median; a limb has at most a third of the area. 3 is a scale of 1.7."""
+    size: float = 3.0
+    """Factor between a frame's size and the median; curled up to stretched out is less than 2."""
+    vertices: float = 20.0
+    """Factor between a frame's number of vertices and the median."""
+    pieces: int = 6
+    """Pieces of 5 % of the area beyond the median number: the surface is torn."""
+    distance: float = 4.0
+    """Sizes and usual steps between a frame's centre and the median of the frames around it."""
+    window: int = 3
+    """Frames on either side with which the place of a frame is compared."""
+    tail: float = 0.05
+    """Share of the area at either end of each axis that size and centre leave out, so that debris does not count."""
+    least: int = 3
+    """Frames from which on there is a median to compare with."""
+
+
+class FrameMeasures(NamedTuple):
+    """What one frame's surface is like: area length², size length, centre (xyz), vertices, pieces of 5 % of the area."""
+
+    area: float
+    size: float
+    centre: tuple[float, float, float]
+    vertices: int
+    pieces: int
+
+
+def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
+    """Area, size and centre without debris, vertices in faces and large pieces of a surface.
+
+    V, F : (vertex, xyz) mesh unit · (face, corner)
+    """
+    tail = BadFrameSettings().tail
+    scale = float(np.abs(V).max()) or 1.0
+    X = V / scale
+    areas = face_areas(X, F)
+    total = float(areas.sum())
+    weight = areas if total > 0 else np.ones(len(F))
+    middle = X[F].mean(axis=1)
+    low, mid, high = np.array([_quantiles(middle[:, k], weight, (tail, 0.5, 1 - tail)) for k in range(3)]).T * scale
+    _, same = np.unique(V, axis=0, return_inverse=True)  # seams do not tear a surface
+    G = same.reshape(-1)[F]
+    n = int(same.max()) + 1
+    links = coo_array((np.ones(2 * len(G), bool), (G[:, [0, 1]].ravel(), G[:, [1, 2]].ravel())), shape=(n, n))
+    _, piece = connected_components(links, directed=False)
+    shares = np.bincount(piece[G[:, 0]], weight) / weight.sum()
+    x, y, z = map(float, mid)
+    return FrameMeasures(total * scale**2, float(np.linalg.norm(high - low)), (x, y, z), n, int((shares >= tail).sum()))
+
+
+def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSettings | None = None) -> dict[int, str]:
+    """Frames that could not be measured or stand out from the others, each with the reason.
+
+    measured : by frame number, ascending; a text says why a frame cannot be read
+    """
+    limit = settings or BadFrameSettings()
+    bad = {t: m for t, m in measured.items() if isinstance(m, str)}
+    surfaces = {t: m for t, m in measured.items() if not isinstance(m, str)}
+    bad |= {t: "its faces have no area" for t, m in surfaces.items() if not 0 < m.area < np.inf}
+    good = {t: m for t, m in surfaces.items() if t not in bad}
+    if len(good) < limit.least:
+        return dict(sorted(bad.items()))
+    bad |= _of_another_size(good, limit)
+    bad |= _elsewhere({t: m for t, m in good.items() if t not in bad}, limit)
+    return dict(sorted(bad.items()))
+
+
+def refuse_bad(bad: Mapping[int, str], count: int, share: float | None) -> None:
+    """Refuses a sequence with bad frames, or with more of them than a share; None allows none. Raises SourceError."""
+    if not bad or (share is not None and len(bad) <= share * count):
+        return
+    named = "; ".join(f"frame {t}: {reason}" for t, reason in list(bad.items())[:3])
+    more = f"; and {len(bad) - 3} more" if len(bad) > 3 else ""
+    remedy = "set source.on_bad_frame=drop to go on without them" if share is None else f"source.bad_share allows {share:g}"
+    raise SourceError(f"{len(bad)} of {count} frames cannot be used ({remedy}): {named}{more}")
+
+
+def _of_another_size(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> dict[int, str]:
+    """Frames whose size, area, vertices or pieces are not those of the others."""
+    bad: dict[int, str] = {}
+    for name, most in (("size", limit.size), ("area", limit.area), ("vertices", limit.vertices)):
+        values = np.array([float(getattr(m, name)) for m in good.values()])
+        median = float(np.median(values))
+        for t, value in zip(good, values, strict=True):
+            if not median / most <= value <= median * most:
+                hint = "; is it in another unit?" if name == "size" else ""
+                have = {"size": "size is", "area": "area is", "vertices": "number of vertices is"}[name]
+                bad.setdefault(t, f"its {have} {value:.4g}, in the median of all frames {median:.4g}{hint}")
+    usual = int(np.median([m.pieces for m in good.values()]))
+    for t, m in good.items():
+        if m.pieces > usual + limit.pieces:
+            bad.setdefault(t, f"its surface is torn into {m.pieces} large pieces, that of most frames has {usual}")
+    return bad
+
+
+def _elsewhere(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> dict[int, str]:
+    """Frames far from where the frames around them are."""
+    C = np.array([m.centre for m in good.values()])
+    if len(C) < limit.least:
+        return {}
+    size = float(np.median([m.size for m in good.values()]))
+    allowed = limit.distance * (size + float(np.median(np.linalg.norm(np.diff(C, axis=0), axis=1))))
+    bad = {}
+    for i, t in enumerate(good):
+        around = np.median(C[max(0, i - limit.window) : i + limit.window + 1], axis=0)
+        distance = float(np.linalg.norm(C[i] - around))
+        if distance > allowed:
+            bad[t] = f"it lies {distance / size:.3g} sizes of the body away from the frames around it"
+    return bad
+
+
+def _quantiles(values: Floats, weight: Floats, shares: tuple[float, ...]) -> list[float]:
+    """The values below which a share of the weight lies."""
+    order = np.argsort(values)
+    below = np.cumsum(weight[order])
+    at = np.searchsorted(below, np.array(shares) * below[-1])
+    return [float(values[order[min(i, len(order) - 1)]]) for i in at]
