@@ -87,6 +87,12 @@ APPLICATION = Application(
                     "kinetree compare walk/ walk-paper/",
                     "kinetree compare walk/ walk-paper/ --truth truth.json --output comparison.html",
                 ),
+                _command(
+                    "reproduce",
+                    "Make the tables and figures of the 2014 paper, by its preset and by the default.",
+                    "kinetree reproduce 2014 --table 1 --table 2",
+                    "kinetree reproduce 2014 --table 2 --input walk/ --truth walk/truth.json",
+                ),
             ),
         ),
         Section("Configure", (built_in("config", "kinetree config > walk.yaml", "kinetree config paper-2014"),)),

@@ -96,7 +96,8 @@ def test_commands_stand_in_their_sections_in_the_order_of_a_persons_work(kinetre
     titles = [line for line in printed.splitlines() if re.fullmatch(r"\w[\w ]*:", line)]
     assert titles == ["Start:", "Look:", "Take away:", "Configure:", "Make:", "Care:", "Options:"]
     names = re.findall(r"^  ([a-z]+) ", printed.partition("Start:")[2].partition("Options:")[0], re.MULTILINE)
-    order = "demo run view show plan why graph tasks runs diff export plot evaluate compare config synth silhouettes gc verify"
+    order = "demo run view show plan why graph tasks runs diff export plot evaluate compare reproduce config synth"
+    order += " silhouettes gc verify"
     assert names == order.split()
 
 

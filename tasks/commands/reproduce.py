@@ -1,0 +1,86 @@
+"""`kinetree reproduce`: the tables and figures of the 2014 paper, by its preset and by the default."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.markup import escape
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.options import AsJson, Set, err, out, print_json
+from kinetree.pipeline.printable import printable
+
+if TYPE_CHECKING:
+    from kinetree.tasks.reproduction.table import Table
+
+PAPERS = ("2014",)
+TABLES = (1, 2)
+FIGURES: tuple[int, ...] = ()
+
+
+def reproduce(
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help="The paper by its year: 2014.")],
+    table: Annotated[
+        list[int] | None, typer.Option("--table", help="1: seconds a frame; 2: errors of joints. May be repeated.")
+    ] = None,
+    source: Annotated[
+        Path | None,
+        typer.Option(
+            "--input",
+            "-i",
+            metavar="FOLDER",
+            help="Your own sequence; default: a generated body, as in kinetree demo.",
+            show_default=False,
+        ),
+    ] = None,
+    truth: Annotated[
+        Path | None, typer.Option("--truth", metavar="FILE", help="The true skeleton; default: the one beside the input.")
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for results and runs.")] = Path("kinetree-reproduce"),
+    sets: Set = None,
+    as_json: AsJson = False,
+) -> None:
+    """Make the tables and figures of the 2014 paper, by its preset and by the default.
+
+    Computes the sequence with both methods and prints their figures beside the paper's. All tables and figures are made
+    unless some are named. Parameters that are set hold for both methods.
+    """
+    if paper not in PAPERS:
+        raise ConfigError(f"{paper}: no such paper; tables and figures are made of {', '.join(PAPERS)}")
+    chosen = _chosen(table, TABLES, "--table")
+    from kinetree.tasks.reproduction.cost import table_1
+    from kinetree.tasks.reproduction.joints import table_2
+    from kinetree.tasks.reproduction.sequence import Sequence
+
+    sequence = Sequence(output, source, truth, tuple(sets or ()), lambda text: err.print(printable(text), markup=False))
+    made = [{1: table_1, 2: table_2}[number](sequence) for number in chosen]
+    files = [one.write(output) for one in made]
+    if as_json:
+        print_json({"tables": [one.json() for one in made], "files": [str(path) for path in files]})
+        return
+    for one in made:
+        _print(one)
+    for path in files:
+        out.print(printable(path), markup=False)
+
+
+def _chosen(numbers: list[int] | None, known: tuple[int, ...], option: str) -> tuple[int, ...]:
+    """The numbers that were asked for, each once; raises ConfigError for one that is not made."""
+    for number in numbers or ():
+        if number not in known:
+            raise ConfigError(f"{option} {number}: not made; there are {', '.join(map(str, known))}")
+    return tuple(n for n in known if not numbers or n in numbers)
+
+
+def _print(table: "Table") -> None:
+    """Prints a table with its title above and its notes below."""
+    from rich.table import Table as Printed
+
+    printed = Printed(box=None, pad_edge=False, header_style="bold", title=table.title, title_justify="left")
+    for i, name in enumerate(table.columns):
+        printed.add_column(escape(name), justify="right" if any(isinstance(r[i], int | float) for r in table.rows) else "left")
+    for row in table.cells():
+        printed.add_row(*(escape(printable(cell)) for cell in row))
+    out.print(printed)
+    for note in table.notes:
+        out.print(printable(note), markup=False)
