@@ -105,7 +105,7 @@ def judged(skeleton: Skeleton) -> Evaluation:
 def confident(
     frames: tuple[int, ...], failed: tuple[int, ...] = (), unreliable: dict[int, float] | None = None
 ) -> FrameConfidence:
-    """All frames are trusted but the failed ones; some have a share of the body in doubt."""
+    """All frames are inliers but the failed ones; some have a share of the body in doubt."""
     none = np.zeros(len(frames))
     return FrameConfidence(
         frames=frames, residual=none, uncovered=none, unreliable=np.array([(unreliable or {}).get(f, 0.0) for f in frames]),
