@@ -5,8 +5,8 @@ is made, which is when `kinetree.tasks` is imported.
 """
 
 import contextlib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -26,6 +26,8 @@ class Graph:
     """Tasks in an order in which each comes after what it reads."""
 
     tasks: tuple[AnyTask, ...]
+    renamed: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    """What tasks of earlier versions are called now; what refuses the old name says so."""
 
     @staticmethod
     def of(tasks: Iterable[AnyTask]) -> "Graph":
@@ -68,9 +70,11 @@ class Graph:
         return tuple(task.name for task in self.tasks if not task.on_request)
 
     def task(self, name: str) -> AnyTask:
-        """The task of that name; raises UnknownNodeError with the nearest one."""
+        """The task of that name; raises UnknownNodeError with its new name or the nearest one."""
         if name not in self.by_name:
-            raise UnknownNodeError(f"no task {name!r}; {nearest(name, self.by_name)}")
+            new_name = self.renamed.get(name, "")
+            instead = f"it is now {new_name!r}" if new_name in self.by_name else nearest(name, self.by_name)
+            raise UnknownNodeError(f"no task {name!r}; {instead}")
         return self.by_name[name]
 
     def writer(self, what: type[Artifact] | str) -> AnyTask:
@@ -153,7 +157,7 @@ class Graph:
             if task.name not in kept:
                 kept.add(task.name)
                 waiting.extend(self.reads(task))
-        return Graph(tuple(task for task in self.tasks if task.name in kept))
+        return replace(self, tasks=tuple(task for task in self.tasks if task.name in kept))
 
     def _remember_code(self) -> None:
         """Digests the code now, while what lies there is what was loaded: a process that lives on while its source is
@@ -212,8 +216,7 @@ def _every_edge_has_a_writer(graph: Graph) -> None:
         for what, artifact in wanted:
             if artifact not in graph.writers:
                 raise MissingWriterError(
-                    f"{task.name} ({task.where}): {what} is {artifact.__name__}"
-                    f" ({artifact.__module__}), which no task writes"
+                    f"{task.name} ({task.where}): {what} is {artifact.__name__} ({artifact.__module__}), which no task writes"
                 )
 
 
@@ -223,9 +226,7 @@ def _every_space_is_opened_once(graph: Graph) -> None:
         opened = [space(path) for path in task.returns.opens] + ([task.over] if task.is_origin and task.over else [])
         for path in opened:
             if not set(task.over) <= set(path[: None if task.is_origin else -1]):
-                raise GraphError(
-                    f"{task.name} ({task.where}) runs over {'/'.join(task.over)} and cannot open {'/'.join(path)}"
-                )
+                raise GraphError(f"{task.name} ({task.where}) runs over {'/'.join(task.over)} and cannot open {'/'.join(path)}")
             if path in seen:
                 raise TwoWritersError(f"two tasks open {'/'.join(path)}: {seen[path].where} and {task.where}")
             seen[path] = task

@@ -66,7 +66,8 @@ class Pipeline:
             graphs = methods
             product = replace(product, methods=lambda: graphs)
         checked = config if isinstance(config, Config) else configuration.load(config, product, sets)
-        return Pipeline(checked, product.methods()[checked.method], Store.at(checked.store))
+        graph = replace(product.methods()[checked.method], renamed=product.renamed)
+        return Pipeline(checked, graph, Store.at(checked.store))
 
     def __repr__(self) -> str:
         """What it runs on and where it leaves things."""

@@ -227,6 +227,8 @@ def _value(content: dict[str, Any], name: str) -> str:
     stats = content.get("arrays", {}).get(name)
     if stats is None:
         return ""
+    if not stats["shape"]:
+        return f"{stats['min']:.6g}" if "min" in stats else "not finite"
     shape = "×".join(map(str, stats["shape"]))
     return f"{shape}, {stats['min']:.6g} … {stats['max']:.6g}, mean {stats['mean']:.6g}" if "min" in stats else shape
 

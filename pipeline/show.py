@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from kinetree.pipeline import views
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.store import Record
-from kinetree.schemas.array import Artifact
+from kinetree.schemas.array import Array, Artifact
 
 
 def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
@@ -48,9 +48,13 @@ def _schema(cls: type[Artifact]) -> dict[str, Any]:
     fields = {}
     for name, field in cls.model_fields.items():
         spec = arrays.get(name)
-        kind = f"{spec.dtype} {spec.layout} in {spec.unit}" if spec else _type_name(field.annotation)
-        fields[name] = {"type": kind, "what": field.description or ""}
+        fields[name] = {"type": _type(spec) if spec else _type_name(field.annotation), "what": field.description or ""}
     return {"name": cls.__name__, "version": cls.version, "fields": fields}
+
+
+def _type(spec: Array) -> str:
+    """An array's dtype, dimensions and unit, e.g. float64 (vertex, xyz=3) in length; a single number has no dimensions."""
+    return f"{spec.dtype} {spec.layout + ' ' if spec.dims else ''}in {spec.unit}"
 
 
 def _provenance(record: Record) -> dict[str, Any]:

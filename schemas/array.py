@@ -34,7 +34,7 @@ class Array:
 
     dtype  : numpy name of the stored dtype; other values are cast where that is safe ("same_kind"), refused where not
     dims   : the dimensions, coarse to fine; equal names have equal sizes throughout one artifact
-    unit   : "length", "area", "1", "rad", … of the values
+    unit   : of the values: "1", "length", "length²", "length³", "°" or "radian"
     finite : whether NaN and infinity are refused
     raises : ArtifactError, when a value breaks the declaration
     """

@@ -175,7 +175,8 @@ def test_every_schema_has_its_operation() -> None:
 def test_a_shelf_lists_all_of_its_tasks(place: str) -> None:
     listed = {m for m in imports(ROOT / "tasks" / place / "__init__.py") if m.startswith(f"kinetree.tasks.{place}.")}
     here = [p for p in OPERATIONS if p.parent.name == place]
-    assert {module(p) for p in here if re.search(r"^@(task|origin)\(", p.read_text(), re.MULTILINE)} <= listed
+    tasks = {module(p) for p in here if re.search(r"^@(task|origin)\(", p.read_text(), re.MULTILINE)}
+    assert tasks <= listed, f"tasks/{place}/__init__.py does not list {', '.join(sorted(tasks - listed))}"
 
 
 def test_every_numeric_file_is_tried_by_laws() -> None:

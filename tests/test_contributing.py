@@ -75,18 +75,21 @@ def test_the_copy_is_what_runs(copy: Path) -> None:
 
 def test_the_new_operation_keeps_the_laws_of_the_house(copy: Path) -> None:
     new = ["tests/topology/test_extent.py", "tests/numerics/topology/test_extent.py"]
-    house = ["tests/test_architecture.py", "tests/schemas/test_schemas.py"]
-    run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", "extent or shelf or reader or ring or size", *new, *house)
+    house = ["tests/test_architecture.py", "tests/schemas/test_schemas.py", "tests/commands/test_plots.py"]
+    laws = "extent or shelf or reader or ring or size or help"
+    run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", laws, *new, *house)
 
 
 def test_the_new_operation_runs_takes_its_parameter_and_is_drawn(copy: Path, tmp_path: Path) -> None:
     out, picture = str(tmp_path / "out"), tmp_path / "extent.png"
     commands = [
         ["run", "demo", "--output", out, "--frames", "0:3", "--executor", "sync", "--until", "extent"],
-        ["plot", out, "extent", "-o", str(picture)],
+        ["plot", out, "extent", "--frames", "all", "-o", str(picture)],
+        ["show", "extent[frame=2]", out],
         ["plan", out, "--set", "extent.quantile=0.1", "--until", "extent", "--json"],
     ]
     printed = run(copy, "-c", ONE_AFTER_ANOTHER, json.dumps(commands))
+    assert "float64 (xyz=3) in length" in printed
     assert picture.read_bytes().startswith(b"\x89PNG")
-    plan = json.loads(printed[printed.index("{") :])
+    plan = json.loads(printed[printed.index("\n{") :])
     assert {row["task"] for row in plan["tasks"] if set(row["states"]) - {"fresh"}} == {"extent"}

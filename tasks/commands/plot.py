@@ -24,7 +24,7 @@ def plot(
     what: Annotated[str, typer.Argument(metavar="WHAT", help=f"One of {', '.join(WHAT)}.")],
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File: .png, .svg or .pdf; default: WHAT.png.")] = None,
     frames: Annotated[
-        str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw; default: four across the sequence.")
+        str, typer.Option("--frames", metavar="N,N,…", help="Frames to draw, or all; default: four across the sequence.")
     ] = "",
     up: Annotated[
         str | None, typer.Option("--up", help="What points up: x, y, z, -x, -y or -z; default: as the run has it.")
@@ -64,10 +64,13 @@ def _axis(up: str | None, fetch: "Fetch") -> int:
 
 
 def _wanted(text: str, known: list[int]) -> list[int]:
-    """The frames that a text names, or four spread over the sequence."""
+    """The frames that a text names, all of them, or four spread over the sequence."""
+    if text.strip() == "all":
+        return known
     if not text:
         return sorted({known[round(i * (len(known) - 1) / 3)] for i in range(4)})
     parts = text.split(",")
     if not all(p.strip().isdigit() and int(p) in known for p in parts):
-        raise ConfigError(f"--frames {text}: write numbers of frames such as 0,12,30; there are {known[0]} to {known[-1]}")
+        there = f"there are {known[0]} to {known[-1]}"
+        raise ConfigError(f"--frames {text}: write all, or numbers of frames such as 0,12,30; {there}")
     return [int(p) for p in parts]

@@ -98,3 +98,12 @@ def test_pictures_stand_as_the_run_says_and_else_along_y() -> None:
     assert plot._axis(None, fetch) == ~2
     assert plot._axis("x", fetch) == 0
     assert plot._axis(None, nothing) == 1
+
+
+def test_frames_are_four_across_the_sequence_or_those_named_or_all() -> None:
+    known = list(range(10, 20))
+    assert plot._wanted("", known) == [10, 13, 16, 19]
+    assert plot._wanted("12, 15", known) == [12, 15]
+    assert plot._wanted("all", known) == known
+    with pytest.raises(ConfigError, match=r"^--frames 3: write all, or numbers of frames such as 0,12,30; there are 10 to 19$"):
+        plot._wanted("3", known)

@@ -10,7 +10,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from kinetree.errors import ConfigError
+from kinetree.errors import ConfigError, UnknownNodeError
 from kinetree.pipeline import application
 from kinetree.pipeline.application import Application, Command, Section, Shortcut, built_in, current
 from kinetree.pipeline.cli import command_line
@@ -189,3 +189,9 @@ def test_commands_are_found_where_they_are_said_to_be(adding):
         built_in("fly")
     with pytest.raises(ModuleNotFoundError):
         Command("fly", "Fly.", "no.such.module:fly").imported()
+
+
+def test_a_pipeline_knows_the_names_that_its_product_gave_up():
+    for look in (lambda p: p.plan(until=["tips"]), lambda p: p.why("tips[frame=3]"), lambda p: p.plan(force=["tips"])):
+        with pytest.raises(UnknownNodeError, match=r"^no task 'tips'; it is now 'extrema'$"):
+            look(Pipeline.of({"source": {"synth": {"frames": 2}}}, application=APPLICATION))

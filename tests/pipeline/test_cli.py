@@ -7,12 +7,14 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import yaml
 
 from kinetree.errors import KinetreeError
-from kinetree.pipeline import cli
+from kinetree.pipeline import cli, queries
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.show import statistics
 from kinetree.tasks.application import APPLICATION, main
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n{x} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -347,6 +349,12 @@ def test_show_tells_schema_shapes_statistics_and_provenance(kinetree, walked):
     assert found["node"] == "mesh[frame=1]"
     assert found["arrays"]["vertices"]["shape"] == [4, 3]
     assert {"key", "code", "versions", "seconds", "peak_bytes_of_the_process", "inputs", "params"} <= set(found["made"])
+
+
+def test_a_single_number_is_shown_as_itself():
+    content = {"arrays": {"volume": statistics(np.array(3.5)), "gap": statistics(np.array(np.nan))}}
+    assert queries._value(content, "volume") == "3.5"
+    assert queries._value(content, "gap") == "not finite"
 
 
 def test_show_of_what_was_not_computed_tells_its_schema(kinetree, scans):

@@ -1,6 +1,7 @@
 """Laws of the graph: tasks come after what they read, and a graph that cannot work is refused at import, naming both places."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import networkx as nx
@@ -366,6 +367,17 @@ def test_unknown_task_is_refused_with_the_nearest():
         graph.until(["leaff"])
     with pytest.raises(UnknownNodeError, match=r"^no task 'xyz'; there are: branches, fruit, harvest, leaf, seed$"):
         graph.task("xyz")
+
+
+def test_a_task_of_an_earlier_version_is_refused_with_its_name_of_today():
+    graph = replace(Graph.of(ALL), renamed={"leaves": "leaf", "bark": "trunk", "xyz": "seed"})
+    for look in (graph, graph.until(["branches"])):
+        with pytest.raises(UnknownNodeError, match=r"^no task 'xyz'; it is now 'seed'$"):
+            look.task("xyz")
+        with pytest.raises(UnknownNodeError, match=r"^no task 'leaves'; it is now 'leaf'$"):
+            look.until(["leaves"])
+    with pytest.raises(UnknownNodeError, match=r"^no task 'bark'; there are: "):
+        graph.task("bark")
 
 
 def test_graph_as_networkx_has_typed_nodes_and_edges():

@@ -23,6 +23,8 @@ MODELS = sorted(
 ARTIFACTS = [m for m in MODELS if issubclass(m, Artifact) and not m.__subclasses__()]
 SETTINGS = [m for m in MODELS if issubclass(m, Params)]
 TASKS = {task.name: task for graph in METHODS.values() for task in graph.tasks}
+UNITS = {"1", "length", "length²", "length³", "°", "radian"}
+"""What arrays are measured in, each written in one way."""
 DIMS = {dim.name: dim for dim in vars(dims).values() if isinstance(dim, Dim)}
 
 
@@ -57,7 +59,7 @@ def test_unknown_parameters_are_refused(model):
 @pytest.mark.parametrize("model", ARTIFACTS, ids=named)
 def test_every_array_has_dimensions_of_the_one_list_and_a_unit(model):
     for name, spec in model.array_fields().items():
-        assert spec.unit, f"{model.__name__}.{name} has no unit"
+        assert spec.unit in UNITS, f"{model.__name__}.{name}: {spec.unit!r} is none of the units {', '.join(sorted(UNITS))}"
         for dim in spec.dims:
             assert DIMS[dim.name] is dim, f"{model.__name__}.{name}: {dim.name} is not the one of dims.py"
         assert len({d.name for d in spec.dims}) == len(spec.dims), f"{model.__name__}.{name} has one dimension twice"
