@@ -28,7 +28,9 @@ from kinetree.tasks.numerics.input.synth.skins import Skin
 from kinetree.tasks.numerics.input.synth.surfacing import spacing_for, surface
 
 MOST_FRAMES = 1_000_000
+"""Frames beyond which a clip is taken for a mistake."""
 _SURFACE, _NOISE, _HOLES, _REST = range(4)
+"""What a frame draws random numbers for, each from a stream of its own."""
 
 
 class Volume(NamedTuple):

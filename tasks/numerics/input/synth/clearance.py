@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import shortest_path
@@ -10,9 +12,17 @@ from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 
-_STEPS = 8
-# Balls nearer to each other along the tree than this multiple of their radii are neighbours, not limbs that may meet.
-_FAR = 2.2
+
+class ClearanceSettings(NamedTuple):
+    """How limbs are compared: as balls along their axes."""
+
+    balls: int = 8
+    """Balls along a limb, evenly spread over its axis."""
+    apart: float = 2.2
+    """Multiple of the sum of two balls' radii; balls nearer along the tree are neighbours, not limbs that may meet."""
+
+
+_SETTINGS = ClearanceSettings()
 
 
 def clearance(figure: Figure, flesh: Flesh, X: Floats) -> Floats:
@@ -21,9 +31,9 @@ def clearance(figure: Figure, flesh: Flesh, X: Floats) -> Floats:
     X       : (frame, joint, xyz)
     returns : (frame,) in the figure's unit; infinite for a figure without two such limbs
     """
-    s = np.linspace(0.0, 1.0, _STEPS)
-    r = flesh.table[:, np.linspace(0, flesh.table.shape[1] - 1, _STEPS).astype(int)].ravel()
-    far = _path_lengths(figure, flesh, s) > _FAR * (r[:, None] + r[None, :])
+    s = np.linspace(0.0, 1.0, _SETTINGS.balls)
+    r = flesh.table[:, np.linspace(0, flesh.table.shape[1] - 1, _SETTINGS.balls).astype(int)].ravel()
+    far = _path_lengths(figure, flesh, s) > _SETTINGS.apart * (r[:, None] + r[None, :])
     i, j = np.nonzero(np.triu(far, 1))
     gap = np.full(len(X), np.inf)
     if len(i):
@@ -36,14 +46,14 @@ def clearance(figure: Figure, flesh: Flesh, X: Floats) -> Floats:
 def _path_lengths(figure: Figure, flesh: Flesh, s: Floats) -> Floats:
     """(ball, ball) lengths of the ways along the limbs' axes at rest."""
     limbs, joints = len(flesh.parent), len(figure.joints)
-    ball = np.arange(limbs * _STEPS).reshape(limbs, _STEPS)
+    ball = np.arange(limbs * _SETTINGS.balls).reshape(limbs, _SETTINGS.balls)
     length = np.linalg.norm(figure.rest[flesh.child] - figure.rest[flesh.parent], axis=1)
     # A zero would mean "no edge" to the sparse graph, so balls at a joint are tied to it by a negligible length.
     rows = [ball[:, :-1].ravel(), ball[:, 0], ball[:, -1]]
-    columns = [ball[:, 1:].ravel(), limbs * _STEPS + flesh.parent, limbs * _STEPS + flesh.child]
+    columns = [ball[:, 1:].ravel(), limbs * _SETTINGS.balls + flesh.parent, limbs * _SETTINGS.balls + flesh.child]
     tie = 1e-9 * length
-    weights = [np.repeat(length / (_STEPS - 1), _STEPS - 1), tie, tie]
-    size = limbs * _STEPS + joints
+    weights = [np.repeat(length / (_SETTINGS.balls - 1), _SETTINGS.balls - 1), tie, tie]
+    size = limbs * _SETTINGS.balls + joints
     graph = coo_matrix((np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
     paths = shortest_path(graph.tocsr(), directed=False)
-    return np.asarray(paths[: limbs * _STEPS, : limbs * _STEPS], dtype=np.float64)
+    return np.asarray(paths[: limbs * _SETTINGS.balls, : limbs * _SETTINGS.balls], dtype=np.float64)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -18,12 +18,30 @@ from kinetree.tasks.numerics.input.synth.implicit import Cones, values
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics
 
 _KEYS = ("limb", "target", "begin", "end", "ramp", "direction")
-# The end of a limb sinks into the target by this share of its radius: enough for any sensible voxel to merge them.
-_SINK = 0.6
-# Sine of the angle at which the last bone stands off the skin.
-_STEEP = 0.6
-_ROUNDS = 120
-_DAMPING = 1e-3
+
+
+class ContactSettings(NamedTuple):
+    """How deep and how steeply a limb's end touches, and how inverse kinematics gets it there."""
+
+    sink: float = 0.6
+    """Depth of the limb's end in the target, share of its radius: enough for any sensible voxel to merge them."""
+    steepness: float = 0.6
+    """Sine of the angle at which the last bone stands off the skin."""
+    iterations: int = 120
+    """Most steps of inverse kinematics; it ends after half of them once the goal is reached."""
+    damping: float = 1e-3
+    """Damping of the least squares, share of the trace of J Jᵀ."""
+    largest_step: float = 0.2
+    """Most that a joint turns in one step, radian."""
+    lift: float = 0.2
+    """Share of the way to `steepness` that one step goes."""
+    reached: float = 1e-4
+    """Distance from the goal at which a step is the last, share of the height."""
+    tolerance: float = 0.002
+    """Distance from the goal from which the limb counts as too short, share of the height."""
+
+
+_SETTINGS = ContactSettings()
 
 
 @dataclass(frozen=True)
@@ -105,7 +123,7 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
     goal, away = _goal(figure, flesh, contact, R, shift, chain)
     bent, miss = _reach(figure, contact.limb, chain, goal[busy], away[busy], R[busy], shift[busy])
     held = weight[busy] == 1.0
-    if miss[held].max() > 0.002 * figure.height:
+    if miss[held].max() > _SETTINGS.tolerance * figure.height:
         names = ", ".join(figure.joints[j].name for j in chain)
         raise FigureError(
             f"contact of {figure.joints[contact.limb].name!r} with {figure.joints[contact.target].name!r}: turning "
@@ -151,7 +169,7 @@ def _goal(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: Floa
     field, _ = values(cones, X[middle, contact.target] + ray[:, None] * (G[middle, carrier] @ u))
     skin = ray[np.flatnonzero(field < 0.0)[-1]] if (field < 0.0).any() else 0.0
     end = figure.joints[contact.limb]
-    depth = skin + (1.0 - _SINK) * end.radii[-1] * end.flatten
+    depth = skin + (1.0 - _SETTINGS.sink) * end.radii[-1] * end.flatten
     away = G[:, carrier] @ u
     return X[:, contact.target] + depth * away, away
 
@@ -166,18 +184,23 @@ def _reach(
     goal, away : (frame, xyz) place of the limb's end, and unit normal of the skin there
     """
     R = R.copy()
-    for round_ in range(_ROUNDS):
+    for step in range(_SETTINGS.iterations):
         X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
         e = goal - X[:, limb]
-        if round_ >= _ROUNDS // 2 and np.linalg.norm(e, axis=1).max() < 1e-4 * figure.height:
+        if step >= _SETTINGS.iterations // 2 and np.linalg.norm(e, axis=1).max() < _SETTINGS.reached * figure.height:
             break
         J, K = (_jacobian(X, chain, joint) for joint in (limb, chain[0]))
-        pinned = np.linalg.inv(J @ _T(J) + _DAMPING * np.trace(J @ _T(J), axis1=1, axis2=2)[:, None, None] * np.eye(3))
+        pinned = np.linalg.inv(J @ _T(J) + _SETTINGS.damping * np.trace(J @ _T(J), axis1=1, axis2=2)[:, None, None] * np.eye(3))
         omega = _T(J) @ pinned @ e[:, :, None]
-        lift = 0.2 * _T(K) @ _lift(X[:, limb], X[:, chain[0]], away)[:, :, None] / (np.sum(K**2, axis=(1, 2))[:, None, None])
+        lift = (
+            _SETTINGS.lift
+            * _T(K)
+            @ _lift(X[:, limb], X[:, chain[0]], away)[:, :, None]
+            / (np.sum(K**2, axis=(1, 2))[:, None, None])
+        )
         omega += lift - _T(J) @ pinned @ J @ lift
         turns = omega.reshape(len(R), len(chain), 3)
-        turns /= np.maximum(1.0, np.linalg.norm(turns, axis=2, keepdims=True) / 0.2)
+        turns /= np.maximum(1.0, np.linalg.norm(turns, axis=2, keepdims=True) / _SETTINGS.largest_step)
         for c, j in enumerate(chain):
             P = G[:, figure.parents[j]]
             R[:, j] = _T(P) @ Rotation.from_rotvec(turns[:, c]).as_matrix() @ P @ R[:, j]
@@ -197,14 +220,14 @@ def _jacobian(X: Floats, chain: list[int], joint: int) -> Floats:
 
 
 def _lift(end: Floats, knuckle: Floats, away: Floats) -> Floats:
-    """(frame, xyz) how far the last bone's other joint must go to stand off the skin by `_STEEP`; zero where it does."""
+    """(frame, xyz) how far the last bone's other joint must go to stand off the skin as settings say; zero where it does."""
     bone = knuckle - end
     length = np.linalg.norm(bone, axis=1, keepdims=True)
     rise = np.einsum("ti,ti->t", bone, away)[:, None] / length
     level = bone / length - rise * away
     level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-12)
-    wanted = length * (_STEEP * away + np.sqrt(1.0 - _STEEP**2) * level)
-    return np.where(rise < _STEEP, wanted - bone, 0.0)
+    wanted = length * (_SETTINGS.steepness * away + np.sqrt(1.0 - _SETTINGS.steepness**2) * level)
+    return np.where(rise < _SETTINGS.steepness, wanted - bone, 0.0)
 
 
 def _T(A: Floats) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -9,9 +11,17 @@ from scipy.sparse.csgraph import connected_components
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 
-# Share of the noise's variance that varies smoothly over the surface, as errors of silhouettes and stereo do.
-_SMOOTH_SHARE = 0.4
-_WAVES = 32
+
+class NoiseSettings(NamedTuple):
+    """What the noise is made of."""
+
+    smooth_share: float = 0.4
+    """Share of the variance that varies smoothly over the surface, as errors of silhouettes and stereo do."""
+    waves: int = 32
+    """Plane waves in the smooth part."""
+
+
+_SETTINGS = NoiseSettings()
 
 
 def roughened(V: Floats, F: Ints, sigma: float, wavelength: float, rng: np.random.Generator) -> Floats:
@@ -22,10 +32,10 @@ def roughened(V: Floats, F: Ints, sigma: float, wavelength: float, rng: np.rando
     V          : (vertex, xyz); sigma, wavelength : its unit
     returns    : (vertex, xyz)
     """
-    k = rng.normal(size=(3, _WAVES)) * (2.0 * np.pi / wavelength / np.sqrt(3.0))
-    smooth = np.cos(np.einsum("vi,iw->vw", V, k) + rng.uniform(0.0, 2.0 * np.pi, _WAVES)).sum(axis=1)
-    noise = np.sqrt(_SMOOTH_SHARE) * smooth / np.sqrt(0.5 * _WAVES)
-    noise += np.sqrt(1.0 - _SMOOTH_SHARE) * rng.normal(size=len(V))
+    k = rng.normal(size=(3, _SETTINGS.waves)) * (2.0 * np.pi / wavelength / np.sqrt(3.0))
+    smooth = np.cos(np.einsum("vi,iw->vw", V, k) + rng.uniform(0.0, 2.0 * np.pi, _SETTINGS.waves)).sum(axis=1)
+    noise = np.sqrt(_SETTINGS.smooth_share) * smooth / np.sqrt(0.5 * _SETTINGS.waves)
+    noise += np.sqrt(1.0 - _SETTINGS.smooth_share) * rng.normal(size=len(V))
     noise *= sigma / np.sqrt(np.mean(noise**2))
     return V + noise[:, None] * vertex_normals(V, F)
 
@@ -47,6 +57,6 @@ def punctured(V: Floats, F: Ints, count: int, radius: float, rng: np.random.Gene
         _, patch = connected_components(links, directed=False)
         F = F[~(inside & (patch[F[:, 0]] == patch[centre]))]
     used = np.unique(F)
-    renamed = np.full(len(V), -1, dtype=np.int64)
-    renamed[used] = np.arange(len(used))
-    return V[used], renamed[F]
+    new_index = np.full(len(V), -1, dtype=np.int64)
+    new_index[used] = np.arange(len(used))
+    return V[used], new_index[F]

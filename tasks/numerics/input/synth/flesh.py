@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -12,9 +13,17 @@ from kinetree.tasks.numerics.input.synth.descriptions import Joint
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.implicit import Cones
 
-_KNOTS = 17
-# A limb shorter than this multiple of its radius is a link: the limbs at its two ends meet in one crease.
-_SHORT = 1.5
+
+class FleshSettings(NamedTuple):
+    """How limbs are given their flesh."""
+
+    knots: int = 17
+    """Radii that a limb's profile is stored as, at even steps along its axis."""
+    link: float = 1.5
+    """Multiple of its largest radius; a shorter limb is a link: the limbs at its two ends meet in one crease."""
+
+
+_SETTINGS = FleshSettings()
 
 
 @dataclass(frozen=True)
@@ -45,7 +54,7 @@ class Flesh:
         D = figure.rest[child] - figure.rest[parent]
         length = np.linalg.norm(D, axis=1)
         table = np.array([_profile(figure.joints[j].radii) for j in limbs])
-        steps = np.abs(np.diff(table, axis=1)).max(axis=1) / (length / (_KNOTS - 1))
+        steps = np.abs(np.diff(table, axis=1)).max(axis=1) / (length / (_SETTINGS.knots - 1))
         side = np.array([_across(figure.joints[j].side, d) for j, d in zip(limbs, D, strict=True)])
         flat = np.array([figure.joints[j].flatten for j in limbs])
         groups = _blends(parent, child, length, table)
@@ -76,7 +85,7 @@ def _profile(radii: tuple[float, ...]) -> Floats:
     s = np.linspace(0.0, 1.0, len(r))
     tangents = np.gradient(r, s) if len(r) > 2 else np.zeros(2)
     tangents[[0, -1]] = 0.0
-    smooth = CubicHermiteSpline(s, r, tangents)(np.linspace(0.0, 1.0, _KNOTS))
+    smooth = CubicHermiteSpline(s, r, tangents)(np.linspace(0.0, 1.0, _SETTINGS.knots))
     return np.asarray(np.clip(smooth, r.min(), r.max()), dtype=np.float64)
 
 
@@ -94,7 +103,7 @@ def _blends(parent: Ints, child: Ints, length: Floats, table: Floats) -> list[tu
     The second rule lets a thigh blend with the belly through the short link to the hip, but not with the other thigh.
     """
     ends = np.stack([parent, child], axis=1)
-    short = length < _SHORT * table.max(axis=1)
+    short = length < _SETTINGS.link * table.max(axis=1)
     groups = []
     for j in range(int(child.max()) + 1):
         here = [int(b) for b in np.flatnonzero((ends == j).any(axis=1))]

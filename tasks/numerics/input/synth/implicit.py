@@ -16,6 +16,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 
 _BLOCK = 4
+"""Grid points along the side of a block; a bound at its centre decides whether any of them is near the surface."""
 
 
 class Cones(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -12,9 +12,17 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import Curve, Motion
 from kinetree.tasks.numerics.input.synth.figures import Figure
 
-_SCORED_DEGREES = 15.0
-# A joint that turns less than this in the clip leaves its two sides one rigid part.
-_RIGID_DEGREES = 0.5
+
+class TruthSettings(NamedTuple):
+    """From which angle on a joint counts; turning is the largest angle between two frames of the clip."""
+
+    scored: float = 15.0
+    """Degrees from which a joint is scored."""
+    rigid: float = 0.5
+    """Degrees below which the two sides of a joint are one rigid part."""
+
+
+_SETTINGS = TruthSettings()
 
 
 def curve_values(curve: Curve, seconds: Floats) -> Floats:
@@ -102,7 +110,7 @@ def true_joints(figure: Figure, R: Floats) -> tuple[list[dict[str, Any]], list[l
         root, tip = joint.parent < 0, j not in carries
         if tip:
             part = None
-        elif root or turns[j] >= _RIGID_DEGREES:
+        elif root or turns[j] >= _SETTINGS.rigid:
             part = len(parts)
             parts.append([joint.name])
         else:
@@ -111,5 +119,5 @@ def true_joints(figure: Figure, R: Floats) -> tuple[list[dict[str, Any]], list[l
         angle = 0.0 if tip else float(turns[j])
         parent = None if root else figure.joints[joint.parent].name
         row = {"name": joint.name, "parent": parent, "kind": "tip" if tip else "joint", "turns_deg": round(angle, 1)}
-        joints.append({**row, "scored": not root and angle >= _SCORED_DEGREES, "part": part})
+        joints.append({**row, "scored": not root and angle >= _SETTINGS.scored, "part": part})
     return joints, parts

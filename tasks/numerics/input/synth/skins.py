@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +11,17 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.implicit import limb_distances, values
 
-_ROUNDS = 6
+
+class SkinSettings(NamedTuple):
+    """How a skin is bound to the limbs and settled on them."""
+
+    width: float = 0.8
+    """Distance beyond that to the nearest limb at which another limb has no weight left, share of its smallest radius."""
+    settling_steps: int = 6
+    """Steps along the gradient onto the implicit surface after linear blend skinning."""
+
+
+_SETTINGS = SkinSettings()
 
 
 @dataclass(frozen=True)
@@ -36,7 +47,7 @@ class Skin:
         rest : (joint, xyz) rest positions; V : (vertex, xyz) on the surface at rest
         """
         d = limb_distances(flesh.at(rest, np.tile(np.eye(3), (len(rest), 1, 1))), V)
-        width = 0.8 * flesh.table.min(axis=1)
+        width = _SETTINGS.width * flesh.table.min(axis=1)
         closeness = np.maximum(1.0 - (d - d.min(axis=1, keepdims=True)) / width, 0.0) ** 2
         through = np.stack([(closeness * near).max(axis=1) for near in flesh.neighbours], 1)
         weights = closeness * through
@@ -56,7 +67,7 @@ class Skin:
             V += self.weights[:, b, None] * (X[p] + np.einsum("ij,vj->vi", G[p], self.V - rest[p]))
         near = (flesh.neighbours @ flesh.neighbours)[self.owner]
         cones = flesh.at(X, G)
-        for _ in range(_ROUNDS):
+        for _ in range(_SETTINGS.settling_steps):
             f, g = values(cones, V, near)
             V -= f[:, None] * g
         return V

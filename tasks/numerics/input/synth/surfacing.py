@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -12,9 +14,18 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.input.synth.implicit import Cones, extent, grid_values
 
-# A value closer to zero than this share of the spacing is pushed away from it: the surface moves by less than a
-# fiftieth of a voxel, and no two vertices fall together at a grid point.
-_SNAP = 0.02
+
+class SurfacingSettings(NamedTuple):
+    """How the grid is chosen and kept clear of the surface."""
+
+    snap: float = 0.02
+    """Share of the spacing; a value closer to zero is pushed away from it: the surface moves by less than a fiftieth of a
+    voxel, and no two vertices fall together at a grid point."""
+    coarseness: tuple[float, ...] = (2.0, 1.2)
+    """Spacings of the grids on which crossings are counted, one after the other, as multiples of the last estimate."""
+
+
+_SETTINGS = SurfacingSettings()
 
 
 def surface(cones: Cones, spacing: float, rng: np.random.Generator, vertices: int | None = None) -> tuple[Floats, Ints]:
@@ -32,11 +43,11 @@ def surface(cones: Cones, spacing: float, rng: np.random.Generator, vertices: in
     shift = rng.random(3)
     turned = cones._replace(A=_turned(cones.A, turn), D=_turned(cones.D, turn), side=_turned(cones.side, turn))
     if vertices is not None:
-        for coarseness in (2.0, 1.2):
+        for coarseness in _SETTINGS.coarseness:
             coarse, _ = _sampled(turned, coarseness * spacing, shift)
             spacing *= coarseness * float(np.sqrt(max(_crossings(coarse), 1) / vertices))
     field, origin = _sampled(turned, spacing, shift)
-    V, F, _, _ = marching_cubes(_clear_of_zero(field, _SNAP * spacing), 0.0, gradient_direction="descent")
+    V, F, _, _ = marching_cubes(_clear_of_zero(field, _SETTINGS.snap * spacing), 0.0, gradient_direction="descent")
     V, F = largest_component(V.astype(np.float64), F.astype(np.int64))
     return _turned(origin + spacing * V, turn.T), F
 
@@ -55,8 +66,8 @@ def largest_component(V: Floats, F: Ints) -> tuple[Floats, Ints]:
     a, b, c = (V[F[:, k]] - V[0] for k in range(3))
     volume = np.bincount(component[F[:, 0]], np.einsum("fi,fi->f", a, np.cross(b, c)), minlength=count)
     largest = component == np.argmax(volume)
-    renamed = np.cumsum(largest, dtype=np.int64) - 1
-    return V[largest], renamed[F[largest[F[:, 0]]]]
+    new_index = np.cumsum(largest, dtype=np.int64) - 1
+    return V[largest], new_index[F[largest[F[:, 0]]]]
 
 
 def spacing_for(cones: Cones, vertices: int) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,26 @@ from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations
 
-_SECONDS = np.linspace(0.0, 4.0, 61)
-# Limbs stay this share of the height apart, which is more than a voxel from about 2,000 vertices on.
-_GAP = 0.035
-_LEAST_AMPLITUDE = 11.0
+
+class TreeSettings(NamedTuple):
+    """What a draft must keep to."""
+
+    seconds: float = 4.0
+    """Time in which limbs are kept apart, seconds."""
+    times: int = 61
+    """Moments of that time that are looked at."""
+    gap: float = 0.035
+    """Least gap between limbs, share of the height: more than a voxel from about 2,000 vertices on."""
+    least_amplitude: float = 11.0
+    """Degrees to which a calmed swing keeps: twice that is more than the 15° from which a joint is scored."""
+    calming: tuple[float, ...] = (1.0, 0.8, 0.64, 0.5, 0.4)
+    """Shares of the amplitudes that are tried before a draft is thrown away."""
+    drafts: int = 12
+    """Drafts after which there is one limb less."""
+
+
+_SETTINGS = TreeSettings()
+_SECONDS = np.linspace(0.0, _SETTINGS.seconds, _SETTINGS.times)
 
 
 def random_tree(seed: int) -> Figure:
@@ -28,9 +44,9 @@ def random_tree(seed: int) -> Figure:
     limbs = int(rng.integers(3, 7))
     draft = 0
     while True:
-        description = _draft(rng, max(2, limbs - draft // 12), f"tree-{seed}")
+        description = _draft(rng, max(2, limbs - draft // _SETTINGS.drafts), f"tree-{seed}")
         if _keeps_apart(Figure.of(description), np.zeros(0)):
-            for calm in (1.0, 0.8, 0.64, 0.5, 0.4):
+            for calm in _SETTINGS.calming:
                 figure = Figure.of(_calmed(description, calm))
                 if _keeps_apart(figure, _SECONDS):
                     return figure
@@ -115,7 +131,10 @@ def _calmed(description: dict[str, Any], share: float) -> dict[str, Any]:
     """The draft with every amplitude reduced to a share of it, but never so far that the joint is not scored."""
     (name, curves), *_ = description["motions"].items()
     calmer = {
-        joint: [{**row, "amplitude": max(share * row["amplitude"], min(row["amplitude"], _LEAST_AMPLITUDE))} for row in rows]
+        joint: [
+            {**row, "amplitude": max(share * row["amplitude"], min(row["amplitude"], _SETTINGS.least_amplitude))}
+            for row in rows
+        ]
         for joint, rows in curves.items()
     }
     return {**description, "motions": {name: calmer}}
@@ -125,7 +144,9 @@ def _keeps_apart(figure: Figure, seconds: Floats) -> bool:
     """Whether the limbs stay apart at rest and at the given times."""
     R, shift = joint_rotations(figure, figure.motion(None), seconds)
     X, _ = forward_kinematics(figure.rest, figure.parents, R, shift)
-    return bool(clearance(figure, Flesh.of(figure), np.concatenate([figure.rest[None], X])).min() > _GAP * figure.height)
+    return bool(
+        clearance(figure, Flesh.of(figure), np.concatenate([figure.rest[None], X])).min() > _SETTINGS.gap * figure.height
+    )
 
 
 def _direction(rng: np.random.Generator) -> Floats:
