@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Flags, Floats, Ints, Labels
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.normals import area_vectors
 from kinetree.tasks.numerics.geometry.orientation import half_edges, lexicographic, oriented, winding
+from kinetree.tasks.numerics.input.welding import welded
 from kinetree.tasks.numerics.input.whole_faces import whole_faces
 
 _SMALLEST_DIAGONAL = 1e-100
@@ -153,31 +151,6 @@ def clean(
         area=float(area[keep].sum() * diagonal**2),
         volume=float("nan") if any(edges[:3]) else _volume(X, G[keep]) * diagonal**3,
     )
-
-
-def welded(X: Floats, tolerance: float) -> Faces:
-    """For every vertex the first vertex at its place.
-
-    Closeness is carried along chains, so that the vertices that stay are further apart than `tolerance`.
-
-    X         : (vertex, xyz)
-    tolerance : in the unit of X; 0 welds equal coordinates only
-    returns   : (vertex,) the first vertex of the cluster, itself if alone
-    """
-    order = np.lexsort(X.T)
-    new = np.r_[True, (np.diff(X[order], axis=0) != 0).any(axis=1)]
-    cluster = np.empty(len(X), dtype=np.int64)
-    cluster[order] = np.cumsum(new) - 1
-    # equal vertices are one before any pair is listed: ten thousand at one place would be fifty million pairs
-    place = X[order[new]]
-    if tolerance > 0:
-        tree = cKDTree(place, balanced_tree=False)
-        i, j = tree.query_pairs(tolerance, output_type="ndarray").T
-        near = coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(place), len(place)))
-        cluster = connected_components(near, directed=False)[1][cluster]
-    first = np.full(int(cluster.max()) + 1, len(X), dtype=np.int32)
-    np.minimum.at(first, cluster, np.arange(len(X), dtype=np.int32))
-    return first[cluster]
 
 
 def _relative(V: Floats, F: Faces, name: str) -> tuple[Floats, float]:

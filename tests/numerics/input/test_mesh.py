@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.geometry.orientation import oriented, winding
-from kinetree.tasks.numerics.input.mesh import clean, welded
+from kinetree.tasks.numerics.input.mesh import clean
+from kinetree.tasks.numerics.input.welding import welded
 
 
 def sphere(subdivisions=3, radius=1.0, centre=(0.0, 0.0, 0.0)):
