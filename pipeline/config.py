@@ -22,6 +22,8 @@ from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 
 M = TypeVar("M", bound=BaseModel)
+BUCKET = "s3://"
+"""How the address of a bucket begins, which may take the place of the store's folder."""
 RUN_KEYS = ("extends", "method", "output", "store", "compute")
 
 
@@ -107,7 +109,8 @@ class Config:
     method: str
     params: Mapping[str, Params]
     output: Path
-    store: Path
+    store: Path | str
+    """A folder, or the address of a bucket."""
     compute: Compute
     is_left: bool = field(default=False, compare=False)
     """Whether an earlier run left it in its output folder, which was named."""
@@ -146,7 +149,12 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, application.renamed, origins)
     params = {name: checked(cls, block(blocks, name), name, origins, application.renamed) for name, cls in known.items()}
     output = _folder(blocks, "output", origins) or Path(f"{application.name}-output").absolute()
-    store = _folder(blocks, "store", origins) or output / "store"
+    address = blocks.get("store")
+    store: Path | str = output / "store"
+    if isinstance(address, str) and address.startswith(BUCKET):
+        store = address
+    else:
+        store = _folder(blocks, "store", origins) or store
     _refuse_own_input(params, output, where)
     compute = checked(Compute, compute_block(blocks, reading), "compute", origins)
     return Config(method, params, output, store, compute, is_output(target))
@@ -234,7 +242,7 @@ def _folder(blocks: Mapping[str, Any], key: str, origins: Origins) -> Path | Non
     if not isinstance(path, str) or not path:
         raise ConfigError(f"{where}: {key}: expected the path of a folder, got {_short(path)}; put it in quotes if it is one")
     if "://" in path:
-        raise ConfigError(f"{where}: {key}: {path} is the address of a service, which is not supported yet; give a folder")
+        raise ConfigError(f"{where}: {key}: {path} is the address of a service, which is not supported; give a folder")
     return expanded(path).absolute()
 
 

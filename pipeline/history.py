@@ -92,7 +92,7 @@ def new_name() -> str:
 
 def output_name(config: Config) -> str:
     """What a store calls an output folder: by the way to it where the store lies in it and moves with it."""
-    is_inside = config.store.is_relative_to(config.output)
+    is_inside = isinstance(config.store, Path) and config.store.is_relative_to(config.output)
     return os.path.relpath(config.output, config.store) if is_inside else str(Path(config.output))
 
 

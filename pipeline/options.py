@@ -27,7 +27,7 @@ Target = Annotated[
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="TASK.NAME=VALUE", help="Set one parameter; may be repeated.")]
 Output = Annotated[str | None, typer.Option("--output", "-o", help="Folder for the results.")]
 StoreAt = Annotated[
-    str | None, typer.Option("--store", help="Folder in which computed data is kept between runs; default: OUTPUT/store.")
+    str | None, typer.Option("--store", help="Folder or s3:// address in which computed data is kept; default: OUTPUT/store.")
 ]
 Until = Annotated[
     list[str] | None,

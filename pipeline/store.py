@@ -46,12 +46,8 @@ class Store:
 
     @staticmethod
     def at(url: str | Path) -> "Store":
-        """The store at a folder's path; raises StoreError where something else lies there."""
-        text = str(url)
-        if "://" in text:
-            scheme = text.partition("://")[0]
-            raise StoreError(f"store {text}: {scheme}:// is not supported yet; give a folder")
-        place = Folder(Path(text).expanduser())
+        """The store at a folder's path or at s3://bucket/prefix; raises StoreError where something else lies there."""
+        place = _place(str(url))
         store = Store(place, Records(place))
         store._refuse_strangers()
         return store
@@ -205,7 +201,7 @@ class Store:
                     f"store {self.url}: its format is {version!r}, this version reads {FORMAT!r}; name another folder with"
                     " --store, remove this one, or use the kinetree that wrote it"
                 )
-        elif Path(self.place.url).is_file():
+        elif isinstance(self.place, Folder) and self.place.root.is_file():
             raise StoreError(f"store {self.url}: this is a file; a store is a folder, name one with --store")
         elif set(self.place.names("")) - PARTS:
             raise StoreError(
@@ -220,6 +216,17 @@ class Store:
         if group is None:
             raise DamagedArtifactError(digest, "it is missing")
         return group
+
+
+def _place(url: str) -> Place:
+    scheme, separator, _ = url.partition("://")
+    if not separator:
+        return Folder(Path(url).expanduser())
+    if scheme != "s3":
+        raise StoreError(f"store {url}: {scheme}:// is not supported; give a folder or s3://bucket/folder")
+    from kinetree.pipeline.bucket import Bucket
+
+    return Bucket(url)
 
 
 def artifact_path(digest: str) -> str:

@@ -438,7 +438,7 @@ def test_store_that_is_no_store(refused, scans, tmp_path):
     )
     assert refused("-i", "scans", "--store", "scans/0.off").startswith(f"store {scans / '0.off'}: this is a file; ")
     assert everything(scans) == before
-    assert refused("-i", "scans", "--store", "s3://bucket/x").endswith("which is not supported yet; give a folder")
+    assert refused("-i", "scans", "--store", "gs://bucket/x").endswith("which is not supported; give a folder")
 
 
 def test_output_that_is_a_file(kinetree, scans, tmp_path):

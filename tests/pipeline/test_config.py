@@ -110,6 +110,11 @@ def test_tilde_is_the_users_home_and_an_unknown_one_a_name(write, tmp_path, monk
     assert config.params["source"].input == "/home/me/scans"
 
 
+def test_store_may_be_in_a_bucket_and_is_saved_as_its_address(write):
+    config = of(write("near/walk.yaml", "store: s3://bucket/deep\n"))
+    assert config.store == config.saved()["store"] == config.portable()["store"] == "s3://bucket/deep"
+
+
 # ── refusals ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
 
@@ -140,7 +145,7 @@ def test_tilde_is_the_users_home_and_an_unknown_one_a_name(write, tmp_path, monk
         ("output: 5", "output: expected the path of a folder, got 5; put it in quotes if it is one"),
         ("store: [a]", "store: expected the path of a folder, got ['a']"),
         ("output: ''", "output: expected the path of a folder, got ''"),
-        ("store: s3://bucket/x", "store: s3://bucket/x is the address of a service, which is not supported yet; give a folder"),
+        ("store: gs://bucket/x", "store: gs://bucket/x is the address of a service, which is not supported; give a folder"),
     ],
 )  # fmt: skip
 def test_wrong_key_or_value_is_refused_with_file_key_and_what_was_expected(write, text, told):
