@@ -13,7 +13,7 @@ from typing import Any
 import networkx as nx
 
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
-from kinetree.pipeline.key import code_parts
+from kinetree.pipeline.key import code_parts, keep_code
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space
 from kinetree.schemas.array import Artifact
@@ -166,6 +166,7 @@ class Graph:
         for task in self.tasks:
             with contextlib.suppress(ImportError, ValueError):  # tasks typed at a prompt can be drawn, not run
                 code_parts(task.module, task.name)
+        keep_code()
 
     def networkx(self) -> "nx.DiGraph[str]":
         """Task names as nodes (with over, artifact, params, paper, summary), edges with argument, form and previous.

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinetree.pipeline.code_cache import CodeCache, Identified
 from kinetree.pipeline.definitions import Code
 from kinetree.pipeline.modules import IMPORTS, STATEMENTS, Definition
 from kinetree.schemas.array import Artifact
@@ -101,10 +102,23 @@ def code_parts(module: str, name: str) -> Mapping[str, str]:
     return _identified(module, name)[1]
 
 
+def keep_code() -> None:
+    """Keeps on disk the code digests asked for so far, so that the next process need not compute them."""
+    _kept_code().save()
+
+
 @cache
-def _identified(module: str, name: str) -> tuple[str, dict[str, str]]:
-    package = module.partition(".")[0]
-    code = _code(CODE_ROOTS if package == "kinetree" else (*CODE_ROOTS, package))
+def _identified(module: str, name: str) -> Identified:
+    if not _is_own(module):
+        return _computed(module, name)
+    kept, task = _kept_code(), f"{module}:{name}"
+    if task not in kept.known:
+        kept.add(task, _computed(module, name))
+    return kept.known[task]
+
+
+def _computed(module: str, name: str) -> Identified:
+    code = _code(CODE_ROOTS if _is_own(module) else (*CODE_ROOTS, module.partition(".")[0]))
     with _collection_paused():
         reached = code.reached(module, name)
     found: dict[Definition, str] = {}
@@ -133,6 +147,17 @@ def forget_code() -> None:
     """Makes the code be read again, for a process that reloads its modules after an edit."""
     _identified.cache_clear()
     _code.cache_clear()
+    _kept_code.cache_clear()
+
+
+def _is_own(module: str) -> bool:
+    """Whether a task is defined in the packages that always count; others' texts change too often to be worth keeping."""
+    return f"{module}.".startswith(tuple(f"{root}." for root in CODE_ROOTS))
+
+
+@cache
+def _kept_code() -> CodeCache:
+    return CodeCache.of(_code(CODE_ROOTS).texts)
 
 
 @cache

@@ -1,0 +1,73 @@
+"""Laws of kept code digests: they are those that would be computed, and what is kept of other code is never taken."""
+
+import pytest
+
+from kinetree.pipeline import key
+from kinetree.pipeline.code_cache import FILES_KEPT, CodeCache
+from kinetree.tasks.input.mesh import mesh
+
+TEXTS = {"a.b": "def f(): return 1\n", "a.c": "X = 2\n"}
+FOUND = ("0" * 40, {"a.b": "f:000000"})
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    key.forget_code()
+    yield tmp_path / "kinetree" / "code"
+    key.forget_code()
+
+
+def kept(texts=TEXTS):
+    cache = CodeCache.of(texts)
+    cache.add("a.b:f", FOUND)
+    cache.save()
+    return cache
+
+
+def test_what_was_kept_is_found_again():
+    kept()
+    assert CodeCache.of(dict(reversed(TEXTS.items()))).known == {"a.b:f": FOUND}
+
+
+@pytest.mark.parametrize("texts", [{**TEXTS, "a.c": "X = 3\n"}, {**TEXTS, "a.d": ""}, {"a.b": TEXTS["a.b"]}, {}])
+def test_other_code_finds_nothing(texts):
+    kept()
+    assert CodeCache.of(texts).known == {}
+
+
+def test_every_altered_byte_of_a_kept_file_is_noticed(home):
+    path = kept().path
+    whole = path.read_bytes()
+    for place in range(len(whole)):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        assert CodeCache.of(TEXTS).known in ({}, {"a.b:f": FOUND})
+    path.write_bytes(whole[:-9])
+    assert CodeCache.of(TEXTS).known == {}
+
+
+def test_a_place_that_cannot_be_written_is_no_failure(home, tmp_path):
+    home.parent.mkdir(parents=True)
+    home.write_text("not a folder")
+    assert CodeCache.of(TEXTS).known == {}
+    kept()
+    assert CodeCache.of(TEXTS).known == {}
+
+
+def test_old_files_go(home):
+    for number in range(FILES_KEPT + 3):
+        kept({**TEXTS, "a.e": f"{number}"})
+    assert len([*home.glob("*.json")]) == FILES_KEPT
+
+
+def test_kept_digests_are_those_that_are_computed(monkeypatch):
+    computed = key.code_digest(mesh.module, mesh.name), key.code_parts(mesh.module, mesh.name)
+    key.keep_code()
+    key.forget_code()
+    monkeypatch.setattr(key, "_computed", None)
+    assert (key.code_digest(mesh.module, mesh.name), key.code_parts(mesh.module, mesh.name)) == computed
+
+
+def test_code_of_another_package_is_not_kept(toys, home):
+    toys.module  # noqa: B018 - its graph is made when it is imported
+    assert not [name for path in home.glob("*.json") for name in (path.read_text(),) if toys.name in name]
