@@ -10,7 +10,6 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2009.graph_motion import GraphMotion
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
-from kinetree.schemas.paper_2009.node_clusters import NodeClustersParams
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.paper_2009.edge_joints import NodeMotion, edge_joints
@@ -63,7 +62,7 @@ def _centres(
         lambda t: (np.array(meshes[frames[t]].vertices), np.array(meshes[frames[t]].faces, np.int64)),
         evidence_settings(params),
     )
-    part = part_motions(V, x, confidence, area, np.array(s.part), NodeClustersParams().removal_cost)
+    part = part_motions(V, x, confidence, area, np.array(s.part), s.removal_cost)
     leaves = np.array(s.leaf_vertex)
     return numerics.kinematic_tree(
         V, F, x, area, part.label, part.R, part.t, part.residual, leaves, confidence, evidence,

@@ -31,7 +31,13 @@ def node_clusters(
     else:
         part = _rigid(model, moved, params.removal_cost)
         cluster = _of_nodes(part, label, len(parents))
-    return NodeClusters(structure=index[0], cluster=cluster, part=part, correlation=np.concatenate([[1.0], r]))
+    return NodeClusters(
+        structure=index[0],
+        removal_cost=params.removal_cost,
+        cluster=cluster,
+        part=part,
+        correlation=np.concatenate([[1.0], r]),
+    )
 
 
 def _rigid(model: InitialModel, moved: list[GraphDeformation], removal_cost: float) -> Ints:
