@@ -24,6 +24,8 @@ ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
 FOLLOW_SECONDS = 0.25
 """How often the scheduler is asked for its workers."""
+REPLACE_SECONDS = 30.0
+"""Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
 
 
 @contextlib.contextmanager
@@ -43,11 +45,35 @@ def local(workers: int, memory: str | None) -> Iterator[Client]:
         )
         client = stack.enter_context(Client(cluster))
         client.register_plugin(_Deaf())
+        stack.enter_context(_kept_up(cluster, workers))
         try:
             yield client
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
             cluster.sync(_kill, cluster)
             raise
+
+
+@contextlib.contextmanager
+def _kept_up(cluster: LocalCluster, workers: int) -> Iterator[None]:
+    """Replaces our own workers where none is left: one that dies while it starts is not started again by its nanny."""
+    keeping = asyncio.run_coroutine_threadsafe(_keep_up(cluster, workers), cluster.loop.asyncio_loop)
+    try:
+        yield
+    finally:
+        keeping.cancel()
+
+
+async def _keep_up(cluster: LocalCluster, workers: int) -> None:
+    empty = 0.0
+    while True:
+        await asyncio.sleep(FOLLOW_SECONDS)
+        empty = 0.0 if cluster.scheduler.workers else empty + FOLLOW_SECONDS
+        if empty > REPLACE_SECONDS:
+            empty = 0.0
+            cluster.scale(0)
+            while cluster.workers:  # names are given anew once their workers are gone
+                await asyncio.sleep(FOLLOW_SECONDS)
+            cluster.scale(workers)
 
 
 @contextlib.contextmanager

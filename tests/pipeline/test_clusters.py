@@ -96,3 +96,12 @@ def test_an_address_that_is_none_is_the_users_to_mend(toys, tmp_path):
 def test_a_report_of_dask_needs_workers(toys, tmp_path):
     with pytest.raises(ConfigError, match="--performance-report: dask reports on workers"):
         toys.run(compute={"executor": "threads", "performance_report": str(tmp_path / "report.html")})
+
+
+def test_our_own_workers_are_replaced_where_none_is_left(monkeypatch):
+    monkeypatch.setattr(clusters, "REPLACE_SECONDS", 1.0)
+    with clusters.local(1, None) as client:
+        assert client.submit(abs, -1).result(timeout=60) == 1
+        (nanny,) = client.cluster.workers.values()
+        client.cluster.sync(nanny.close)
+        assert client.submit(abs, -2).result(timeout=60) == 2
