@@ -90,7 +90,7 @@ APPLICATION = Application(
                 _command(
                     "reproduce",
                     "Make the tables and figures of the 2014 paper, by its preset and by the default.",
-                    "kinetree reproduce 2014 --table 1 --table 2",
+                    "kinetree reproduce 2014 --table 1 --figure 11",
                     "kinetree reproduce 2014 --table 2 --input walk/ --truth walk/truth.json",
                 ),
             ),

@@ -11,17 +11,24 @@ from kinetree.pipeline.options import AsJson, Set, err, out, print_json
 from kinetree.pipeline.printable import printable
 
 if TYPE_CHECKING:
+    from kinetree.tasks.reproduction.sequence import Sequence
     from kinetree.tasks.reproduction.table import Table
 
 PAPERS = ("2014",)
 TABLES = (1, 2)
-FIGURES: tuple[int, ...] = ()
+FIGURES = (11, 19, 20, 21)
+FIGURES_OF_INPUT = (11, 19, 20)
+"""Those that can be made of a given sequence."""
 
 
 def reproduce(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="The paper by its year: 2014.")],
     table: Annotated[
         list[int] | None, typer.Option("--table", help="1: seconds a frame; 2: errors of joints. May be repeated.")
+    ] = None,
+    figure: Annotated[
+        list[int] | None,
+        typer.Option("--figure", help="11: areas by threshold; 19, 20: both methods side by side; 21: noise. May be repeated."),
     ] = None,
     source: Annotated[
         Path | None,
@@ -47,14 +54,13 @@ def reproduce(
     """
     if paper not in PAPERS:
         raise ConfigError(f"{paper}: no such paper; tables and figures are made of {', '.join(PAPERS)}")
-    chosen = _chosen(table, TABLES, "--table")
-    from kinetree.tasks.reproduction.cost import table_1
-    from kinetree.tasks.reproduction.joints import table_2
+    tables, figures = _chosen(table, TABLES, "--table"), _chosen(figure, FIGURES, "--figure")
+    if not tables + figures:
+        tables, figures = TABLES, FIGURES if source is None else FIGURES_OF_INPUT
     from kinetree.tasks.reproduction.sequence import Sequence
 
     sequence = Sequence(output, source, truth, tuple(sets or ()), lambda text: err.print(printable(text), markup=False))
-    made = [{1: table_1, 2: table_2}[number](sequence) for number in chosen]
-    files = [one.write(output) for one in made]
+    made, files = _made(sequence, tables, figures)
     if as_json:
         print_json({"tables": [one.json() for one in made], "files": [str(path) for path in files]})
         return
@@ -69,7 +75,25 @@ def _chosen(numbers: list[int] | None, known: tuple[int, ...], option: str) -> t
     for number in numbers or ():
         if number not in known:
             raise ConfigError(f"{option} {number}: not made; there are {', '.join(map(str, known))}")
-    return tuple(n for n in known if not numbers or n in numbers)
+    return tuple(n for n in known if n in (numbers or ()))
+
+
+def _made(sequence: "Sequence", tables: tuple[int, ...], figures: tuple[int, ...]) -> "tuple[list[Table], list[Path]]":
+    """Makes and writes what was asked for; the tables, those of figures among them, and all files."""
+    from kinetree.tasks.reproduction import comparison, cost, joints, noise, thresholds
+    from kinetree.tasks.results.plots.drawing import write_figure
+
+    tabled = {1: cost.table_1, 2: joints.table_2}
+    drawn = {11: thresholds.figure_11, 19: comparison.figure_19, 20: comparison.figure_20, 21: noise.figure_21}
+    made = [tabled[number](sequence) for number in tables]
+    files = [table.write(sequence.output) for table in made]
+    for number in figures:
+        picture, table = drawn[number](sequence)
+        path = sequence.output / f"{table.name}.png"
+        write_figure(picture, path)
+        made.append(table)
+        files += [path, table.write(sequence.output)]
+    return made, files
 
 
 def _print(table: "Table") -> None:

@@ -32,9 +32,10 @@ class Sequence:
         """As a table calls it."""
         return "generated" if self.input is None else self.input.name
 
-    def run(self, preset: str, until: str = "evaluation", *changes: str, beside: str = "") -> "Run":
-        """Computes what is out of date with a preset, up to one task.
+    def run(self, preset: str, *changes: str, until: tuple[str, ...] = ("evaluation",), beside: str = "") -> "Run":
+        """Computes what is out of date with a preset.
 
+        until   : the tasks that are wanted, with those they need
         changes : more parameters as task.name=value
         beside  : ending of the output folder's name, for a run with changes
         raises  : NodesFailedError naming the first node that failed; InputError where the sequence is wrong
@@ -42,11 +43,11 @@ class Sequence:
         folder = self.output / f"{preset}{beside}"
         self.tell(f"computing {folder}")
         pipeline = Pipeline.of(preset, sets=[*self._source(), *self.sets, *changes, *self._folders(folder)])
-        summary = pipeline.run(until=[until])
+        summary = pipeline.run(until=until)
         for failure in summary["failures"]:
             text = f"{folder}: {failure['node']}: {failure['message']}"
             raise InputError(text) if failure["error"] == InputError.__name__ else NodesFailedError(text)
-        return Run(preset, pipeline, pipeline.inspect(until=[until]))
+        return Run(preset, pipeline, pipeline.inspect(until=until))
 
     def _source(self) -> list[str]:
         if self.input is not None:

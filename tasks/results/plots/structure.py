@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.colors import to_rgba
+from numpy.typing import NDArray
 
-from kinetree.schemas.array import Floats
+from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.results.scene import part_colouring
 from kinetree.tasks.results.formats.rig import skinned
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Indices = NDArray[np.int64]
 PALE = ("#7FB8DB", "#EFB27F", "#7FCEB9", "#E5BCD3", "#F2CF7F", "#AAD9F4", "#BFBFBF", "#F7F1A0")
 """Pale enough that a skeleton is seen over them."""
 
@@ -73,13 +75,28 @@ def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def part_colours(found: Skeleton) -> Floats:
     """(face, 4) pale colours of the parts, white where a face is not rigid or lies between two."""
-    shade = part_colouring(np.asarray(found.label), found.faces, len(PALE))
-    corners = found.label[found.faces]
-    label = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], -1)
-    colour: Floats = np.ones((len(label), 4))
+    return label_colours(np.asarray(found.label), found.faces)
+
+
+def label_colours(label: Ints, F: Ints, shade: Indices | None = None) -> Floats:
+    """(face, 4) a pale colour for each label, white where a face has none or lies between two.
+
+    label : (vertex,) −1 for none
+    F     : (face, corner)
+    shade : (label,) number of its colour; None chooses so that neighbours differ
+    """
+    chosen = label_shades(label, F) if shade is None else shade
+    corners = label[F]
+    own = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], -1)
+    colour: Floats = np.ones((len(own), 4))
     rgb = np.array([to_rgba(c) for c in PALE])
-    colour[label >= 0] = rgb[shade[label[label >= 0]]]
+    colour[own >= 0] = rgb[chosen[own[own >= 0]]]
     return colour
+
+
+def label_shades(label: Ints, F: Ints) -> Indices:
+    """(label,) number of a pale colour for each label, different from those of its neighbours."""
+    return part_colouring(label.astype(np.int64), F, len(PALE))
 
 
 def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
