@@ -32,8 +32,8 @@ class CoherentIntervals(Artifact):
     """Loops of each frame's graph after simplification."""
     reach: Annotated[Floats, Array("float64", FRAME)]
     """Share of the range of μ that the longest of them spans; 0 without one."""
-    length: Annotated[Floats, Array("float64", FRAME)]
-    """Length of all edges of each frame's graph, share of the root of the body's area."""
+    spread: Annotated[Floats, Array("float64", FRAME)]
+    """Mean distance between the ends of each frame's graph, share of the root of the body's area."""
     degrees: tuple[tuple[int, ...], ...]
     """Branch degrees of each frame's graph."""
     begin: Annotated[Ints, Array("int32", INTERVAL)]

@@ -13,7 +13,7 @@ class InitialFramesParams(Params):
     scope: Literal["sequence", "interval"] = "sequence"
     """sequence: one model for all frames, from the best coherent one; interval: one for each coherent interval (paper)."""
     initial: Literal["extended", "similar"] = "extended"
-    """similar: the frame most similar to all, as in the paper; extended: the longest graph among the more similar half."""
+    """similar: the frame most similar to all, as in the paper; extended: the coherent one whose ends are farthest apart."""
     start: Literal["neighbour", "correlation"] = "neighbour"
     """Which deformed model a frame starts from: its neighbour's, or that of the frame most similar to it, as in the paper."""
 

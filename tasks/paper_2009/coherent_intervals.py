@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+from scipy.spatial.distance import pdist
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals, CoherentIntervalsParams
@@ -22,7 +23,7 @@ def coherent_intervals(pergs: Mapping[int, Perg], params: CoherentIntervalsParam
         ends=ends,
         loops=loops,
         reach=np.array([p.reach.max(initial=0.0) for p in pergs.values()]),
-        length=np.array([_length(p) for p in pergs.values()]),
+        spread=np.array([_spread(p) for p in pergs.values()]),
         degrees=degrees,
         begin=runs.begin,
         end=runs.end,
@@ -31,7 +32,7 @@ def coherent_intervals(pergs: Mapping[int, Perg], params: CoherentIntervalsParam
     )
 
 
-def _length(graph: Perg) -> float:
-    """Length of a graph's edges, share of the root of its body's area."""
-    ends = graph.node[graph.edge]
-    return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() / np.sqrt(graph.area.sum()))
+def _spread(graph: Perg) -> float:
+    """Mean distance between the ends of a graph, share of the root of its body's area; 0 for fewer than two ends."""
+    between = pdist(graph.node[graph.end])
+    return float(between.mean() / np.sqrt(graph.area.sum())) if len(between) else 0.0

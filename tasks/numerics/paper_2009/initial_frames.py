@@ -14,17 +14,16 @@ def initial_frame(similarity: Floats, candidate: Flags) -> int:
     return int(own[np.argmax(similarity[np.ix_(own, own)].sum(axis=1))])
 
 
-def extended_frame(similarity: Floats, candidate: Flags, length: Floats) -> int:
-    """Position of the frame with the longest graph among the half of the candidates most similar to all of them (ours).
+def extended_frame(candidate: Flags, spread: Floats) -> int:
+    """Position of the candidate whose ends are farthest apart (ours).
 
-    Limbs that are stretched are drawn in full, where bent ones are drawn with their corners cut.
+    Limbs that are stretched are drawn in full, where bent ones are drawn with their corners cut, and the surface of a bent
+    hip or knee does not follow its nodes when they straighten.
 
-    length : (frame,) of all edges of a frame's graph
+    candidate : (frame,) at least one · spread : (frame,) mean distance between the ends of a frame's graph
     """
     own = np.flatnonzero(candidate)
-    total = similarity[np.ix_(own, own)].sum(axis=1)
-    half = own[total >= np.median(total)]
-    return int(half[np.argmax(length[half])])
+    return int(own[np.argmax(spread[own])])
 
 
 def most_open_frames(count: Ints, loops: Ints) -> Flags:

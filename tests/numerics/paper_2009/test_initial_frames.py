@@ -25,6 +25,7 @@ def test_most_open_frames_have_most_ends_and_then_fewest_loops() -> None:
     assert most_open_frames(np.array([4, 5, 5, 5]), np.array([0, 2, 1, 1])).tolist() == [False, False, True, True]
 
 
-def test_extended_frame_is_the_longest_of_the_more_similar_half() -> None:
-    assert extended_frame(S, np.ones(4, bool), np.array([1.0, 2.0, 9.0, 3.0])) == 1
-    assert extended_frame(S, np.array([False, False, True, True]), np.array([1.0, 2.0, 9.0, 3.0])) == 2
+def test_extended_frame_is_the_candidate_whose_ends_are_farthest_apart() -> None:
+    spread = np.array([1.0, 2.0, 9.0, 3.0])
+    assert extended_frame(np.ones(4, bool), spread) == 2
+    assert extended_frame(np.array([True, True, False, True]), spread) == 3
