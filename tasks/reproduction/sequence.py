@@ -3,8 +3,11 @@
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
+
+import yaml
 
 from kinetree.errors import InputError, NodesFailedError
 from kinetree.pipeline.inspect import Pipeline
@@ -42,7 +45,7 @@ class Sequence:
         """
         folder = self.output / f"{preset}{beside}"
         self.tell(f"computing {folder}")
-        pipeline = Pipeline.of(preset, sets=[*self._source(), *self.sets, *changes, *self._folders(folder)])
+        pipeline = Pipeline.of(_preset(preset), sets=[*self._source(), *self.sets, *changes, *self._folders(folder)])
         summary = pipeline.run(until=until)
         for failure in summary["failures"]:
             text = f"{folder}: {failure['node']}: {failure['message']}"
@@ -53,7 +56,7 @@ class Sequence:
         if self.input is not None:
             source = [f"source.input={_quoted(self.input)}"]
         else:
-            generated: Any = Pipeline.of("demo").config.params["source"]
+            generated: Any = Pipeline.of(_preset("demo")).config.params["source"]
             source = [f"source.synth={generated.synth.model_dump_json()}"]
         return source if self.truth is None else [*source, f"truth.file={_quoted(self.truth)}"]
 
@@ -82,6 +85,12 @@ class Run:
         """So many frames spread over the sequence."""
         last = len(self.frames) - 1
         return sorted({self.frames[round(i * last / max(count - 1, 1))] for i in range(count)})
+
+
+def _preset(name: str) -> dict[str, Any]:
+    """The preset itself, even where the current folder has a run of that name."""
+    blocks: dict[str, Any] = yaml.safe_load((files("kinetree.configs") / f"{name}.yaml").read_text(encoding="utf-8"))
+    return blocks
 
 
 def _quoted(path: Path) -> str:
