@@ -1,5 +1,6 @@
 """Laws of the command: what every command prints and returns, on a sequence of three tetrahedra."""
 
+import importlib
 import json
 import os
 import re
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
-from kinetree.errors import KinetreeError
+from kinetree.errors import KinetreeError, MeshError
 from kinetree.pipeline import cli, queries
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.show import statistics
@@ -240,8 +241,16 @@ def test_mistyped_task_is_refused_with_the_nearest(kinetree, walked, option):
     assert kinetree("run", walked, option, "mehs")[::2] == (2, "kinetree: no task 'mehs'; did you mean 'mesh'?\n")
 
 
-def test_failed_node_is_told_and_exits_1(kinetree, scans):
-    (scans / "1.off").write_text("OFF\n4 4 0\n")
+def test_failed_node_is_told_and_exits_1(kinetree, scans, monkeypatch):
+    home = importlib.import_module("kinetree.tasks.input.mesh")
+    clean = home.clean
+
+    def refusing(V, F, *, name, **settings):
+        if name.endswith("1.off"):
+            raise MeshError(f"{name}: has no face with an area")
+        return clean(V, F, name=name, **settings)
+
+    monkeypatch.setattr(home, "clean", refusing)
     code, printed, complained = kinetree("run", "-i", "scans", "-o", "w", "--until", "connectivity", "--executor", "sync")
     assert code == 1
     assert printed.startswith("failed: 2 ran, 0 fresh, 1 failed, 1 skipped")
@@ -422,13 +431,16 @@ def test_run_that_is_not_there_is_refused(kinetree, walked, name):
 def test_tasks_are_the_table_of_contents(kinetree):
     code, printed, _ = kinetree("tasks")
     assert code == 0
-    assert "mesh: Source → Mesh per frame" in printed
+    assert "mesh: Source, Isosurface of all → Mesh per frame" in printed
     assert "mesh.component_share = 0.05" in printed
     rows = told(kinetree("tasks", "--json")[1])
     mesh = next(r for r in rows if r["task"] == "mesh")
     assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "along", "paper", "summary"}
     assert mesh["params"]["component_share"]["default"] == 0.05
-    assert mesh["reads"] == [{"argument": "source", "artifact": "Source", "form": "one", "previous": False}]
+    assert mesh["reads"] == [
+        {"argument": "source", "artifact": "Source", "form": "one", "previous": False},
+        {"argument": "isosurface", "artifact": "Isosurface", "form": "tuple", "previous": False},
+    ]
 
 
 def test_config_is_printed_in_full_and_read_back(kinetree, walked, tmp_path):
