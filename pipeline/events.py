@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TextIO
 
+from kinetree.pipeline.entry import Entry, State
 from kinetree.pipeline.execute import Result
-from kinetree.pipeline.schedule import Entry, State
 
 
 class Listener(Protocol):

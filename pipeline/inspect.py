@@ -20,6 +20,7 @@ from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
 from kinetree.pipeline.drawn_graph import DrawnGraph
+from kinetree.pipeline.entry import DONE
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
@@ -30,7 +31,7 @@ from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.origins import found
 from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
-from kinetree.pipeline.schedule import DONE, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.snapshot import Snapshot
 from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact

@@ -12,8 +12,9 @@ from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline import views
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
+from kinetree.pipeline.entry import DONE, Entry
 from kinetree.pipeline.place import Folder
-from kinetree.pipeline.schedule import DONE, Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.schemas.array import Artifact
 
 RUN_JSON = "run.json"

@@ -1,8 +1,9 @@
 """Parcels as they travel: what a worker is told of each node, and no more."""
 
+from kinetree.pipeline.entry import Entry
 from kinetree.pipeline.execute import Input, Ref, Step
 from kinetree.pipeline.node import Node
-from kinetree.pipeline.schedule import Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 
 
 def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:

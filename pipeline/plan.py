@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+from kinetree.pipeline.entry import Entry
 from kinetree.pipeline.look import html_table
 from kinetree.pipeline.reason import Reason
-from kinetree.pipeline.schedule import Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 
 PlanState = Literal["fresh", "stale", "waits"]
 

@@ -14,12 +14,13 @@ from functools import partial
 
 from kinetree.errors import ClusterError, GraphError, KinetreeError, LostWorkerError, StoreError, StoreFullError
 from kinetree.pipeline import sight as seeing
+from kinetree.pipeline.entry import DONE, Entry
 from kinetree.pipeline.events import Watch
 from kinetree.pipeline.execute import Result, forget_reads
 from kinetree.pipeline.launch import Future, Launcher
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.parcels import steps_of
-from kinetree.pipeline.schedule import DONE, Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.sight import Sight
 
 LOOK_AGAIN = 0.1

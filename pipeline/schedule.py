@@ -8,10 +8,9 @@ schedule nobody completes; it computes nothing.
 import heapq
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
 
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
+from kinetree.pipeline.entry import DONE, Entry, Loss, State
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.layout import Given, Layout, T
@@ -22,44 +21,8 @@ from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Index, Params
 
-State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
-DONE: tuple[State, ...] = ("fresh", "ran")
 MENDS = 3
 """How often a node is computed again because its artifact is damaged, before the disk is to blame."""
-
-
-@dataclass
-class Entry:
-    """One node of the schedule and what is known of it."""
-
-    node: Node
-    task: AnyTask
-    label: str
-    state: State = "waits"
-    inputs: tuple[tuple[Argument, tuple[Node, ...]], ...] | None = None
-    """Per argument the nodes it reads; None while the members of a fan-out are not known."""
-    waits: set[Node] = field(default_factory=set)
-    reasons: tuple[Reason, ...] = ()
-    key: str | None = None
-    artifact: str | None = None
-    record: Record | None = None
-    damaged: str | None = None
-    """Digest of an artifact that was found damaged and has to go before it is made again."""
-    redone: int = 0
-    """How often its artifact was damaged and had to be computed again."""
-    cause: str = ""
-    """What failed, for a failed node; which node failed, for a skipped one."""
-
-
-@dataclass(frozen=True)
-class Loss:
-    """An artifact that could not be read while laying out."""
-
-    entry: Entry
-    was: State
-    what: str
-    skipped: tuple[Node, ...] | None
-    """What is skipped where its node failed for good; None where the node runs again."""
 
 
 class Schedule:

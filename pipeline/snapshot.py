@@ -17,10 +17,11 @@ import networkx as nx
 from kinetree.errors import UnknownNodeError
 from kinetree.pipeline import views
 from kinetree.pipeline.drawn_graph import DrawnGraph
+from kinetree.pipeline.entry import Entry
 from kinetree.pipeline.history import History
 from kinetree.pipeline.node import Node, label, parse
 from kinetree.pipeline.plan import Plan, Planned
-from kinetree.pipeline.schedule import Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.timings import Estimate, Timings, estimated
 from kinetree.schemas.array import Artifact
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import Any
 
+from kinetree.pipeline.entry import Entry
 from kinetree.pipeline.look import html_table
-from kinetree.pipeline.schedule import Entry, Schedule
+from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.store import Record
 
 COLUMNS = ("task", "nodes", "seconds", "mean", "longest", "peak MB", "MB")

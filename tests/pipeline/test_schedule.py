@@ -8,7 +8,8 @@ import pytest
 
 from kinetree.errors import StoreError
 from kinetree.pipeline import schedule as module
-from kinetree.pipeline.schedule import MENDS, Entry
+from kinetree.pipeline.entry import Entry
+from kinetree.pipeline.schedule import MENDS
 
 HOME = Path(str(module.__file__))
 
