@@ -21,7 +21,7 @@ from numba.core.caching import UserProvidedCacheLocator
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 PACKAGE = "kinetree.tasks.numerics"
-LOCATOR = f"{__name__}.SharedCacheLocator"
+LOCATOR = "kinetree.tasks.numerics.compiled.SharedCacheLocator"
 
 
 class SharedCacheLocator(UserProvidedCacheLocator):  # type: ignore[misc]

@@ -52,7 +52,11 @@ def test_what_computes_imports_what_it_needs():
 
 @pytest.mark.parametrize(
     ("words", "offered"),
-    [("kinetree ", set(APPLICATION.commands)), ("kinetree r", {"run", "runs"}), ("kinetree run --inp", {"--input"})],
+    [
+        ("kinetree ", set(APPLICATION.commands)),
+        ("kinetree r", {"reproduce", "run", "runs"}),
+        ("kinetree run --inp", {"--input"}),
+    ],
 )
 def test_shell_completes_commands_and_options_without_importing_them(words, offered):
     count = str(len(words.split(" ")) - 1)

@@ -51,7 +51,7 @@ def test_quotes_and_backslashes_stay_within_their_label():
 
 def test_states_are_grouped_by_task_and_told_one_by_one_when_expanded(tmp_path):
     for t in range(3):
-        (tmp_path / f"{t}.off").write_text("OFF\n0 0 0\n")
+        (tmp_path / f"{t}.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
     pipeline = Pipeline.of({"source": {"input": str(tmp_path)}, "output": str(tmp_path / "out")})
     grouped, expanded = pipeline.graph(), pipeline.graph(expanded=True)
     assert "mesh ×3: 3 stale" in draw(grouped, "mermaid")

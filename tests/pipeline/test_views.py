@@ -11,7 +11,7 @@ from kinetree.schemas.array import Artifact
 from kinetree.tasks import VIEWS
 from kinetree.tasks.methods import METHODS
 
-WORDED = {"report", "paper_figures"}
+WORDED = {"paper_figures", "reeb_figures", "report"}
 """Tasks whose artifacts hold sentences for people."""
 
 

@@ -14,6 +14,8 @@ from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.hull import hull
+from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.source import source, surface
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.glb import glb
@@ -80,5 +82,5 @@ def write_frames(folder: Path) -> None:
 
 
 GRAPH = Graph.of(
-    (source, alignment, projection, skeleton, glb, bvh, skeleton_json, segmentation, tables, rignet, ply, usd)
+    (source, hull, isosurface, alignment, projection, skeleton, glb, bvh, skeleton_json, segmentation, tables, rignet, ply, usd)
 )

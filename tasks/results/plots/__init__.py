@@ -23,25 +23,21 @@ if TYPE_CHECKING:
 
 Plots = Mapping[str, Callable[[Fetch, list[int], int], "Figure"]]
 
-_SHARED: Plots = {
+_BODY: Plots = {
     "correlation": correlation,
     "mu": mu,
     "alignment": alignment,
     "skeleton": skeleton,
     "tree": tree,
     "confidence": confidence,
-    "cones": cones,
-    "merging": merging,
-    "structure": structure,
-    "lengths": lengths,
-    "angles": angles,
-    "errors": evaluation,
 }
-PLOTS: Plots = {**_SHARED, "elimination": elimination}
+_PARTS: Plots = {"cones": cones, "merging": merging, "structure": structure, "lengths": lengths}
+_MOTION: Plots = {"angles": angles, "errors": evaluation}
+PLOTS: Plots = {**_BODY, **_PARTS, **_MOTION, "elimination": elimination}
 """The pictures of the default method by name."""
 
-_OF_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
-_OF_2009: Plots = {
+_PARTS_2014: Plots = {"cones": cones_2014, "merging": merging_2014, "structure": structure_2014, "lengths": lengths_2014}
+_GRAPHS_2009: Plots = {
     "endoskeleton": endoskeleton,
     "coherence": coherence,
     "clusters": clusters,
@@ -49,8 +45,8 @@ _OF_2009: Plots = {
 }
 PLOTS_OF_METHOD: Mapping[str, Plots] = {
     "mesoscopic": PLOTS,
-    "mesoscopic-2014": {**_SHARED, **_OF_2014},
-    "reeb": {name: plot for name, plot in _SHARED.items() if name not in _OF_2014} | {**_OF_2009},
+    "mesoscopic-2014": {**_BODY, **_PARTS_2014, **_MOTION},
+    "reeb": {**_BODY, **_MOTION, **_GRAPHS_2009},
 }
 """The pictures of each method."""
 
