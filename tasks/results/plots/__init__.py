@@ -32,7 +32,10 @@ _BODY: Plots = {
     "confidence": confidence,
 }
 _PARTS: Plots = {"cones": cones, "merging": merging, "structure": structure, "lengths": lengths}
-_MOTION: Plots = {"angles": angles, "errors": evaluation}
+_MOTION: Plots = {
+    "angles": angles,
+    "errors": evaluation,
+}
 PLOTS: Plots = {**_BODY, **_PARTS, **_MOTION, "elimination": elimination}
 """The pictures of the default method by name."""
 
