@@ -41,7 +41,7 @@ def reproduce(
         ),
     ] = None,
     truth: Annotated[
-        Path | None, typer.Option("--truth", metavar="FILE", help="The true skeleton; default: the one beside the input.")
+        Path | None, typer.Option("--truth", metavar="FILE", help="The true skeleton; default: the generated body's.")
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for results and runs.")] = Path("kinetree-reproduce"),
     sets: Set = None,

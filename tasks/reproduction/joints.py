@@ -47,7 +47,7 @@ def evaluation(run: Run) -> Evaluation:
     """The comparison with the truth; raises InputError where there is none."""
     stored: Evaluation = run.fetch("evaluation")
     if stored.summary is None:
-        raise InputError("there is no true skeleton beside the input to compare with; name one with --truth FILE")
+        raise InputError("no true skeleton is known of this input; name one with --truth FILE")
     return stored
 
 

@@ -74,5 +74,5 @@ def test_run_without_a_truth_is_refused() -> None:
         def fetch(self, name: str) -> Evaluation:
             return unjudged(spider())
 
-    with pytest.raises(InputError, match="no true skeleton beside the input .* --truth FILE"):
+    with pytest.raises(InputError, match="no true skeleton is known of this input; .* --truth FILE"):
         evaluation(Run())  # type: ignore[arg-type]

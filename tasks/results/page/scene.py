@@ -90,17 +90,27 @@ def scene(
         at = [leaves.frames.index(frame) for frame in frames]
         arrays["leaves"] = (leaves.positions[:, at].transpose(1, 0, 2) @ axes).astype(np.float32)
     layout, block = packed(arrays)
-    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PARTS))
     description = {
+        **_tree(skeleton),
         "frames": frames,
-        "fps": skeleton.fps,
         "rate": (skeleton.fps or 25.0) * len(frames) / len(skeleton.frames),
-        "unit": skeleton.unit,
         "reach": float(np.linalg.norm(high - low)),
         "size": float(np.median(np.linalg.norm(np.ptp(positions, axis=1), axis=1))),
         "centre": positions.mean(axis=(0, 1)).tolist(),
         "low": lattice.low.tolist(),
         "scale": lattice.scale,
+        "intervals": _starts(intervals, skeleton.frames, selected_frames),
+        "arrays": layout,
+    }
+    return Scene(description, block, _omitted(skeleton, meshes, frames, len(selected), limits))
+
+
+def _tree(skeleton: Skeleton) -> dict[str, Any]:
+    """What stays the same in all frames: joints, the colours of parts and of kinds of joints, unit and frame rate."""
+    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PARTS))
+    return {
+        "fps": skeleton.fps,
+        "unit": skeleton.unit,
         "palette": [PARTS[c] for c in colours] or [PARTS[0]],
         "kinds": KINDS,
         "surface_leaf": SURFACE_LEAF,
@@ -109,10 +119,7 @@ def scene(
             {"name": name, "parent": parent, "kind": kind}
             for name, parent, kind in zip(skeleton.names, skeleton.parents, skeleton.kinds, strict=True)
         ],
-        "intervals": _starts(intervals, skeleton.frames, selected_frames),
-        "arrays": layout,
     }
-    return Scene(description, block, _omitted(skeleton, meshes, frames, len(selected), limits))
 
 
 class _CoarseInput(NamedTuple):
