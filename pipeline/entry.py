@@ -11,6 +11,8 @@ from kinetree.pipeline.task import Argument
 
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")
+
+
 @dataclass
 class Entry:
     """One node of the schedule and what is known of it."""
@@ -36,7 +38,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Loss:
-    """An artifact that could not be read while laying out."""
+    """An artifact that a run or a layout found missing or damaged."""
 
     entry: Entry
     was: State

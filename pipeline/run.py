@@ -38,8 +38,9 @@ def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
     loop = _Loop(schedule, launch, watch, Sight.of(schedule.store))
     try:
         with _interruptible(loop):
-            while loop.send() or loop.out:
-                loop.receive()
+            loop.go()
+            while loop.take_back_lost():
+                loop.go()
         _refuse_rings(schedule)
     except BaseException:
         for future in loop.out.values():
@@ -88,6 +89,21 @@ class _Loop:
     _look_at: float = 0.0
     _unseen: dict[int, float] = field(default_factory=dict)
     """Since when the results of a parcel are looked for in the store."""
+
+    def go(self) -> None:
+        """Sends and receives until nothing is ready and nothing out."""
+        while self.send() or self.out:
+            self.receive()
+
+    def take_back_lost(self) -> bool:
+        """What somebody removed from the store after it was seen there is computed again; True if there was any."""
+        done = [e for e in self.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
+        lost = seeing.missing(self.schedule.store, {(e.key or "", e.artifact or "") for e in done})
+        for entry in done:
+            if (entry.key, entry.artifact) in lost:
+                self.schedule.lose(entry, "it is missing")
+        self._tell_losses()
+        return bool(lost)
 
     def send(self) -> bool:
         """Sends ready nodes while the window has room; True if any went."""
@@ -216,7 +232,7 @@ class _Loop:
             raise (StoreFullError if result.error == "StoreFullError" else _refusal(result))(result.message)
 
     def _tell_losses(self) -> None:
-        """What could not be read while more of the graph was laid out."""
+        """What could not be read while more of the graph was laid out, or was not there in the end."""
         for loss in self.schedule.losses():
             self.watch.damaged(loss.entry, loss.was, loss.what)
             if loss.skipped is not None:

@@ -252,18 +252,18 @@ class Schedule:
         try:
             return question(self.value(node))
         except DamagedArtifactError as error:
-            self._lose(entry, error.what)
+            self.lose(entry, error.what)
             return None
 
-    def _lose(self, entry: Entry, what: str) -> None:
-        """What an opener or a traversal answers cannot be read: it runs again, or fails where it did too often."""
+    def lose(self, entry: Entry, what: str) -> None:
+        """The artifact of a node that was done is not there any more: it runs again, or fails where it did too often."""
         was, gives_up = entry.state, entry.redone >= MENDS
         if not gives_up:
             self._redo(entry.node, what)
         self._losses.append(Loss(entry, was, what, tuple(self.fail(entry.node, what)) if gives_up else None))
 
     def losses(self) -> list[Loss]:
-        """What could not be read while laying out since this was asked last, in that order."""
+        """What was lost since this was asked last, in that order."""
         found, self._losses = self._losses, []
         return found
 

@@ -11,6 +11,7 @@ import os
 import secrets
 import socket
 import time
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from kinetree.errors import StoreError
@@ -93,6 +94,14 @@ def sees(store: Store, key: str, artifact: str) -> bool:
             return True
         store.place.names("records")
     return False
+
+
+def missing(store: Store, made: Collection[tuple[str, str]]) -> set[tuple[str, str]]:
+    """Those pairs of key and artifact of which the record or the artifact is not in the store now; folders are listed for it."""
+    keys = set(store.records.listed())
+    shards = {artifact_path(artifact).rpartition("/")[0] for _, artifact in made}
+    there = {f"{shard}/{name}" for shard in shards for name in store.place.names(shard)}
+    return {(key, artifact) for key, artifact in made if key not in keys or artifact_path(artifact) not in there}
 
 
 def unseen(store: Store, label: str, record: Record | None) -> StoreError:

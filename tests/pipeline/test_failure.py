@@ -9,6 +9,7 @@ import pytest
 from zips import alter
 
 from kinetree.errors import DamagedArtifactError
+from kinetree.pipeline import sight
 from kinetree.pipeline.place import Folder
 from kinetree.pipeline.records import Records
 from kinetree.pipeline.schedule import MENDS
@@ -307,10 +308,31 @@ def test_store_removed_in_mid_run_is_a_store_again_and_every_command_accepts_it(
     toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
     shutil.rmtree(toys.output / "store")
     (toys.flags / "wait-total-210").unlink()
-    process.communicate(timeout=60)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    told = json.loads((toys.output / "run.json").read_text())
+    plan = toys.pipeline().plan()
+    assert (told["status"], plan.counts) == ("done", {"fresh": 49}), "what is called done is there"
+    assert sum(told["nodes"].values()) == 43
     assert toys.command("plan", str(toys.output)).returncode == 0
     assert toys.command("run", str(toys.yaml()), "--quiet").returncode == 0
     assert toys.artifacts() == calm
+
+
+def test_a_store_that_loses_everything_again_and_again_is_never_done(toys, monkeypatch):
+    """What is written is seen once and gone when the run is over."""
+    seen = sight.sees
+
+    def once(store, key, artifact):
+        there = seen(store, key, artifact)
+        shutil.rmtree(toys.output / "store" / "records")
+        return there
+
+    monkeypatch.setattr(sight, "sees", once)
+    run = toys.run(until=("points",))
+    assert run.told["status"] == "failed"
+    assert [f["node"] for f in run.told["failures"]] == [f"points[frame={n}]" for n in range(6)]
+    assert run.told["failures"][0]["message"].endswith("it is missing, again after it was computed again; check the disk")
 
 
 def test_two_runs_at_once_share_a_store(toys, calm):
