@@ -21,7 +21,7 @@ import numpy as np
 from kinetree.pipeline.task import Task
 from kinetree.schemas.array import Artifact
 
-CHAIN = '''
+CHAIN = """
 from collections.abc import Mapping
 from typing import Annotated
 import numpy as np
@@ -66,7 +66,7 @@ def third(second: Second) -> Third:
 @task()
 def total(third: tuple[Third, ...]) -> Total:
     return Total(sum=float(len(third)))
-'''
+"""
 
 
 def main() -> None:

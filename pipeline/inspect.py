@@ -80,9 +80,7 @@ class Pipeline:
         where = html.escape(f"output {self.config.output}, store {self.store.url}")
         return f"<p>{where}</p>{html_table(('task', 'per', 'what', 'paper'), rows)}"
 
-    def inspect(
-        self, *, until: Iterable[str] = (), force: Iterable[str] = (), made_with: Iterable[str] = ()
-    ) -> Snapshot:
+    def inspect(self, *, until: Iterable[str] = (), force: Iterable[str] = (), made_with: Iterable[str] = ()) -> Snapshot:
         """What there is now, to be asked many things: plan, why, lineage, artifacts, timings, graphs; computes nothing.
 
         until     : only these tasks and those they need; none means all
@@ -239,4 +237,3 @@ class Pipeline:
         write_run_json(self.config, summed)
         self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
         self.store.records.pack(opened["name"], [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
-

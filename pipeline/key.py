@@ -74,9 +74,7 @@ def combined_digest(cls: type[Artifact], plain: Mapping[str, Any], arrays: Mappi
     return digest(["kinetree.artifact/1", cls.__name__, cls.version, identity, dict(arrays)])
 
 
-def node_key(
-    task: str, code: str, params: Mapping[str, Any], inputs: Sequence[Any], index: Sequence[int] | None = None
-) -> str:
+def node_key(task: str, code: str, params: Mapping[str, Any], inputs: Sequence[Any], index: Sequence[int] | None = None) -> str:
     """Digest of what a node will compute.
 
     inputs : one [argument name, form, digests] per argument in the order of the signature; digests as `input_identity`
@@ -242,5 +240,3 @@ def _text(name: Any) -> str:
     if type(name) is not str:
         raise TypeError(f"mapping keys must be strings to have a canonical order, got {name!r}")
     return name
-
-

@@ -146,9 +146,7 @@ class Artifact(BaseModel):
             for dim, size in zip(spec.dims, getattr(self, name).shape, strict=True):
                 known, where = sizes.setdefault(dim.name, (size, name))
                 if known != size:
-                    raise ArtifactError(
-                        f"{type(self).__name__}: {dim.name} is {known} long in {where} but {size} in {name}"
-                    )
+                    raise ArtifactError(f"{type(self).__name__}: {dim.name} is {known} long in {where} but {size} in {name}")
         return self
 
     if not TYPE_CHECKING:

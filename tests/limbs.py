@@ -24,9 +24,7 @@ def tube(around: int = 24, along: int = 48, start: float = 0.0, flat: float = 0.
     z = np.where(low, -LENGTH / 2 + RADIUS * (1 - np.cos(end)), s - arc - LENGTH / 2 + RADIUS)
     z = np.where(high, LENGTH / 2 - RADIUS * (1 - np.cos(end)), z)
     phi = start + 2 * np.pi * np.arange(around) / around
-    rings = np.stack(
-        [r[:, None] * np.cos(phi), flat * r[:, None] * np.sin(phi), np.repeat(z[:, None], around, axis=1)], axis=2
-    )
+    rings = np.stack([r[:, None] * np.cos(phi), flat * r[:, None] * np.sin(phi), np.repeat(z[:, None], around, axis=1)], axis=2)
     V = np.concatenate([rings.reshape(-1, 3), [[0, 0, -LENGTH / 2], [0, 0, LENGTH / 2]]])
     i, j = (x.ravel() for x in np.meshgrid(np.arange(len(s) - 1), np.arange(around), indexing="ij"))
     k = (j + 1) % around

@@ -96,9 +96,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
-    made.tracking = along(
-        tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams()
-    )
+    made.tracking = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams())
     made.recovery = recovery(graph, made.tracking, meshes)
     made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
     for number in graph.members("pass", ()):

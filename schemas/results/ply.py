@@ -1,6 +1,5 @@
 """The input meshes with their parts as PLY files, one a frame."""
 
-
 from kinetree.schemas.results.exports import Exported
 
 

@@ -14,9 +14,7 @@ from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task()
-def recovery(
-    deformation_graph: DeformationGraph, tracking: Mapping[int, Tracking], mesh: Mapping[int, Mesh]
-) -> Recovery:
+def recovery(deformation_graph: DeformationGraph, tracking: Mapping[int, Tracking], mesh: Mapping[int, Mesh]) -> Recovery:
     """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
     frames = tuple(tracking)
     uncovered = np.array([t.uncovered for t in tracking.values()])

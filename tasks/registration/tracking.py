@@ -11,9 +11,7 @@ from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task(over="frame", along=Reference)
-def tracking(
-    mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None, params: TrackingParams
-) -> Tracking:
+def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None, params: TrackingParams) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
     if previous is None:
@@ -21,9 +19,7 @@ def tracking(
         return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    fitted = numerics.tracking(
-        body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual
-    )
+    fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
     return _stored(fitted, last, previous.steps + 1, usual, params)

@@ -43,9 +43,7 @@ def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:
 
 
 def test_source_lists_frames_whose_content_follows_the_recipe(tmp_path: Path) -> None:
-    here, again, other = (
-        listed(tmp_path, synth=s) for s in (SMALL, SMALL, SynthParams(frames=3, vertices=600, seed=1))
-    )
+    here, again, other = (listed(tmp_path, synth=s) for s in (SMALL, SMALL, SynthParams(frames=3, vertices=600, seed=1)))
     assert here == again
     assert list(here) == [0, 1, 2]
     assert not {s.content for s in here.values()} & {s.content for s in other.values()}

@@ -59,9 +59,7 @@ def test_a_copy_elsewhere_finds_the_same_compiled_code(tmp_path: Path, monkeypat
     assert asked("other") == "2 1"
 
 
-def test_folder_that_cannot_be_written_means_no_keeping_and_no_failure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folder_that_cannot_be_written_means_no_keeping_and_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))

@@ -138,8 +138,7 @@ def test_without_anything_to_work_on_it_says_what_to_name(kinetree):
         code, _, complained = kinetree(*command)
         assert code == 2
         assert complained == (
-            "kinetree: nothing to work on: name a configuration or an output folder"
-            " (run and plan also take --input FOLDER)\n"
+            "kinetree: nothing to work on: name a configuration or an output folder (run and plan also take --input FOLDER)\n"
         )
 
 

@@ -29,9 +29,7 @@ def test_named_arrays_and_attributes_of_any_group_are_read(tmp_path):
     assert set(held) == set(NAMES)
 
 
-@pytest.mark.parametrize(
-    "compressors", [None, ZstdCodec(level=3), GzipCodec(), BloscCodec(), [ZstdCodec(), Crc32cCodec()]]
-)
+@pytest.mark.parametrize("compressors", [None, ZstdCodec(level=3), GzipCodec(), BloscCodec(), [ZstdCodec(), Crc32cCodec()]])
 @pytest.mark.parametrize("dtype", ["float32", "float64", "int32", "uint8"])
 def test_arrays_in_the_usual_codecs_are_read(tmp_path, compressors, dtype):
     data = np.arange(600).reshape(200, 3).astype(dtype)

@@ -17,9 +17,7 @@ from kinetree.tasks.registration.pose import graph
 
 def test_stored_graph_is_the_graph_bit_for_bit() -> None:
     reference = walk().reference
-    made = numerics.deformation_graph(
-        np.array(reference.vertices), np.array(reference.faces), GRAPH._replace(nodes=200)
-    )
+    made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), GRAPH._replace(nodes=200))
     back = graph(walk().deformation_graph)
     for field in fields(made):
         mine, theirs = getattr(made, field.name), getattr(back, field.name)

@@ -80,9 +80,7 @@ def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
     monkeypatch.setattr(numeric_recovery, "tracking", listening)
-    first = along(
-        tracking, made.reference, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS
-    )
+    first = along(tracking, made.reference, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS)
     assert not np.array_equal(first[0].translation, made.tracking[0].translation)
     poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.tracking.items()}
     count, poses[3] = len(fits), poses[3].model_copy(update={"uncovered": 0.9})

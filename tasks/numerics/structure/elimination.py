@@ -81,9 +81,7 @@ class Elimination(NamedTuple):
     cost: Floats
 
 
-def eliminated(
-    body: NormalisedBody, label: Ints, R: Floats, t: Floats, settings: EliminationSettings
-) -> Elimination:
+def eliminated(body: NormalisedBody, label: Ints, R: Floats, t: Floats, settings: EliminationSettings) -> Elimination:
     """Removes parts, the cheapest first, until each one left costs enough; motions of parts that inherit are fitted anew.
 
     label : (vertex,) part

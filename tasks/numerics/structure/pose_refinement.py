@@ -89,9 +89,7 @@ def refined_pose(
     unseen = _unseen_branches(body, sure, visible_share(body, target, found), chosen)
     other = pose_hypothesis(body, best, target, found, turn, seen, frame, unseen)
     if other is not None:
-        other = fitted_to_surface(
-            body, other, target, aligned, weight, relative_rotations(other.R, body.parents), chosen.fit
-        )
+        other = fitted_to_surface(body, other, target, aligned, weight, relative_rotations(other.R, body.parents), chosen.fit)
         matches = searched(body, other, target)
         if uncovered(body, target, matches).mean() < uncovered(body, target, found).mean():
             best, found = other, matches

@@ -68,9 +68,7 @@ def fitted_to_surface(
     return pose
 
 
-def aligned_weight(
-    body: SkinnedBody, confidence: Floats, sure: Floats, settings: SurfaceFitSettings | None = None
-) -> Floats:
+def aligned_weight(body: SkinnedBody, confidence: Floats, sure: Floats, settings: SurfaceFitSettings | None = None) -> Floats:
     """Weight of the aligned vertices: none where confidence is faint, less on parts that are hardly seen.
 
     At the edge of a lost limb are vertices that the flesh around it has drawn to itself.

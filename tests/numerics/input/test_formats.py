@@ -267,4 +267,3 @@ def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
-
