@@ -44,6 +44,7 @@ class Graph:
             for argument in task.arguments:
                 ordered.gathered_space(task, argument)
             _traversal_is_ordered_at_its_index(ordered, task)
+            _selection_is_known_at_its_index(ordered, task)
         ordered._remember_code()
         return ordered
 
@@ -90,11 +91,13 @@ class Graph:
         return tuple(dict.fromkeys((*self.before(task), *self.behind(task))))
 
     def before(self, task: AnyTask) -> tuple[AnyTask, ...]:
-        """Tasks that come before this one: what it reads at its own index, and what tells the indices and the traversal."""
+        """Tasks that come before this one: what it reads at its own index, and what tells indices, traversal and selection."""
         found = [self.writers[a.artifact] for a in task.arguments if not a.previous]
         found += [self.openers[s] for s in self.needed_spaces(task)]
         if task.along is not None:
             found.append(self.writers[task.along])
+        if task.among is not None:
+            found.append(self.writers[task.among])
         return tuple(dict.fromkeys(t for t in found if t is not task))
 
     def behind(self, task: AnyTask) -> tuple[AnyTask, ...]:
@@ -214,6 +217,7 @@ def _every_edge_has_a_writer(graph: Graph) -> None:
             )
         wanted = [(f"argument {a.name}", a.artifact) for a in task.arguments]
         wanted += [("the traversal it goes along", task.along)] if task.along else []
+        wanted += [("the selection it gathers among", task.among)] if task.among else []
         for what, artifact in wanted:
             if artifact not in graph.writers:
                 raise MissingWriterError(
@@ -247,6 +251,18 @@ def _traversal_is_ordered_at_its_index(graph: Graph, task: AnyTask) -> None:
             f"{task.name} ({task.where}) goes along {task.along.__name__}, but {orderer.name} ({orderer.where}) writes one per"
             f" {'/'.join(orderer.over)}"
         )
+
+
+def _selection_is_known_at_its_index(graph: Graph, task: AnyTask) -> None:
+    """A selection is told at the task's own index, of a dimension that the task gathers over."""
+    if task.among is None:
+        return
+    selector, place = graph.writers[task.among], f"{task.name} ({task.where}) is among {task.among.__name__}"
+    if not set(selector.over) <= set(task.over):
+        raise GraphError(f"{place}, but {selector.name} ({selector.where}) writes one per {'/'.join(selector.over)}")
+    gathered = {d for a in task.arguments if a.form != "one" for d in graph.gathered_space(task, a)} - set(task.over)
+    if task.among.selects not in gathered:
+        raise GraphError(f"{place}, which selects {task.among.selects}, but gathers over no {task.among.selects}")
 
 
 def _ordered(graph: Graph) -> tuple[AnyTask, ...]:

@@ -58,7 +58,8 @@ class Schedule:
         self._unlisted: dict[Node, None] = {}
         self._ready: list[tuple[int, Index, Node]] = []
         self._values: dict[Node, Artifact] = {}
-        self._shaping = {t.name for t in graph.openers.values()} | {graph.writers[t.along].name for t in graph.tasks if t.along}
+        self._shaping = {t.name for t in graph.openers.values()}
+        self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
         self.lay_out()

@@ -19,6 +19,9 @@ task may read at the previous member what is made from its own artifact (a pass 
     Previous[tuple[X, ...]]      every X below that index, in order; empty where the traversal starts
     Previous[Mapping[int, X]]    the same by member number
 
+A task that names an artifact class as `among` gathers only the members that this artifact selects. The selection itself is in
+no key: what was gathered is, by its data.
+
 A task over some fan-out that takes `index: Index` is told which member it is; only then the index is part of its key.
 
 The decorated function stays the plain function it was: tests call it with values.
@@ -75,6 +78,8 @@ class Task(Generic[P, R]):
     along: type[Artifact] | None
     is_origin: bool
     where: str
+    among: type[Artifact] | None = None
+    """The artifact class that selects which members of a dimension are gathered; None gathers all."""
     on_request: bool = False
     """Whether it runs only when it is named."""
     asks_index: bool = False
@@ -121,6 +126,7 @@ def task(
     *,
     over: str = "",
     along: type[Artifact] | None = None,
+    among: type[Artifact] | None = None,
     on_request: bool = False,
     threads: int = 1,
     retries: int = 1,
@@ -129,6 +135,7 @@ def task(
 
     over       : the fan-out, a path of dimensions; "" runs once
     along      : the artifact class whose `previous` orders the traversal, for a task that reads at the previous member
+    among      : the artifact class whose `selected` says which members of its dimension are gathered; None gathers all
     on_request : whether a run leaves it out unless it is named, or something that reads it
     threads    : how many threads its libraries (BLAS, OpenMP, numba) use; more than one has a process to itself
     retries    : how often a node is tried again, alone, after dask gave it up because its workers died; an error of the task
@@ -141,7 +148,9 @@ def task(
         if threads < 1 or retries < 0:
             what = f"threads is {threads} and retries is {retries}"
             raise GraphError(f"{declared.name} ({declared.where}): {what}; expected at least 1 and 0")
-        return replace(declared, on_request=on_request, threads=threads, retries=retries)
+        if among is not None and not among.selects:
+            raise GraphError(f"{declared.name} ({declared.where}): is among {among.__name__}, which selects nothing")
+        return replace(declared, among=among, on_request=on_request, threads=threads, retries=retries)
 
     return declare
 

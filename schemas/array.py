@@ -95,7 +95,8 @@ class Artifact(BaseModel):
 
     An artifact whose members other tasks fan out over (the intervals of a sequence, the cones of an interval) names in
     `opens` the spaces it opens and lists their members in `members`; one that orders a traversal answers `previous` for
-    members of the dimension `orders`, or, where that is empty, of the last dimension of the task that goes along it.
+    members of the dimension `orders`, or, where that is empty, of the last dimension of the task that goes along it. One
+    that selects some members of the dimension `selects` lists them in `selected`.
     What people see of it and take away stands elsewhere, in functions registered for its class.
     """
 
@@ -103,6 +104,7 @@ class Artifact(BaseModel):
     version: ClassVar[int] = 1
     opens: ClassVar[tuple[str, ...]] = ()
     orders: ClassVar[str] = ""
+    selects: ClassVar[str] = ""
     _lazy: dict[str, Loader] = PrivateAttr(default_factory=dict)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
@@ -112,6 +114,10 @@ class Artifact(BaseModel):
     def previous(self, member: int) -> int | None:
         """The member before this one in the traversal this artifact orders; None where the traversal starts."""
         raise ArtifactError(f"{type(self).__name__} orders no traversal")
+
+    def selected(self) -> Sequence[int]:
+        """The members of the dimension `selects` that a task among them gathers."""
+        raise ArtifactError(f"{type(self).__name__} selects no members")
 
     @classmethod
     def array_fields(cls) -> dict[str, Array]:
