@@ -97,7 +97,7 @@ def sees(store: Store, key: str, artifact: str) -> bool:
 
 
 def missing(store: Store, made: Collection[tuple[str, str]]) -> set[tuple[str, str]]:
-    """Those pairs of key and artifact of which the record or the artifact is not in the store now; folders are listed for it."""
+    """Those pairs of key and artifact of which the record or the artifact is not in the store now; folders are listed."""
     keys = set(store.records.listed())
     shards = {artifact_path(artifact).rpartition("/")[0] for _, artifact in made}
     there = {f"{shard}/{name}" for shard in shards for name in store.place.names(shard)}
