@@ -95,6 +95,12 @@ class Schedule:
                 entry.state = "running"
                 yield entry
 
+    def deepest(self) -> float | None:
+        """How deep in the graph the next ready node stands, 0 to 1; None where no node is ready."""
+        while self._ready and self.entries[self._ready[0][2]].state != "stale":
+            heapq.heappop(self._ready)
+        return -self._ready[0][0] / len(self._rank) if self._ready else None
+
     def send(self, entry: Entry) -> list[Entry]:
         """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
 
