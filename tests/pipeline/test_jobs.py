@@ -41,7 +41,9 @@ def take(toys):
         folder.mkdir()
         for frame, number in enumerate(numbers):
             (folder / f"{frame:05d}.txt").write_text(f"{number}")
-        pipeline = toys.pipeline(output=str(toys.output / name), store=str(toys.output / "store"), source={"input": str(folder)})
+        pipeline = toys.pipeline(
+            output=str(toys.output / name), store=str(toys.output / "store"), source={"input": str(folder)}
+        )
         pipeline.store.create()
         heard = Heard()
         return Job(pipeline.schedule(), Watch((heard,)))
