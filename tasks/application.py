@@ -65,7 +65,7 @@ APPLICATION = Application(
                     "export",
                     "Write the result of a run as a file for other programs.",
                     "kinetree export walk/ --to csv",
-                    "kinetree export walk/ --to glb -o walk.glb --set glb.up=z",
+                    "kinetree export walk/ --to glb -o walk.glb --set glb.scale=0.001",
                     "kinetree export walk/ --to ply -o coloured/",
                 ),
                 _command(

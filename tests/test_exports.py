@@ -12,6 +12,7 @@ import pytest
 import trimesh
 import zarr
 from results.export_graph import GRAPH, order, write_frames
+from results.gltf_reader import Glb as Read
 from results.rigged_bodies import spider
 from zips import alter
 
@@ -124,9 +125,17 @@ def test_one_byte_altered_in_a_group_that_was_left_is_restored_without_computing
     assert {path: path.read_bytes() for path in group.rglob("*") if path.is_file()} == before
 
 
+def test_files_stand_upright_and_in_their_unit(out):
+    body, to = spider(), np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    file = Read((out / "skeleton.glb").read_bytes())
+    np.testing.assert_allclose(file.pose(3)[:, :3, 3], body.positions[3] @ to / 1000, atol=1e-7)
+    first = (out / "skeleton.bvh").read_text().splitlines()[-12].split()
+    np.testing.assert_allclose(list(map(float, first[:3])), body.positions[0, 0] @ to / 10, atol=1e-6)
+
+
 def test_option_of_an_export_runs_that_export_alone(out, configured):
     before = {name: (out / name).read_bytes() for name in LEFT[1:]}
-    result = Pipeline.of(configured, sets=["glb.up=z"]).run()
+    result = Pipeline.of(configured, sets=["glb.up=y"]).run()
     assert ran(result) == {"glb"}
     changed = {name for name in before if (out / name).read_bytes() != before[name]}
     assert changed == {"skeleton.glb"}

@@ -1,9 +1,23 @@
 """The motion as a BVH file, for motion-capture programs."""
 
-from kinetree.schemas.results.exports import Exported
+from typing import Literal
+
+from pydantic import Field
+
+from kinetree.schemas.array import Params
+from kinetree.schemas.results.exports import PlacedFile
 
 
-class Bvh(Exported):
+class BvhParams(Params):
+    """Orientation and unit of the file."""
+
+    up: Literal["y", "z"] = "y"
+    """Axis of the file that points up; most programs expect y."""
+    scale: float | None = Field(default=None, gt=0)
+    """Length in the file of one unit of the input; None: the file is in centimetres."""
+
+
+class Bvh(PlacedFile):
     """skeleton.bvh: the joint tree with constant offsets, and its rotations in every frame."""
 
     between: int

@@ -1,7 +1,7 @@
 """Files for other programs, as all exports store them: bytes with names."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,3 +25,18 @@ class Exported(Artifact):
         """The artifact of some files by name; `more` are its other fields."""
         content = np.frombuffer(b"".join(files.values()), np.uint8)
         return cls(names=tuple(files), sizes=tuple(map(len, files.values())), content=content, **more)
+
+
+class PlacedFile(Exported):
+    """Files whose coordinates are those of the input, turned upright and scaled."""
+
+    up: Literal["x", "y", "z", "-x", "-y", "-z"]
+    """Axis of the input that was taken to point up."""
+    up_confidence: float
+    """Confidence in it, 0 to 1; 1 where the user says it."""
+    metres: float
+    """Length of one unit of the input that was assumed, metres."""
+    metres_from: Literal["parameter", "unit", "size"]
+    """What that length is from: a parameter, the sequence's unit, or the size of the body, which is a guess."""
+    assumed_fps: float | None
+    """Assumed frames a second; None where the sequence has a frame rate."""

@@ -2,16 +2,21 @@
 
 from typing import Literal
 
+from pydantic import Field
+
 from kinetree.schemas.array import Params
-from kinetree.schemas.results.exports import Exported
+from kinetree.schemas.results.exports import PlacedFile
 
 
 class UsdParams(Params):
-    """How the file describes the input's coordinates, which are not changed."""
+    """How the file describes the input's coordinates."""
 
-    up: Literal["y", "z"] = "y"
-    """Axis of the input that points up; USD allows these two."""
+    up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(default=None)
+    """Axis of the input that points up; None: the one that was found, see up_direction. USD knows y and z, which are stated;
+    the body is turned to y for any other."""
+    scale: float | None = Field(default=None, gt=0)
+    """Metres of one unit of the input, stated as metersPerUnit; None: as glb.scale."""
 
 
-class Usd(Exported):
+class Usd(PlacedFile):
     """skeleton.usda: the reference mesh skinned to the animated skeleton (UsdSkel)."""

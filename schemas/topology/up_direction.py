@@ -1,4 +1,4 @@
-"""Which way is up: files do not say it, and pictures need it."""
+"""Which way is up: files do not say it; pictures and files for other programs need it."""
 
 from typing import Literal
 
@@ -11,11 +11,12 @@ class UpDirectionParams(Params):
     """What the user knows of the up direction."""
 
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(default=None)
-    """Direction of the coordinates that points up, e.g. z or -y; None finds it. No result but pictures depends on it."""
+    """Direction of the coordinates that points up, e.g. z or -y; None finds it. Pictures and files for
+    other programs depend on it, the skeleton does not."""
 
 
 class UpDirection(Artifact):
-    """The direction of the coordinates that points up in pictures."""
+    """The direction of the coordinates that points up in pictures and in files for other programs."""
 
     up: Literal["x", "y", "z", "-x", "-y", "-z"]
     """The axis, with a minus where it points down."""

@@ -1,5 +1,6 @@
 """Results for people and programs: comparison with the truth, exported files, figures, the report."""
 
+from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.glb import glb
@@ -26,6 +27,7 @@ RESULTS = (
     ply,
     rignet,
     usd,
+    blender,
     report,
 )
 FIGURES = (structure_figures,)

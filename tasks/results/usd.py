@@ -3,10 +3,16 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.usd import Usd, UsdParams
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.placement import upright_rotation
+from kinetree.tasks.results.formats.placement import placed, placement
 from kinetree.tasks.results.formats.usd import usd as usd_text
 
 
 @task(on_request=True)
-def usd(skeleton: Skeleton, params: UsdParams) -> Usd:
+def usd(skeleton: Skeleton, up_direction: UpDirection, params: UsdParams) -> Usd:
     """Writes skeleton.usda, the reference mesh skinned to the animated skeleton (ours)."""
-    return Usd.of({"skeleton.usda": usd_text(skeleton, params)})
+    known = placement(skeleton, up_direction, params.up, params.scale)
+    up = "z" if known.up == "z" else "y"
+    body = placed(skeleton, upright_rotation(known.up, up), 1.0)
+    return Usd.of({"skeleton.usda": usd_text(body, up, known.metres)}, **known._asdict())

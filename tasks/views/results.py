@@ -11,13 +11,18 @@ from kinetree.schemas.array import Floats, Index
 from kinetree.schemas.results.bvh import Bvh
 from kinetree.schemas.results.comparison import Comparison, UnpairedJoint
 from kinetree.schemas.results.evaluation import Evaluation
-from kinetree.schemas.results.exports import Exported
+from kinetree.schemas.results.exports import Exported, PlacedFile
 from kinetree.schemas.results.glb import Glb
 from kinetree.schemas.results.ply import Ply
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.schemas.results.segmentation import Segmentation
+from kinetree.schemas.results.usd import Usd
+from kinetree.tasks.numerics.results.units import METRES
+from kinetree.tasks.views.topology import UNSURE
 
 leave_group(Segmentation, "segmentation.zarr")
+NAMES_OF_METRES = {metres: f"1 {unit}" for unit, metres in METRES.items()}
+"""A unit, by its length in metres."""
 
 
 @files_of(Exported)
@@ -73,18 +78,33 @@ def evaluation_remarks(evaluation: Evaluation) -> tuple[str, ...]:
 
 @remarks_of(Bvh)
 def bvh_remarks(bvh: Bvh) -> tuple[str, ...]:
-    """Says that frames were interpolated, where they were."""
-    if not bvh.between:
-        return ()
-    return (f"the frames are not evenly spaced, but BVH has one frame time: {bvh.between} frames were interpolated",)
+    """Says what is assumed, and that frames were interpolated, where they were."""
+    uneven = f"the frames are not evenly spaced, but BVH has one frame time: {bvh.between} frames were interpolated"
+    return (*placed_remarks(bvh, "bvh.scale"), *([uneven] if bvh.between else []))
 
 
 @remarks_of(Glb)
 def glb_remarks(glb: Glb) -> tuple[str, ...]:
-    """Says that the frame rate or the size is assumed, where it is."""
-    rate = f"frame rate not known: {glb.assumed_fps:g} frames a second assumed; set sequence.fps" if glb.assumed_fps else ""
-    size = "" if glb.unit else f"unit not known: one unit is assumed to be {glb.scale:g} m; set sequence.unit or glb.scale"
-    return tuple(line for line in (rate, size) if line)
+    """Says what is assumed of the input."""
+    return placed_remarks(glb, "glb.scale")
+
+
+@remarks_of(Usd)
+def usd_remarks(usd: Usd) -> tuple[str, ...]:
+    """Says what is assumed of the input."""
+    return placed_remarks(usd, "usd.scale")
+
+
+def placed_remarks(file: PlacedFile, scale: str) -> tuple[str, ...]:
+    """Says that the frame rate, the unit or the up direction of the input is assumed, where it is.
+
+    scale : name of the parameter that says the unit
+    """
+    rate = f"frame rate not known: {file.assumed_fps:g} frames a second assumed; set sequence.fps" if file.assumed_fps else ""
+    guess = f"unit not known: by the size of the body, one unit is taken for {NAMES_OF_METRES.get(file.metres)}"
+    size = f"{guess}; set sequence.unit or {scale}" if file.metres_from == "size" else ""
+    up = f"up direction not certain: {file.up} of the input is taken to point up; set up_direction.up"
+    return tuple(line for line in (rate, size, up if file.up_confidence < UNSURE else "") if line)
 
 
 @remarks_of(Segmentation)

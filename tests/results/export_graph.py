@@ -14,9 +14,11 @@ from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.input.hull import hull
 from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.source import source, surface
+from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.ply import ply
@@ -67,6 +69,12 @@ def skeleton(source: Mapping[int, Source], params: SkeletonParams) -> Skeleton:
     return spider(names=(params.root, *names[1:]), frames=tuple(source))
 
 
+@task()
+def up_direction(skeleton: Skeleton) -> UpDirection:
+    """That the body stands along its z."""
+    return UpDirection(up="z", confidence=1.0)
+
+
 def order(frame: int) -> np.ndarray:
     """(vertex,) which vertex of the reference mesh each vertex of a frame's file is."""
     return np.random.default_rng(frame).permutation(len(spider().vertices))
@@ -82,5 +90,22 @@ def write_frames(folder: Path) -> None:
 
 
 GRAPH = Graph.of(
-    (source, hull, isosurface, alignment, projection, skeleton, glb, bvh, skeleton_json, segmentation, tables, rignet, ply, usd)
+    (
+        source,
+        hull,
+        isosurface,
+        alignment,
+        projection,
+        skeleton,
+        up_direction,
+        glb,
+        bvh,
+        skeleton_json,
+        segmentation,
+        tables,
+        rignet,
+        ply,
+        usd,
+        blender,
+    )
 )

@@ -6,6 +6,8 @@ from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline import views
+from kinetree.schemas.results.bvh import BvhParams
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.formats.bvh import continuous, euler_zxy
 
@@ -18,14 +20,18 @@ def body():
     return spider()
 
 
-def text(skeleton):
-    return views.files(bvh(skeleton), ())["skeleton.bvh"].decode()
+UP = UpDirection(up="y", confidence=0.9)
 
 
-def read(skeleton, folder):
+def text(skeleton, up_direction=UP, **params):
+    made = bvh(skeleton, up_direction, BvhParams(**{"scale": 1.0, **params}))
+    return views.files(made, ())["skeleton.bvh"].decode()
+
+
+def read(skeleton, folder, up_direction=UP, **params):
     pybvh = pytest.importorskip("pybvh", reason="pip install pybvh brings the parser")
     path = folder / "skeleton.bvh"
-    path.write_text(text(skeleton))
+    path.write_text(text(skeleton, up_direction, **params))
     return pybvh.read_bvh_file(str(path))
 
 
@@ -36,6 +42,24 @@ def test_parser_finds_every_joint_where_the_skeleton_has_it_in_every_frame(body,
     known["hand"] = known["EndSitearm"]
     for joint, name in enumerate(body.names):
         np.testing.assert_allclose(at[:, known[name]], body.positions[:, joint], atol=1e-5)
+
+
+@pytest.mark.parametrize(("wanted", "columns", "signs"), [("y", [0, 2, 1], [1, 1, -1]), ("z", [0, 1, 2], [1, 1, 1])])
+def test_file_is_upright_and_in_centimetres(body, tmp_path, wanted, columns, signs):
+    stands = UpDirection(up="z", confidence=0.9)
+    result = read(body, tmp_path, stands, up=wanted, scale=None)
+    at = result.node_positions()
+    known = {node.name: number for number, node in enumerate(result.nodes)}
+    for joint in (0, 1, 5):
+        expected = body.positions[:, joint][:, columns] * signs / 10
+        np.testing.assert_allclose(at[:, known[body.names[joint]]], expected, atol=1e-6)
+
+
+def test_unknown_unit_is_guessed_from_the_size_and_said(body):
+    made = bvh(spider(unit=None), UP, BvhParams())
+    assert "unit not known" in views.remarks(made)[0]
+    assert "bvh.scale" in views.remarks(made)[0]
+    assert views.remarks(bvh(spider(unit=None), UP, BvhParams(scale=1.0))) == ()
 
 
 def test_parser_finds_the_pace(body, tmp_path):
@@ -73,9 +97,9 @@ def test_frames_left_out_are_put_in_between(body):
     assert "Frame Time: 0.2" in lines
     rows = np.array([list(map(float, line.split())) for line in lines[lines.index("Frame Time: 0.2") + 1 :]])
     np.testing.assert_allclose(rows[11:14, :3], np.linspace(rows[10, :3], rows[13, :3], 4)[1:], atol=1e-6)
-    (remark,) = views.remarks(bvh(gaps))
+    (remark,) = views.remarks(bvh(gaps, UP, BvhParams()))
     assert "2 frames were interpolated" in remark
-    assert views.remarks(bvh(body)) == ()
+    assert views.remarks(bvh(body, UP, BvhParams())) == ()
 
 
 def test_angles_are_those_of_the_turns_even_where_two_axes_are_one():

@@ -7,6 +7,7 @@ from results.rigged_bodies import skinned, spider
 from kinetree.errors import ConfigError
 from kinetree.pipeline import views
 from kinetree.schemas.results.usd import UsdParams
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats import usd as exports
 from kinetree.tasks.results.usd import usd
 
@@ -15,8 +16,11 @@ needs_usd = pytest.mark.skipif(
 )
 
 
-def written(skeleton, **params):
-    return views.files(usd(skeleton, UsdParams(**params)), ())["skeleton.usda"]
+Y_UP = UpDirection(up="y", confidence=0.9)
+
+
+def written(skeleton, found=Y_UP, **params):
+    return views.files(usd(skeleton, found, UsdParams(**params)), ())["skeleton.usda"]
 
 
 @pytest.fixture
@@ -24,11 +28,11 @@ def opened(tmp_path):
     """Opens what was written; a stage lives as long as somebody keeps it, and a path is read once."""
     stages = []
 
-    def open_(skeleton, **params):
+    def open_(skeleton, found=Y_UP, **params):
         from pxr import Usd
 
         path = tmp_path / f"skeleton_{len(stages)}.usda"
-        path.write_bytes(written(skeleton, **params))
+        path.write_bytes(written(skeleton, found, **params))
         stages.append(Usd.Stage.Open(str(path)))
         return stages[-1]
 
@@ -90,7 +94,20 @@ def test_stage_tells_pace_unit_and_up(opened):
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (3, 20, 10)
     assert UsdGeom.GetStageMetersPerUnit(stage) == 0.001
     assert UsdGeom.GetStageUpAxis(stage) == "Z"
+    assert UsdGeom.GetStageUpAxis(opened(spider(), UpDirection(up="z", confidence=0.9))) == "Z"
     assert opened(spider(fps=None)).GetTimeCodesPerSecond() == 30
+
+
+@needs_usd
+def test_axis_that_usd_does_not_know_is_turned_to_y(opened):
+    from pxr import UsdGeom
+
+    body = spider(unit=None)
+    stage = opened(body, UpDirection(up="-x", confidence=0.9))
+    assert UsdGeom.GetStageUpAxis(stage) == "Y"
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 0.01
+    results = np.array(queries(stage)[0].ComputeJointWorldTransforms(UsdGeom.XformCache(3)))[:, 3, :3]
+    np.testing.assert_allclose(results[:, 1], -body.positions[3][:, 0], atol=1e-4)
 
 
 @needs_usd

@@ -6,7 +6,7 @@ tests check the file with the Khronos validator.
 
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,34 +23,28 @@ COMPONENT_TYPES = {"float32": 5126, "uint32": 5125, "uint16": 5123, "uint8": 512
 ELEMENT_TYPES = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 VERTICES, ELEMENTS = 34962, 34963
 """Codes of the specification: types of numbers, shapes of elements, targets of buffer views."""
-UP_ROTATIONS = {
-    "y": ((1, 0, 0), (0, 1, 0), (0, 0, 1)), "-y": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
-    "z": ((1, 0, 0), (0, 0, 1), (0, -1, 0)), "-z": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
-    "x": ((0, 0, 1), (1, 0, 0), (0, 1, 0)), "-x": ((0, 0, 1), (-1, 0, 0), (0, -1, 0)),
-}  # fmt: skip
-"""Rotation that brings each axis to glTF's up, +y, by rows."""
 
 
-def gltf(skeleton: Skeleton, up: str = "y", scale: float = 1.0) -> bytes:
+def gltf(skeleton: Skeleton, origin: Mapping[str, Any] | None = None) -> bytes:
     """The reference mesh skinned to the animated joints, as the bytes of a GLB file.
 
-    Node 0 rotates `up` to glTF's y and scales to metres. Below it are the joints in the skeleton's order, in the coordinates
-    and the unit of the input. The y axis of every joint points along its bone in the reference pose.
+    Node 0 holds the joints, in the skeleton's order, and neither rotates nor scales them, because Blender reads the lengths of
+    bones without what is above them. The y axis of every joint points along its bone in the reference pose.
 
-    up    : axis of the input that points up: x, y, z, -x, -y or -z
-    scale : metres of one unit of the input
+    skeleton : with y up, in metres
+    origin   : what the file tells of the input's coordinates
     """
     block = _Block()
     joints = len(skeleton.names)
     B = rest_frames(skeleton.rest, skeleton.parents)
     fps = skeleton.fps or ASSUMED_FPS
-    extras = {"unit": skeleton.unit, "fps": fps, "fps_is_assumed": skeleton.fps is None, "frames": list(skeleton.frames)}
+    extras = {**(origin or {}), "fps": fps, "fps_is_assumed": skeleton.fps is None, "frames": list(skeleton.frames)}
     document = {
         "asset": {"version": "2.0", "generator": "kinetree", "extras": extras},
         "scene": 0,
         "scenes": [{"nodes": [0, joints + 1]}],
         "nodes": [
-            _world_node(up, scale),
+            {"name": "skeleton", "children": [1]},
             *_joints(skeleton, B),
             {"name": "body", "mesh": 0, "skin": 0},
         ],
@@ -94,17 +88,6 @@ class _Block:
     def json(self) -> dict[str, Any]:
         """The block's part of the document."""
         return {"accessors": self._accessors, "bufferViews": self._views, "buffers": [{"byteLength": len(self.bytes)}]}
-
-
-def _world_node(up: str, scale: float) -> dict[str, Any]:
-    """The node above all joints, which rotates and scales them."""
-    rotation = quaternions(np.array([UP_ROTATIONS[up]], np.float64))[0]
-    node: dict[str, Any] = {"name": "skeleton", "children": [1]}
-    if up != "y":
-        node["rotation"] = rotation.tolist()
-    if scale != 1.0:
-        node["scale"] = [scale] * 3
-    return node
 
 
 def _joints(skeleton: Skeleton, B: Floats) -> list[dict[str, Any]]:

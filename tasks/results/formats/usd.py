@@ -11,24 +11,25 @@ from numpy.typing import NDArray
 from kinetree.errors import ConfigError
 from kinetree.schemas.array import Floats
 from kinetree.schemas.results.glb import ASSUMED_FPS
-from kinetree.schemas.results.usd import UsdParams
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.results.formats.colours import linear, part_colours
 from kinetree.tasks.results.formats.names import identifiers
 from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames
 
 
-def usd(skeleton: Skeleton, params: UsdParams) -> bytes:
+def usd(skeleton: Skeleton, up: str, metres: float) -> bytes:
     """The reference mesh bound to the animated joints, as the text of a .usda file.
 
-    Time codes are source frame numbers; metersPerUnit is that of the sequence's unit, 1 where it is not known.
+    Time codes are source frame numbers.
+
+    up     : axis that points up: y or z
+    metres : length of one unit
     raises : ConfigError where the extra is not installed
     """
     pxr = _pxr()
     stage = pxr.Usd.Stage.CreateInMemory(".usda")
-    pxr.UsdGeom.SetStageUpAxis(stage, params.up.upper())
-    pxr.UsdGeom.SetStageMetersPerUnit(stage, METRES.get(skeleton.unit or "", 1.0))
+    pxr.UsdGeom.SetStageUpAxis(stage, up.upper())
+    pxr.UsdGeom.SetStageMetersPerUnit(stage, metres)
     stage.SetStartTimeCode(skeleton.frames[0])
     stage.SetEndTimeCode(skeleton.frames[-1])
     for rate in (stage.SetTimeCodesPerSecond, stage.SetFramesPerSecond):

@@ -1,0 +1,55 @@
+"""The body as other programs expect it: upright and in their unit, in vertices, joints and motion alike (ours)."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from kinetree.schemas.array import Floats
+from kinetree.schemas.results.glb import ASSUMED_FPS
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.placement import Axis, guessed_metres
+from kinetree.tasks.numerics.results.units import METRES
+
+
+class Placement(NamedTuple):
+    """What is known or assumed of the input's coordinates, as `PlacedFile` states it."""
+
+    up: Axis
+    up_confidence: float
+    metres: float
+    metres_from: Literal["parameter", "unit", "size"]
+    assumed_fps: float | None
+
+
+def placement(skeleton: Skeleton, found: UpDirection, up: Axis | None = None, metres: float | None = None) -> Placement:
+    """The up direction and the unit of the input.
+
+    up     : axis that the user says points up; None: the one that was found
+    metres : length of one unit that the user says; None: from the unit, or guessed from the body's longest side
+    """
+    assumed = ASSUMED_FPS if skeleton.fps is None else None
+    direction = (found.up, found.confidence) if up is None else (up, 1.0)
+    if metres is not None:
+        return Placement(*direction, metres, "parameter", assumed)
+    if skeleton.unit in METRES:
+        return Placement(*direction, METRES[str(skeleton.unit)], "unit", assumed)
+    return Placement(*direction, guessed_metres(float(np.ptp(skeleton.vertices, axis=0).max())), "size", assumed)
+
+
+def placed(skeleton: Skeleton, rotation: Floats, scale: float) -> Skeleton:
+    """The same body in rotated and scaled coordinates; its rotations are about the rotated axes.
+
+    rotation : (row, xyz)
+    scale    : new units of one old unit
+    """
+    Q = scale * rotation.T
+    return skeleton.model_copy(
+        update={
+            "positions": skeleton.positions @ Q,
+            "rotation": rotation @ skeleton.rotation @ rotation.T,
+            "rest": skeleton.rest @ Q,
+            "vertices": skeleton.vertices @ Q,
+            "drift": skeleton.drift * scale,
+        }
+    )

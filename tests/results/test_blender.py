@@ -1,0 +1,63 @@
+"""What Blender makes of skeleton.glb and of the FBX that its script writes."""
+
+import ast
+
+import numpy as np
+import pytest
+from results.blender_reader import opened, python, run
+from results.rigged_bodies import skinned, spider
+
+from kinetree.pipeline import views
+from kinetree.schemas.results.glb import GlbParams
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.blender import blender
+from kinetree.tasks.results.glb import glb
+
+FRAMES = [0, 5, 11]
+Z_UP = UpDirection(up="z", confidence=0.9)
+
+
+@pytest.fixture(scope="module")
+def body():
+    return spider()
+
+
+@pytest.fixture(scope="module")
+def folder(body, tmp_path_factory):
+    """The files of the export, and what Blender made of them."""
+    folder = tmp_path_factory.mktemp("blender")
+    for name, data in files(body).items():
+        (folder / name.removeprefix("blender/")).write_bytes(data)
+    return folder
+
+
+def files(skeleton):
+    return views.files(blender(glb(skeleton, Z_UP, GlbParams()), skeleton), ())
+
+
+def test_script_lies_beside_the_file_that_it_reads_and_knows_the_pace(body):
+    written = files(body)
+    assert list(written) == ["blender/skeleton.glb", "blender/to_fbx.py"]
+    assert written["blender/skeleton.glb"] == views.files(glb(body, Z_UP, GlbParams()), ())["skeleton.glb"]
+    ast.parse(written["blender/to_fbx.py"])
+    assert b"FPS = 10.0\n" in written["blender/to_fbx.py"]
+    assert b"FPS = 30.0\n" in files(spider(fps=None))["blender/to_fbx.py"]
+
+
+@pytest.mark.parametrize("name", ["skeleton.glb", "skeleton.fbx"])
+def test_blender_has_joints_bones_and_skin_where_they_are_in_metres_and_upright(body, folder, name):
+    python()
+    if name == "skeleton.fbx":
+        run(folder / "to_fbx.py")
+    told = opened(folder / name, 10.0, FRAMES)
+    np.testing.assert_allclose(told["scale"], 1.0, rtol=1e-5)
+    truth = skinned(body) / 1000
+    size = np.ptp(truth[0], axis=0).max()
+    for t, heads, skin in zip(FRAMES, told["heads"], told["skin"], strict=True):
+        expected = body.positions[t] / 1000
+        np.testing.assert_allclose([heads[n] for n in body.names], expected, atol=2e-4 * size)
+        np.testing.assert_allclose(skin, truth[t], atol=2e-4 * size)
+    arm = np.linalg.norm(np.subtract(told["rest"]["hand"], told["rest"]["arm"]))
+    assert arm == pytest.approx(body.lengths[body.names.index("hand")] / 1000, rel=1e-4)
+    if name == "skeleton.glb":  # FBX knows joints and no bones
+        assert told["lengths"]["arm"] == pytest.approx(arm, rel=1e-4)
