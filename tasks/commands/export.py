@@ -48,7 +48,8 @@ def export(
     Nothing but the file is computed.
 
     glb and usd hold the skinned, moving body, blender the same with a script that makes FBX of it, bvh the motion, json the
-    joints, csv tables of trajectories, angles and lengths, ply your own meshes coloured by part, rignet the rig as text, zarr part labels and aligned meshes.
+    joints, csv tables of trajectories, angles and lengths, ply your own meshes coloured by part, rignet the rig as text,
+    zarr part labels and aligned meshes.
     """
     if to not in (*FORMATS, SCHEMA):
         raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")
