@@ -275,7 +275,7 @@ def test_frames_without_alignment_are_named(out, scans, tmp_path, configured):
 def test_unknown_format_names_the_nearest(out):
     with pytest.raises(ConfigError, match="--to glbb: no such format; did you mean 'glb'"):
         export(str(out), "glbb")
-    with pytest.raises(ConfigError, match="there are: bvh, csv, glb"):
+    with pytest.raises(ConfigError, match="there are: blender, bvh, csv, glb"):
         export(str(out), "fbx")
 
 
