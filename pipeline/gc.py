@@ -27,7 +27,7 @@ class Garbage:
         mib = self.bytes / 2**20
         return (
             f"{len(self.artifacts)} artifacts, {len(self.records)} records, {len(self.runs)} runs,"
-            f" {len(self.leftovers)} incomplete files: {mib:.1f} MiB"
+            f" {len(self.leftovers)} other files: {mib:.1f} MiB"
         )
 
     def json(self) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def collect(
     keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
-    lists = {name for run in needed for name in runs[run]["lists"].values()}
+    lists = {runs[name]["list"] for name in needed}
     garbage = _garbage(store, tuple(name for name in store.run_names() if name not in needed), keys, lists, since)
     if not dry:
         _free(store, garbage)

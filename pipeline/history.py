@@ -57,7 +57,7 @@ class History:
         for run in runs:
             if run["status"] == "running" and not lives(run, self.store):
                 run["status"] = "killed"
-        return [{name: value for name, value in run.items() if name not in ("nodes", "uses", "lists")} for run in runs]
+        return [{name: value for name, value in run.items() if name not in ("nodes", "uses", "list")} for run in runs]
 
     def last_nodes(self) -> dict[str, Any]:
         """Every node that the last runs into this folder computed, as the newest of them did."""

@@ -164,11 +164,11 @@ class Store:
         nodes = run["nodes"]
         states = {label: node["state"] for label, node in nodes.items() if node.get("state", "fresh") != "fresh"}
         listed = {label: {k: v for k, v in node.items() if k != "state"} for label, node in nodes.items()}
-        told = {**run, "nodes": self._put_list(listed), "states": states, "uses": self._put_list(run.get("uses", []))}
+        told = {**run, "nodes": self._put_list(listed), "states": states}
         self.place.put(f"runs/{name}.json", sealed(told))
 
     def _put_list(self, content: Any) -> str:
-        """Writes a list that many runs may share, unless it is there; returns its name, none for an empty one."""
+        """Writes a list of nodes that many runs may share, unless it is there; returns its name, none for an empty one."""
         if not content:
             return ""
         name = digest(content)
@@ -181,13 +181,11 @@ class Store:
         if not isinstance(run, dict):
             return None
         nodes = unsealed(self.place.get(list_path(run["nodes"]))) if run["nodes"] else {}
-        uses = unsealed(self.place.get(list_path(run["uses"]))) if run["uses"] else []
-        if nodes is None or uses is None:
+        if nodes is None:
             return None
         states = run.pop("states")
-        lists = {"nodes": run["nodes"], "uses": run["uses"]}
-        nodes = {label: {"state": states.get(label, "fresh"), **node} for label, node in nodes.items()}
-        return {**run, "nodes": nodes, "uses": uses, "lists": lists}
+        listed = {label: {"state": states.get(label, "fresh"), **node} for label, node in nodes.items()}
+        return {**run, "nodes": listed, "list": run["nodes"]}
 
     def _refuse_strangers(self) -> None:
         data = self.place.get(MARKER)
@@ -235,7 +233,7 @@ def artifact_path(digest: str) -> str:
 
 
 def list_path(name: str) -> str:
-    """Where a list of a run's nodes or keys lies."""
+    """Where a list of a run's nodes lies."""
     return f"nodes/{name}.json"
 
 

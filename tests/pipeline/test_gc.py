@@ -69,6 +69,15 @@ def test_a_dry_collection_frees_nothing_and_says_what_a_real_one_then_frees(toys
     assert collect(store(toys), dry=True).artifacts == ()
 
 
+def test_a_run_that_computed_nothing_leaves_nothing_but_its_own_record(toys):
+    toys.run()
+    before = set(toys.stored())
+    assert toys.run().ran == set()
+    (name,) = names(toys)[1:]
+    assert set(toys.stored()) - before == {f"runs/{name}.json"}
+    assert collect(store(toys), dry=True).leftovers == ()
+
+
 def test_an_artifact_two_runs_share_stays_with_either(toys):
     toys.run()
     toys.run(smooth={"grain": 5.0})
