@@ -6,19 +6,27 @@ An object appears whole or not at all, so nothing is renamed. Endpoint, region a
 
 import contextlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from typing import Any, TypeVar
 
 from kinetree.errors import StoreError
+from kinetree.pipeline.place import Listed
 
 T = TypeVar("T")
+LISTED_AT_ONCE = 1000
+"""Objects in one answer of a service that lists."""
+ASKED_AT_ONCE = 16
+"""Requests under way where many objects are wanted: a service answers each after tens of milliseconds."""
 RETRIES: Any = {"max_retries": 8, "retry_timeout": timedelta(minutes=3)}
 """A service that answers 503 is asked again, after pauses that grow."""
 
 
 class Bucket:
     """A place at s3://bucket/prefix."""
+
+    is_remote = True
 
     def __init__(self, url: str) -> None:
         """Opens nothing; raises StoreError where the extra is not installed or the address is none."""
@@ -37,6 +45,12 @@ class Bucket:
     def get(self, path: str) -> bytes | None:
         """The bytes at `path`; None where nothing is."""
         return self._asked(path, lambda store, key: bytes(store.get(key).bytes()))
+
+    def get_all(self, paths: Iterable[str]) -> dict[str, bytes | None]:
+        """The bytes at every path, several asked for at a time; None where nothing is."""
+        wanted = list(paths)
+        with ThreadPoolExecutor(ASKED_AT_ONCE) as pool:
+            return dict(zip(wanted, pool.map(self.get, wanted), strict=True))
 
     def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
         """The last bytes of an object, and how many it has in all; None where nothing is."""
@@ -74,6 +88,15 @@ class Bucket:
         below = [*(o["path"] for o in found["objects"]), *found["common_prefixes"]]
         return sorted({key.rstrip("/").rpartition("/")[2] for key in below})
 
+    def listed(self, path: str) -> dict[str, Listed]:
+        """Every object below `path`, by path relative to it, sorted; one request for a thousand of them."""
+        key = self._key(path)
+        top = f"{key}/" if key else ""
+        with self._refusals("list", path):
+            found = [o for chunk in self._store.list(top or None, chunk_size=LISTED_AT_ONCE) for o in chunk]
+        told = {o["path"].removeprefix(top): Listed(int(o["size"]), float(o["last_modified"].timestamp())) for o in found}
+        return dict(sorted(told.items()))
+
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change of an object; 0 where nothing is."""
         return self._asked(path, lambda store, key: float(store.head(key)["last_modified"].timestamp())) or 0.0
@@ -84,6 +107,13 @@ class Bucket:
             key = self._key(path)
             inside = [o["path"] for chunk in self._store.list(f"{key}/") for o in chunk]
             self._store.delete(inside or key)
+
+    def remove_all(self, paths: Iterable[str]) -> None:
+        """Removes objects; one request for a thousand of them."""
+        keys = [self._key(path) for path in paths]
+        with self._refusals("remove", "objects"):
+            if keys:
+                self._store.delete(keys)
 
     def _key(self, path: str) -> str:
         return "/".join(part for part in (self.prefix, path) if part)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from kinetree.pipeline.heartbeat import lives
-from kinetree.pipeline.store import Store, artifact_path, list_path
+from kinetree.pipeline.place import Listed
+from kinetree.pipeline.run_records import list_path, run_path
+from kinetree.pipeline.store import Store, artifact_path
 
 DAY_SECONDS = 24 * 3600.0
 LEFTOVER_SECONDS = DAY_SECONDS
@@ -55,11 +57,11 @@ def collect(
     A run that is under way, here or on another machine, keeps what it found fresh when it began and everything that was
     made since; so does one that was killed, until a later run into the same folder has taken its work over.
     """
-    runs = {run["name"]: run for run in store.runs()}
+    runs = {head["name"]: head for head in store.run_records.heads()}
     for name in keep:
         store.run(name)
     count = last if last is not None else (0 if keep else 1)
-    unfinished = [run for run in _latest(runs) if not run["nodes"]] + [
+    unfinished = [run for run in _latest(runs) if not run["list"]] + [
         run for run in runs.values() if run["status"] == "running" and lives(run, store)
     ]
     recent = [name for name, run in runs.items() if days is not None and run["epoch"] >= time.time() - days * DAY_SECONDS]
@@ -67,10 +69,10 @@ def collect(
     needed = {*bound, *_last(runs, count), *recent}
     if size is not None:
         needed = _fitting(store, {name: runs[name] for name in sorted(needed)}, bound, size)
-    keys = {node["key"] for name in needed for node in runs[name]["nodes"].values() if node.get("key")}
+    lists = {runs[name]["list"]: name for name in sorted(needed)}
+    keys = {node["key"] for name in lists.values() for node in _nodes(store, runs[name]).values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
     since = min((run["epoch"] for run in unfinished), default=float("inf"))
-    lists = {runs[name]["list"] for name in needed}
     garbage = _garbage(store, tuple(name for name in store.run_names() if name not in needed), keys, lists, since)
     if not dry:
         _free(store, garbage)
@@ -79,11 +81,11 @@ def collect(
 
 def _fitting(store: Store, runs: dict[str, dict[str, Any]], bound: Collection[str], size: int) -> set[str]:
     """The runs without the oldest, as many as it takes until what the rest use is no larger than `size`."""
-    used = {name: {n["artifact"] for n in run["nodes"].values() if n.get("key")} for name, run in runs.items()}
-    sizes = {digest: store.place.size(artifact_path(digest)) or 0 for digests in used.values() for digest in digests if digest}
+    used = {name: {n["artifact"] for n in _nodes(store, run).values() if n.get("key")} for name, run in runs.items()}
+    sizes = {digest: told.size for digest, told in store.artifacts().items()}
     kept = set(runs)
     for name in (name for name in runs if name not in bound):
-        if sum(sizes[d] for d in set().union(*(used[k] for k in kept)) if d) <= size:
+        if sum(sizes.get(d, 0) for d in set().union(*(used[k] for k in kept)) if d) <= size:
             break
         kept.remove(name)
     return kept
@@ -92,7 +94,7 @@ def _fitting(store: Store, runs: dict[str, dict[str, Any]], bound: Collection[st
 def _last(runs: dict[str, dict[str, Any]], count: int) -> list[str]:
     by_output: dict[str, list[str]] = {}
     for name, run in runs.items():
-        if run["nodes"]:
+        if run["list"]:
             by_output.setdefault(run["output"], []).append(name)
     return [name for names in by_output.values() for name in (names[-count:] if count else ())]
 
@@ -102,35 +104,45 @@ def _latest(runs: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     return list({run["output"]: run for run in runs.values()}.values())
 
 
+def _nodes(store: Store, run: dict[str, Any]) -> dict[str, Any]:
+    return store.run_records.nodes(run) or {}
+
+
 def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: Collection[str], since: float) -> Garbage:
     records: list[str] = []
     needed: set[str] = set()
+    singles = store.records.singles()
     for key in store.records.listed():
-        record = store.record(key)
+        record = singles.get(key) or store.record(key, as_listed=True)
         if record is not None and (key in keys or store.records.modified(key) >= since):
             needed.add(record.artifact)
         else:
             records.append(key)
-    artifacts = [d for d in store.artifacts() if d not in needed and store.place.modified(artifact_path(d)) < since]
-    leftovers = tuple(_leftovers(store, runs, lists, since))
-    freed = sum(store.place.size(path) or 0 for path in [*map(artifact_path, artifacts), *leftovers])
-    return Garbage(runs, tuple(records), tuple(artifacts), leftovers, freed)
+    there = store.artifacts()
+    artifacts = [digest for digest, told in there.items() if digest not in needed and told.modified < since]
+    leftovers = dict(_leftovers(store, runs, lists, since))
+    freed = sum(there[digest].size for digest in artifacts) + sum(leftovers.values())
+    return Garbage(runs, tuple(records), tuple(artifacts), tuple(leftovers), freed)
 
 
-def _leftovers(store: Store, runs: Collection[str], lists: Collection[str], since: float) -> Iterator[str]:
-    """What nobody needs beside records and artifacts: half-written files, lists and heartbeats of runs that go."""
+def _leftovers(store: Store, runs: Collection[str], lists: Collection[str], since: float) -> Iterator[tuple[str, int]]:
+    """What else nobody needs, and its size: half-written things, lists and heartbeats of runs that go."""
     old = min(time.time() - LEFTOVER_SECONDS, since)
-    yield from (f"tmp/{name}" for name in store.place.names("tmp") if store.place.modified(f"tmp/{name}") < old)
-    unused = (list_path(n.removesuffix(".json")) for n in store.place.names("nodes") if n.removesuffix(".json") not in lists)
-    yield from (path for path in unused if store.place.modified(path) < since)
-    beats = (name for name in store.place.names("runs") if name.endswith(".beat"))
-    yield from (f"runs/{name}" for name in beats if name.removesuffix(".beat") in runs)
+    half: dict[str, list[Listed]] = {}
+    for name, told in store.place.listed("tmp").items():
+        half.setdefault(f"tmp/{name.partition('/')[0]}", []).append(told)
+    yield from ((path, sum(t.size for t in told)) for path, told in half.items() if all(t.modified < old for t in told))
+    for name, told in store.place.listed("nodes").items():
+        if name.removesuffix(".json") not in lists and told.modified < since:
+            yield list_path(name.removesuffix(".json")), told.size
+    beats = ((name, told) for name, told in store.place.listed("runs").items() if name.endswith(".beat"))
+    yield from ((f"runs/{name}", told.size) for name, told in beats if name.removesuffix(".beat") in runs)
 
 
 def _free(store: Store, garbage: Garbage) -> None:
     """Records go before artifacts, so that no record ever names what is not there."""
-    for name in garbage.runs:
-        store.place.remove(f"runs/{name}.json")
+    store.place.remove_all(map(run_path, garbage.runs))
     store.records.remove(garbage.records)
-    for path in [*map(artifact_path, garbage.artifacts), *garbage.leftovers]:
+    store.place.remove_all(map(artifact_path, garbage.artifacts))
+    for path in garbage.leftovers:  # a folder may be among them
         store.place.remove(path)

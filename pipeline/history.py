@@ -44,7 +44,7 @@ class History:
         key = (self.last_nodes().get(node) or {}).get("key")
         if not key:
             return "nothing"
-        return self.store.record(key) or "lost"
+        return self.store.record(key, as_listed=True) or "lost"
 
     def records(self) -> dict[str, Record]:
         """By label, the records that are still there of the nodes that the last runs computed."""
@@ -53,23 +53,25 @@ class History:
 
     def runs(self) -> list[dict[str, Any]]:
         """Every run on record without its nodes, oldest first; one that never ended and is not under way was killed."""
-        runs = self.store.runs()
+        runs = self.store.run_records.heads()
         for run in runs:
             if run["status"] == "running" and not lives(run, self.store):
                 run["status"] = "killed"
-        return [{name: value for name, value in run.items() if name not in ("nodes", "uses", "list")} for run in runs]
+        return [{name: value for name, value in run.items() if name not in ("states", "uses", "list")} for run in runs]
 
     def last_nodes(self) -> dict[str, Any]:
         """Every node that the last runs into this folder computed, as the newest of them did."""
         if self._nodes is None:
             self._nodes = {}
-            for run in self._mine()[-LOOKED_BACK:]:
-                self._nodes |= {name: node for name, node in run["nodes"].items() if node.get("key")}
+            newest = {run["list"]: run for run in reversed(self._mine()[-LOOKED_BACK:])}  # of those with one list any will do
+            for run in reversed(newest.values()):
+                nodes = self.store.run_records.nodes(run) or {}
+                self._nodes |= {name: node for name, node in nodes.items() if node.get("key")}
         return self._nodes
 
     def _mine(self) -> list[dict[str, Any]]:
         if self._runs is None:
-            self._runs = [run for run in self.store.runs() if run.get("output") == self.output]
+            self._runs = [run for run in self.store.run_records.heads() if run.get("output") == self.output]
         return self._runs
 
     def origin(self, task: str, params: Any) -> dict[str, Any]:
@@ -78,7 +80,8 @@ class History:
         params : the block of the origin's parameters in the configuration that the run would leave
         """
         for run in reversed(self._mine()):
-            nodes = {n: node["values"] for n, node in run["nodes"].items() if "values" in node and n.partition("[")[0] == task}
+            listed = self.store.run_records.nodes(run) or {}
+            nodes = {n: node["values"] for n, node in listed.items() if "values" in node and n.partition("[")[0] == task}
             if nodes:
                 return nodes if run["config"].get(task) == params else {}
         return {}

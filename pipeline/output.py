@@ -115,7 +115,7 @@ def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> No
     """Leaves a group as a folder; one that lies there with the same bytes is not touched."""
     with _damage_discarded(schedule, entry):
         files = schedule.store.group(entry.task.returns, str(entry.artifact))
-    there = place.tree(name)
+    there = place.listed(name)
     if set(there) == set(files) and all(place.get(f"{name}/{path}") == data for path, data in files.items()):
         return
     is_ours = _attributes(place.get(f"{name}/zarr.json")).get("schema") == entry.task.returns.__name__

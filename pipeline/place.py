@@ -8,20 +8,35 @@ import errno
 import os
 import shutil
 import uuid
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from kinetree.errors import StoreError, StoreFullError
 
 
+@dataclass(frozen=True)
+class Listed:
+    """What a listing says of one object."""
+
+    size: int
+    modified: float
+    """Seconds since the epoch of its last change."""
+
+
 class Place(Protocol):
     """What a store needs; `Folder` is the one on a disk."""
 
     url: str
+    is_remote: bool
+    """Whether one question takes about as long as listing a thousand objects, so that many are better asked at once."""
 
     def get(self, path: str) -> bytes | None:
         """The bytes at `path`; None where nothing is."""
+
+    def get_all(self, paths: Iterable[str]) -> dict[str, bytes | None]:
+        """The bytes at every path, in their order; None where nothing is."""
 
     def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
         """The last bytes of an object, and how many it has in all; None where nothing is."""
@@ -38,15 +53,23 @@ class Place(Protocol):
     def names(self, path: str) -> list[str]:
         """Names directly below `path`, sorted; empty where nothing is."""
 
+    def listed(self, path: str) -> dict[str, Listed]:
+        """Every object below `path`, by path relative to it, sorted; empty where nothing is."""
+
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change of an object; 0 where nothing is."""
 
     def remove(self, path: str) -> None:
         """Removes an object; nothing happens where nothing is."""
 
+    def remove_all(self, paths: Iterable[str]) -> None:
+        """Removes objects; nothing happens where nothing is."""
+
 
 class Folder:
     """A `Place` on a local or mounted disk: written beside, then renamed."""
+
+    is_remote = False
 
     def __init__(self, root: Path, name: str = "store", beside: str = "tmp") -> None:
         self.root = root.absolute()
@@ -58,6 +81,10 @@ class Folder:
         """The bytes at `path`; None where nothing is."""
         with self._reading(path) as file:
             return None if file is None else file.read()
+
+    def get_all(self, paths: Iterable[str]) -> dict[str, bytes | None]:
+        """The bytes at every path, one after the other; None where nothing is."""
+        return {path: self.get(path) for path in paths}
 
     def tail(self, path: str, count: int) -> tuple[bytes, int] | None:
         """The last bytes of a file, and how many it has in all; None where nothing is."""
@@ -119,12 +146,12 @@ class Folder:
         except OSError as error:
             raise StoreError(f"store {self.url}: cannot list {path}: {error.strerror}; check its permissions") from error
 
-    def tree(self, path: str) -> Mapping[str, int]:
-        """Size of every object below `path`, by path relative to it."""
-        top = self.root / path
-        files = [file for file in sorted(top.rglob("*")) if file.is_file()]
-        sizes = {str(file.relative_to(top)): self.size(str(file.relative_to(self.root))) for file in files}
-        return {name: size for name, size in sizes.items() if size is not None}  # another run may remove what is listed here
+    def listed(self, path: str) -> dict[str, Listed]:
+        """Every file below `path`, by path relative to it, sorted; empty where nothing is."""
+        try:
+            return dict(sorted(_listed(f"{self.url}/{path}", "")))
+        except OSError as error:
+            raise StoreError(f"store {self.url}: cannot list {path}: {error.strerror}; check its permissions") from error
 
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change; 0 where nothing is."""
@@ -145,6 +172,11 @@ class Folder:
                 shutil.rmtree(beside, ignore_errors=True)
             else:
                 beside.unlink(missing_ok=True)
+
+    def remove_all(self, paths: Iterable[str]) -> None:
+        """Removes one after the other."""
+        for path in paths:
+            self.remove(path)
 
     @contextlib.contextmanager
     def _reading(self, path: str) -> Iterator[BinaryIO | None]:
@@ -193,3 +225,15 @@ class Folder:
                 f"{self._name} {self.url}: cannot write {path}: {error.strerror}; check its permissions or name another"
                 " folder (--output, --store)"
             ) from error
+
+
+def _listed(folder: str, prefix: str) -> Iterator[tuple[str, Listed]]:
+    """The files below a folder; another run may remove what is listed here."""
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError), os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_dir(follow_symlinks=False):
+                yield from _listed(entry.path, f"{prefix}{entry.name}/")
+            else:
+                with contextlib.suppress(FileNotFoundError):
+                    state = entry.stat()
+                    yield f"{prefix}{entry.name}", Listed(state.st_size, state.st_mtime)

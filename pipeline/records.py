@@ -11,7 +11,7 @@ import re
 import threading
 import time
 import zipfile
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -60,18 +60,28 @@ class Records:
     _listed: float = float("-inf")
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
-    def get(self, key: str) -> Record | None:
-        """What `key` made; None where it made nothing yet or the record cannot be read."""
+    def get(self, key: str, *, as_listed: bool = False) -> Record | None:
+        """What `key` made; None where it made nothing yet or the record cannot be read.
+
+        as_listed : a key that was not there when the records were listed, which is moments ago, is not asked for again
+        """
         if time.monotonic() - self._listed > LISTED_SECONDS:
             self._list()
         packed = self._packed(key) if key not in self._single else None
-        if packed is not None:
+        if packed is not None or (as_listed and key not in self._single):
             return packed
         data = self.place.get(_single(key))
         if data is None and key in self._single:
             self._list()  # it was packed or freed meanwhile
             return self._packed(key)
         return _checked(data, key)
+
+    def singles(self) -> dict[str, Record]:
+        """By key, the readable records that lie alone."""
+        self._list()
+        found = self._read_singles(self._single)
+        records = {key: _checked(data, key) for key, data in found.items()}
+        return {key: record for key, record in records.items() if record is not None}
 
     def put(self, record: Record) -> None:
         """Writes or replaces one record."""
@@ -97,19 +107,17 @@ class Records:
     def pack(self, name: str, keys: Collection[str]) -> None:
         """Puts the single records of these keys into one pack of that name, if they are many."""
         self._list()
-        found = {key: self.place.get(_single(key)) for key in sorted(self._single & set(keys))}
+        found = self._read_singles(self._single & set(keys))
         files = {f"{key}.json": data for key, data in found.items() if data is not None and _checked(data, key) is not None}
         if len(files) >= PACKED_FROM:
             self.place.put(_pack(name), packed(files, is_deflated=True))
-            for file in files:
-                self.place.remove(f"records/{file}")
+            self.place.remove_all(f"records/{file}" for file in files)
             self._list()
 
     def remove(self, keys: Collection[str]) -> None:
         """Removes records; packs that held some are written again without them."""
         gone = set(keys)
-        for key in gone & self._single:
-            self.place.remove(_single(key))
+        self.place.remove_all(_single(key) for key in sorted(gone & self._single))
         for name in sorted({self._where[key] for key in gone if key in self._where}):
             archive = self._packs[name]
             files = {f: self._bytes(name, f) for f in (archive.namelist() if archive else ()) if f[:-5] not in gone}
@@ -126,7 +134,7 @@ class Records:
         self._list()
         packs = [_pack(name) for name, archive in self._packs.items() if archive is None]
         inside = [f"{_pack(name)}: {key}.json" for key, name in self._where.items() if self._packed(key) is None]
-        return [*packs, *inside, *(_single(k) for k in sorted(self._single) if _checked(self.place.get(_single(k)), k) is None)]
+        return [*packs, *inside, *map(_single, self._damaged_singles())]
 
     def discard_damaged(self) -> None:
         """Removes what `damaged` names."""
@@ -134,14 +142,22 @@ class Records:
         for name in [name for name, archive in self._packs.items() if archive is None]:
             self.place.remove(_pack(name))
         packs = {key for key in self._where if self._packed(key) is None}
-        self.remove(packs | {k for k in self._single if _checked(self.place.get(_single(k)), k) is None})
+        self.remove(packs | set(self._damaged_singles()))
+
+    def _damaged_singles(self) -> list[str]:
+        return [key for key, data in self._read_singles(self._single).items() if _checked(data, key) is None]
+
+    def _read_singles(self, keys: Iterable[str]) -> dict[str, bytes | None]:
+        found = self.place.get_all(map(_single, wanted := sorted(keys)))
+        return {key: found[_single(key)] for key in wanted}
 
     def _list(self) -> None:
         with self._lock:
             single = {name.removesuffix(".json") for name in self.place.names("records")}
             there = [name.removesuffix(".zip") for name in self.place.names("packs") if name.endswith(".zip")]
             known = self._packs
-            self._packs = {name: known.get(name) or _opened(self.place.get(_pack(name))) for name in there}
+            new = self.place.get_all(_pack(name) for name in there if not known.get(name))
+            self._packs = {name: known.get(name) or _opened(new[_pack(name)]) for name in there}
             files = {file: name for name, archive in self._packs.items() if archive for file in archive.namelist()}
             self._where = {file[:-5]: name for file, name in files.items() if _KEY.fullmatch(file[:-5])}
             self._single = {key for key in single if _KEY.fullmatch(key)}

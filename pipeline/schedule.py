@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.entry import DONE, Entry, Loss, State
 from kinetree.pipeline.graph import AnyTask, Graph
+from kinetree.pipeline.inventory import Holder, inventory
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.layout import Given, Layout, T
 from kinetree.pipeline.made_with import EVERY_VERSION_TRUSTED, MadeWith
@@ -62,7 +63,9 @@ class Schedule:
         self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
+        self._holder: Holder = inventory(store)
         self.lay_out()
+        self._holder = store  # from now on others write
         self._losses.clear()  # nothing was told of these nodes yet
 
     def lay_out(self) -> list[Node]:
@@ -336,8 +339,8 @@ class Schedule:
         ]
         index = entry.node.at if entry.task.asks_index else None
         entry.key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
-        record = self.store.record(entry.key)
-        if record is not None and not self._asked_again(entry, record) and self.store.holds(record):
+        record = self._holder.record(entry.key)
+        if record is not None and not self._asked_again(entry, record) and self._holder.holds(record):
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
             return True
         entry.state, entry.reasons = "stale", self._reasons(entry, work, record)
@@ -349,7 +352,7 @@ class Schedule:
         return entry.node.task in self.force or self.distrusted(record) is not None
 
     def _reasons(self, entry: Entry, work: Work, record: Record | None) -> tuple[Reason, ...]:
-        if record is not None and not self.store.holds(record):
+        if record is not None and not self._holder.holds(record):
             return (Reason("artifact", "missing or damaged"),)
         if entry.node.task in self.force:
             return (Reason("forced"),)

@@ -3,8 +3,7 @@
     kinetree-store.json       says that this is a store, and of which format
     artifacts/ab/abcd….zip    one immutable zarr v3 group, zipped: arrays with dimension names and units, the rest as attributes
     records/, packs/          what a key made, and how: see records.py
-    runs/<id>.json            what each run used
-    nodes/<digest>.json       the nodes of runs: those that used the same share one list
+    runs/, nodes/             what each run did and used: see run_records.py
     files.json                digests of the user's files
     tmp/                      half-written things; nobody reads them
 
@@ -14,7 +13,7 @@ unpickled.
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -23,18 +22,19 @@ from numpy.typing import NDArray
 
 from kinetree.errors import DamagedArtifactError, StoreError, UnknownNodeError
 from kinetree.pipeline.groups import ForeignArrayError, decoded, group_files
-from kinetree.pipeline.key import array_digest, combined_digest, digest
+from kinetree.pipeline.key import array_digest, combined_digest
 from kinetree.pipeline.packed import DamagedZipError, Packed, packed
-from kinetree.pipeline.place import Folder, Place
+from kinetree.pipeline.place import Folder, Listed, Place
 from kinetree.pipeline.records import Record, Records
-from kinetree.pipeline.sealed import sealed, unsealed
+from kinetree.pipeline.run_records import RunRecords, run_path
 from kinetree.schemas.array import Array, Artifact, Loader
 
 __all__ = ["Record", "Store", "artifact_path"]
 A = TypeVar("A", bound=Artifact)
 FORMAT = "kinetree.store/2"
 MARKER = "kinetree-store.json"
-PARTS = frozenset([MARKER, "artifacts", "records", "packs", "runs", "nodes", "files.json", "tmp"])
+ARTIFACTS = "artifacts"
+PARTS = frozenset([MARKER, ARTIFACTS, "records", "packs", "runs", "nodes", "files.json", "tmp"])
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,13 @@ class Store:
 
     place: Place
     records: Records = field(repr=False, compare=False)
+    run_records: RunRecords = field(repr=False, compare=False)
 
     @staticmethod
     def at(url: str | Path) -> "Store":
         """The store at a folder's path or at s3://bucket/prefix; raises StoreError where something else lies there."""
         place = _place(str(url))
-        store = Store(place, Records(place))
+        store = Store(place, Records(place), RunRecords(place))
         store._refuse_strangers()
         return store
 
@@ -67,9 +68,9 @@ class Store:
         if not self.exists:
             self.place.put(MARKER, json.dumps({"format": FORMAT}).encode())
 
-    def record(self, key: str) -> Record | None:
-        """What `key` made; None where it made nothing yet or the record cannot be read."""
-        return self.records.get(key)
+    def record(self, key: str, *, as_listed: bool = False) -> Record | None:
+        """What `key` made; None where it made nothing yet or the record cannot be read; `as_listed` as in `Records.get`."""
+        return self.records.get(key, as_listed=as_listed)
 
     def holds(self, record: Record) -> bool:
         """Whether the record's artifact lies there in its size (bytes are checked on reading)."""
@@ -135,57 +136,32 @@ class Store:
         """Removes an artifact; records that name it then make nothing fresh."""
         self.place.remove(artifact_path(digest))
 
-    def artifacts(self) -> Iterator[str]:
-        """The digests of all artifacts there are."""
-        for shard in self.place.names("artifacts"):
-            for name in self.place.names(f"artifacts/{shard}"):
-                yield name.removesuffix(".zip")
+    def artifacts(self) -> dict[str, Listed]:
+        """Size and time of every artifact there is, by digest."""
+        return {path.rpartition("/")[2].removesuffix(".zip"): told for path, told in self.place.listed(ARTIFACTS).items()}
 
     def run_names(self) -> list[str]:
         """Identifiers of the runs on record, oldest first."""
-        return [n.removesuffix(".json") for n in self.place.names("runs") if n.endswith(".json")]
+        return self.run_records.names()
 
     def runs(self) -> list[dict[str, Any]]:
-        """The runs on record, oldest first, without those that cannot be read."""
-        runs = (self._run(name) for name in self.run_names())
-        return [run for run in runs if run is not None]
+        """The runs on record with their nodes, oldest first, without those that cannot be read."""
+        found = ((head, self.run_records.nodes(head)) for head in self.run_records.heads())
+        return [{**head, "nodes": nodes} for head, nodes in found if nodes is not None]
 
     def run(self, name: str) -> dict[str, Any]:
         """The record of one run with its nodes; raises UnknownNodeError where there is none."""
-        if Path(name).name != name or self.place.size(f"runs/{name}.json") is None:
+        if Path(name).name != name or self.place.size(run_path(name)) is None:
             raise UnknownNodeError(f"no run {name!r} in {self.url}; kinetree runs lists them")
-        run = self._run(name)
-        if run is None:
-            raise StoreError(f"store {self.url}: runs/{name}.json is damaged; kinetree verify --repair removes it")
-        return run
+        head = self.run_records.head(name)
+        nodes = self.run_records.nodes(head) if head is not None else None
+        if head is None or nodes is None:
+            raise StoreError(f"store {self.url}: {run_path(name)} is damaged; kinetree verify --repair removes it")
+        return {**head, "nodes": nodes}
 
     def write_run(self, name: str, run: Mapping[str, Any]) -> None:
         """Writes or replaces the record of one run; its nodes lie apart, once for all runs that have the same."""
-        nodes = run["nodes"]
-        states = {label: node["state"] for label, node in nodes.items() if node.get("state", "fresh") != "fresh"}
-        listed = {label: {k: v for k, v in node.items() if k != "state"} for label, node in nodes.items()}
-        told = {**run, "nodes": self._put_list(listed), "states": states}
-        self.place.put(f"runs/{name}.json", sealed(told))
-
-    def _put_list(self, content: Any) -> str:
-        """Writes a list of nodes that many runs may share, unless it is there; returns its name, none for an empty one."""
-        if not content:
-            return ""
-        name = digest(content)
-        if unsealed(self.place.get(list_path(name))) is None:
-            self.place.put(list_path(name), sealed(content))
-        return name
-
-    def _run(self, name: str) -> dict[str, Any] | None:
-        run = unsealed(self.place.get(f"runs/{name}.json"))
-        if not isinstance(run, dict):
-            return None
-        nodes = unsealed(self.place.get(list_path(run["nodes"]))) if run["nodes"] else {}
-        if nodes is None:
-            return None
-        states = run.pop("states")
-        listed = {label: {"state": states.get(label, "fresh"), **node} for label, node in nodes.items()}
-        return {**run, "nodes": listed, "list": run["nodes"]}
+        self.run_records.write(name, run)
 
     def _refuse_strangers(self) -> None:
         data = self.place.get(MARKER)
@@ -229,12 +205,7 @@ def _place(url: str) -> Place:
 
 def artifact_path(digest: str) -> str:
     """Where in a store the artifact of that digest lies."""
-    return f"artifacts/{digest[:2]}/{digest}.zip"
-
-
-def list_path(name: str) -> str:
-    """Where a list of a run's nodes lies."""
-    return f"nodes/{name}.json"
+    return f"{ARTIFACTS}/{digest[:2]}/{digest}.zip"
 
 
 def _head(group: Packed, digest: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import settings
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+pytest_plugins = ["s3_service"]
 settings.register_profile("any machine", deadline=None)
 settings.load_profile("any machine")
 

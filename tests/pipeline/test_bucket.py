@@ -1,103 +1,14 @@
 """A store in a bucket of a server that speaks S3 over HTTP: laws of a place, slow answers, refusals, two runs at once."""
 
-import http.client
-import itertools
-import subprocess
-import sys
-import threading
 import time
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
+from s3_service import SECRET
 
 from kinetree.errors import StoreError
 from kinetree.pipeline.gc import collect
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.store import Store, artifact_path
 from kinetree.pipeline.verify import verify
-
-SERVER = """
-from moto.server import ThreadedMotoServer
-import sys
-server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
-server.start()
-print(server.get_host_and_port()[1], flush=True)
-sys.stdin.read()
-"""
-SECRET = "the-secret-of-the-test"
-
-
-class Between(ThreadingHTTPServer):
-    """Passes requests on, each after a pause; every so many are answered 503 instead."""
-
-    daemon_threads = True
-
-    def __init__(self, port):
-        super().__init__(("127.0.0.1", 0), Passing)
-        self.behind, self.pause, self.refuse_every = port, 0.0, 0
-        self.count = itertools.count(1)
-        self.refused = self.requests = 0
-
-
-class Passing(BaseHTTPRequestHandler):
-    protocol_version = "HTTP/1.1"
-
-    def pass_on(self):
-        server, body = self.server, self.rfile.read(int(self.headers.get("Content-Length", 0)))
-        server.requests += 1
-        time.sleep(server.pause)
-        if server.refuse_every and next(server.count) % server.refuse_every == 0:
-            server.refused += 1
-            self.answer(503, [("Content-Length", "0")], b"")
-            return
-        behind = http.client.HTTPConnection("127.0.0.1", server.behind)
-        behind.request(self.command, self.path, body, dict(self.headers))
-        answer = behind.getresponse()
-        data = answer.read()
-        dropped = ("transfer-encoding", "connection", "content-length")
-        kept = [(name, value) for name, value in answer.getheaders() if name.lower() not in dropped]
-        length = answer.getheader("Content-Length") if self.command == "HEAD" else str(len(data))
-        self.answer(answer.status, [*kept, ("Content-Length", length or "0")], data)
-        behind.close()
-
-    def answer(self, status, headers, data):
-        self.send_response(status)
-        for name, value in headers:
-            self.send_header(name, value)
-        self.end_headers()
-        self.wfile.write(data)
-
-    do_GET = do_PUT = do_HEAD = do_POST = do_DELETE = pass_on  # noqa: N815 - as the library calls them
-
-    def log_message(self, *_):
-        pass
-
-
-@pytest.fixture(scope="module")
-def behind():
-    """The port of a server of S3 in a process of its own."""
-    with subprocess.Popen([sys.executable, "-c", SERVER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-        yield int(process.stdout.readline())
-        process.kill()
-
-
-@pytest.fixture
-def service(behind, monkeypatch, request):
-    """What stands between the store and the server, and a bucket of the test's own."""
-    between = Between(behind)
-    threading.Thread(target=between.serve_forever, daemon=True).start()
-    for name, value in {
-        "AWS_ENDPOINT_URL": f"http://127.0.0.1:{between.server_address[1]}", "AWS_ACCESS_KEY_ID": "key",
-        "AWS_SECRET_ACCESS_KEY": SECRET, "AWS_REGION": "us-east-1",
-    }.items():  # fmt: skip
-        monkeypatch.setenv(name, value)
-    between.bucket = f"b{abs(hash(request.node.name)):x}"
-    made = http.client.HTTPConnection("127.0.0.1", behind)
-    made.request("PUT", f"/{between.bucket}")
-    assert made.getresponse().status == 200
-    made.close()
-    yield between
-    between.shutdown()
-    between.server_close()
 
 
 @pytest.fixture
@@ -137,6 +48,59 @@ def test_run_into_a_bucket_is_up_to_date_afterwards_and_sound(toys, url, service
     assert len(collect(store).records) == 14
     assert toys.run(store=url, intervals={"length": 3}).ran == set()
     assert not (toys.output / "store").exists()
+
+
+def uploaded(toys, url, frames):
+    """Frames computed into a folder and put under an address; returns the blocks that name it."""
+    toys.write(*(10.0 * (n + 1) for n in range(frames)))
+    chosen = {"intervals": {"length": 1000}, "source": {"frames": f":{frames}"}}
+    blocks = {**chosen, "store": str(toys.output / f"store{frames}")}
+    toys.run(**blocks)
+    place = Store.at(f"{url}{frames}").place
+    for path in Store.at(blocks["store"]).place.listed(""):
+        place.put(path, Store.at(blocks["store"]).place.get(path))
+    return {**chosen, "store": f"{url}{frames}"}
+
+
+def test_planning_lists_and_asks_for_no_artifact_alone(toys, url, service):
+    """However many nodes there are, up to date or stale: as many requests, but for a listing more each thousand objects."""
+    stores = {frames: uploaded(toys, url, frames) for frames in (6, 30)}
+    for changes in ({}, {"points": {"scale": 1.3}}, {"smooth": {"grain": 5.0}}):
+        requests = []
+        for frames, blocks in stores.items():
+            service.asked.clear()
+            plan = toys.pipeline(**blocks, **changes).plan()
+            made = service.asked.copy()
+            assert plan.counts["stale"] == frames if changes else plan.is_done
+            assert made["LIST"] <= 12
+            requests.append((made["GET"], made["HEAD"]))
+        assert requests[0] == requests[1]
+        assert requests[0][1] <= 2
+
+
+def test_plan_from_a_listing_sees_what_is_missing_or_cut(toys, url, service):
+    blocks = uploaded(toys, url, 6)
+    store = Store.at(blocks["store"])
+    made = {node.node: node.artifact for node in toys.pipeline(**blocks).plan().nodes}
+    store.discard(made["points[frame=3]"])
+    store.place.put(artifact_path(made["smooth[frame=4]"]), b"PK")
+    plan = toys.pipeline(**blocks).plan()
+    assert sorted(node.node for node in plan.nodes if node.state == "stale") == ["points[frame=3]", "smooth[frame=4]"]
+
+
+def test_collection_asks_for_no_artifact_alone(toys, url, service):
+    requests = []
+    for frames in (6, 30):
+        blocks = uploaded(toys, url, frames)
+        store = Store.at(blocks["store"])
+        for digest in list(store.artifacts()):
+            store.place.put(artifact_path(f"{digest[::-1]}"), b"PK")  # nobody's
+        service.asked.clear()
+        freed = collect(store)
+        requests.append((service.asked["GET"], service.asked["HEAD"], service.asked["POST"]))
+        assert len(freed.artifacts) == len(store.artifacts())
+    assert requests[0] == requests[1]
+    assert requests[0][1] <= 2
 
 
 def test_two_runs_at_once_share_a_bucket(toys, url, service, tmp_path):

@@ -1,7 +1,9 @@
 """Laws of a place: all or nothing, whatever fails on the way, and every refusal of the disk in words a user can act on."""
 
+import contextlib
 import errno
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -16,6 +18,10 @@ bound = pytest.mark.skipif(os.geteuid() == 0, reason="permissions do not bind ro
 @pytest.fixture
 def place(tmp_path):
     return Folder(tmp_path / "store")
+
+
+def sizes(place, path):
+    return {name: told.size for name, told in place.listed(path).items()}
 
 
 def everything(folder):
@@ -48,7 +54,7 @@ def test_where_nothing_is_nothing_is_found(place):
     assert place.get("a") is None
     assert place.size("a") is None
     assert place.names("a") == []
-    assert dict(place.tree("a")) == {}
+    assert place.listed("a") == {}
     assert place.modified("a") == 0
     place.remove("a")
     place.put("file", b"")
@@ -59,7 +65,7 @@ def test_where_nothing_is_nothing_is_found(place):
 
 def test_tree_is_put_whole(place):
     place.put_all("artifacts/ab/abc", {"zarr.json": b"{}", "x/c/0/0": b"1234"})
-    assert place.tree("artifacts/ab/abc") == {"zarr.json": 2, "x/c/0/0": 4}
+    assert sizes(place, "artifacts/ab/abc") == {"zarr.json": 2, "x/c/0/0": 4}
     assert place.names("tmp") == []
 
 
@@ -76,7 +82,7 @@ def test_damaged_tree_is_replaced(place, damage):
     place.put_all("t", {"a": b"one", "b": b"two"})
     (place.root / "t" / "b").unlink() if damage == "missing" else (place.root / "t" / "b").write_bytes(b"t")
     place.put_all("t", {"a": b"one", "b": b"two"})
-    assert place.tree("t") == {"a": 3, "b": 3}
+    assert sizes(place, "t") == {"a": 3, "b": 3}
 
 
 def test_removed_tree_and_file_are_gone(place):
@@ -179,12 +185,24 @@ def test_disk_that_is_truly_full_loses_nothing(tiny):
 
 
 def test_listing_a_tree_that_shrinks_meanwhile_tells_what_is_left(place, monkeypatch):
-    place.put_all("t", {"a": b"1", "b": b"22"})
-    size = Folder.size
+    place.put_all("t", {"a": b"1", "b": b"22", "c/d": b"3"})
+    scan = os.scandir
 
-    def shrinking(self, path):
-        (self.root / "t" / "b").unlink(missing_ok=True)
-        return size(self, path)
+    @contextlib.contextmanager
+    def shrinking(path):
+        with scan(path) as entries:
+            found = list(entries)
+        (place.root / "t" / "b").unlink(missing_ok=True)
+        shutil.rmtree(place.root / "t" / "c", ignore_errors=True)
+        yield found
 
-    monkeypatch.setattr(Folder, "size", shrinking)
-    assert place.tree("t") == {"a": 1}
+    monkeypatch.setattr(os, "scandir", shrinking)
+    assert sizes(place, "t") == {"a": 1}
+
+
+def test_listing_tells_size_and_time_of_everything_below(place):
+    place.put_all("t", {"b": b"22", "a/c/d": b"3"})
+    os.utime(place.root / "t" / "b", (1, 7))
+    found = place.listed("t")
+    assert list(found) == ["a/c/d", "b"]
+    assert (found["b"].size, found["b"].modified) == (2, 7.0)
