@@ -206,7 +206,7 @@ def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):
     ("form", "left"),
     [
         ("glb", ["skeleton.glb"]),
-        ("csv", ["angles.csv", "bones.csv", "confidence.csv", "positions.csv"]),
+        ("csv", ["angles.csv", "bones.csv", "confidence.csv", "joints.csv", "motion.csv", "positions.csv"]),
         ("rignet", ["skeleton.obj", "skeleton.txt"]),
     ],
 )
@@ -275,7 +275,7 @@ def test_frames_without_alignment_are_named(out, scans, tmp_path, configured):
 def test_unknown_format_names_the_nearest(out):
     with pytest.raises(ConfigError, match="--to glbb: no such format; did you mean 'glb'"):
         export(str(out), "glbb")
-    with pytest.raises(ConfigError, match="there are: blender, bvh, csv, glb"):
+    with pytest.raises(ConfigError, match="there are: blender, bvh, c3d, csv, glb"):
         export(str(out), "fbx")
 
 

@@ -6,8 +6,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from kinetree.schemas.results.exports import Exported
 
-FORMAT = "kinetree.skeleton/1"
+FORMAT = "kinetree.skeleton/2"
 Point = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+"""x, y, z, w, as in glTF."""
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -15,6 +17,17 @@ class _FileObject(BaseModel):
     """An object of the file: it has the listed keys and no others."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
+
+
+class Rest(_FileObject):
+    """A joint in the reference pose."""
+
+    position: Point
+    """Position in the coordinates of the input."""
+    offset: Point
+    """Position in the axes of the parent: position = parent's position + parent's axes · offset; the root's own position."""
+    rotation: Quaternion
+    """Axes of the joint against those of its parent, of the root against those of the input; y points along the bone."""
 
 
 class Joint(_FileObject):
@@ -26,6 +39,10 @@ class Joint(_FileObject):
     """Position of its parent in the list of joints, before its own; null for the root."""
     kind: Literal["root", "joint", "leaf"]
     """root: no parent; joint: turns against its parent; leaf: the end of a bone, turns with its parent."""
+    range: Annotated[float, Field(ge=0)]
+    """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves."""
+    rest: Rest
+    """Where it is in the reference pose, and how its axes lie."""
 
 
 class Bone(_FileObject):
@@ -42,18 +59,26 @@ class Bone(_FileObject):
 class Document(_FileObject):
     """What skeleton.json holds: the joint tree and every joint's position in every frame."""
 
-    format: Literal["kinetree.skeleton/1"]
+    format: Literal["kinetree.skeleton/2"]
     """Name and version of this format."""
     unit: str | None
     """Unit of all lengths; null where it is not known."""
     fps: Annotated[float, Field(gt=0)] | None
     """Frames a second; null where it is not known."""
+    up: Literal["x", "y", "z", "-x", "-y", "-z"]
+    """Axis of the coordinates that points up, as the run found it or was told."""
+    up_confidence: Share
+    """Confidence in it, 0 to 1."""
     frames: list[Annotated[int, Field(ge=0)]]
     """Source frame number of every frame, ascending."""
+    seconds: list[Annotated[float, Field(ge=0)]] | None
+    """Time of every frame since the first; null where the frame rate is not known."""
     joints: list[Joint]
     """The joints, parents before their children."""
     positions: list[list[Point]]
     """Position of every joint in every frame, [frame][joint][xyz], in the coordinates of the input."""
+    rotations: list[list[Quaternion]]
+    """Axes of every joint against those of its parent in every frame, [frame][joint][xyzw]; at rest `rest.rotation`."""
     bones: list[Bone]
     """The bones, one for every joint but the root."""
     confidence: list[list[Share]]

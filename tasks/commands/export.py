@@ -20,6 +20,8 @@ FORMATS = {
     "blender": "blender",
     "bvh": "bvh",
     "json": "skeleton_json",
+    "trc": "trc",
+    "c3d": "c3d",
     "csv": "tables",
     "ply": "ply",
     "rignet": "rignet",
@@ -27,7 +29,7 @@ FORMATS = {
     "zarr": "segmentation",
 }
 """The task that writes each format."""
-EXTRAS = {"usd": "pxr"}
+EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
 MESH_FILES = (".ply", ".obj", ".off", ".stl", ".glb", ".gltf")
@@ -48,8 +50,8 @@ def export(
     Nothing but the file is computed.
 
     glb and usd hold the skinned, moving body, blender the same with a script that makes FBX of it, bvh the motion, json the
-    joints, csv tables of trajectories, angles and lengths, ply your own meshes coloured by part, rignet the rig as text,
-    zarr part labels and aligned meshes.
+    joints, trc and c3d the joints as markers, csv tables of motion, angles and lengths, ply your own meshes coloured by part,
+    rignet the rig as text, zarr part labels and aligned meshes.
     """
     if to not in (*FORMATS, SCHEMA):
         raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")

@@ -2,6 +2,7 @@
 
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.c3d import c3d
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.paper_figures import paper_figures
@@ -13,6 +14,7 @@ from kinetree.tasks.results.segmentation import segmentation
 from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.structure_figures import structure_figures
 from kinetree.tasks.results.tables import tables
+from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.truth import truth
 from kinetree.tasks.results.usd import usd
 
@@ -28,6 +30,8 @@ RESULTS = (
     rignet,
     usd,
     blender,
+    trc,
+    c3d,
     report,
 )
 FIGURES = (structure_figures,)

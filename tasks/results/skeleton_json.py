@@ -3,10 +3,11 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.skeleton_json import SkeletonJson
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import skeleton_file
 
 
 @task()
-def skeleton_json(skeleton: Skeleton) -> SkeletonJson:
-    """Writes skeleton.json, the joint tree and every joint's position in every frame (ours)."""
-    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton)})
+def skeleton_json(skeleton: Skeleton, up_direction: UpDirection) -> SkeletonJson:
+    """Writes skeleton.json, the joint tree with every joint's position and rotation in every frame (ours)."""
+    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton, up_direction)})

@@ -1,12 +1,18 @@
-"""Exports positions, confidence, angles and lengths as CSV tables."""
+"""Exports motion, positions, confidence, angles and lengths as tables."""
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.results.tables import Tables
+from kinetree.schemas.results.tables import Tables, TablesParams
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.results.formats.tables import tables as csv_files
+from kinetree.tasks.results.formats.tables import motion_derivatives, table_files
+from kinetree.tasks.results.formats.tables import tables as all_tables
 
 
 @task(on_request=True)
-def tables(skeleton: Skeleton) -> Tables:
-    """Writes CSV tables of trajectories, of angles between bones and of bone lengths (ours)."""
-    return Tables.of({f"tables/{name}": data for name, data in csv_files(skeleton).items()})
+def tables(skeleton: Skeleton, params: TablesParams) -> Tables:
+    """Writes tables of motion, of angles between bones and of bone lengths, as CSV or Parquet (ours)."""
+    found = motion_derivatives(skeleton, params.window, params.degree)
+    files = table_files(all_tables(skeleton, found), params.form)
+    samples = None if found is None else found.samples
+    span = None if samples is None or not skeleton.fps else samples / skeleton.fps
+    named = {f"tables/{name}": data for name, data in files.items()}
+    return Tables.of(named, samples=samples, seconds=span, degree=params.degree)

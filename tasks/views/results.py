@@ -9,6 +9,7 @@ import numpy as np
 from kinetree.pipeline.views import files_of, leave_group, page_of, remarks_of
 from kinetree.schemas.array import Floats, Index
 from kinetree.schemas.results.bvh import Bvh
+from kinetree.schemas.results.c3d import C3d
 from kinetree.schemas.results.comparison import Comparison, UnpairedJoint
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.exports import Exported, PlacedFile
@@ -16,6 +17,8 @@ from kinetree.schemas.results.glb import Glb
 from kinetree.schemas.results.ply import Ply
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.schemas.results.segmentation import Segmentation
+from kinetree.schemas.results.tables import Tables
+from kinetree.schemas.results.trc import Trc
 from kinetree.schemas.results.usd import Usd
 from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.views.topology import UNSURE
@@ -89,6 +92,18 @@ def glb_remarks(glb: Glb) -> tuple[str, ...]:
     return placed_remarks(glb, "glb.scale")
 
 
+@remarks_of(Trc)
+def trc_remarks(trc: Trc) -> tuple[str, ...]:
+    """Says what is assumed of the input."""
+    return placed_remarks(trc, "trc.scale")
+
+
+@remarks_of(C3d)
+def c3d_remarks(c3d: C3d) -> tuple[str, ...]:
+    """Says what is assumed of the input."""
+    return placed_remarks(c3d, "c3d.scale")
+
+
 @remarks_of(Usd)
 def usd_remarks(usd: Usd) -> tuple[str, ...]:
     """Says what is assumed of the input."""
@@ -105,6 +120,15 @@ def placed_remarks(file: PlacedFile, scale: str) -> tuple[str, ...]:
     size = f"{guess}; set sequence.unit or {scale}" if file.metres_from == "size" else ""
     up = f"up direction not certain: {file.up} of the input is taken to point up; set up_direction.up"
     return tuple(line for line in (rate, size, up if file.up_confidence < UNSURE else "") if line)
+
+
+@remarks_of(Tables)
+def tables_remarks(tables: Tables) -> tuple[str, ...]:
+    """How velocities were smoothed, or why there are none."""
+    if tables.samples is None:
+        return ("frame rate not known: no velocities and accelerations; set sequence.fps",)
+    over = f"{tables.samples} frames ({tables.seconds:.3g} s)"
+    return (f"velocities and accelerations: Savitzky-Golay over {over}, polynomials of degree {tables.degree}",)
 
 
 @remarks_of(Segmentation)

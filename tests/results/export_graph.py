@@ -20,12 +20,14 @@ from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.source import source, surface
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.c3d import c3d
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.ply import ply
 from kinetree.tasks.results.rignet import rignet
 from kinetree.tasks.results.segmentation import segmentation
 from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.tables import tables
+from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.usd import usd
 
 
@@ -107,5 +109,7 @@ GRAPH = Graph.of(
         ply,
         usd,
         blender,
+        trc,
+        c3d,
     )
 )

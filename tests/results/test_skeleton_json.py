@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 from results.rigged_bodies import spider
+from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.skeleton_json import Document
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import schema
 from kinetree.tasks.results.skeleton_json import skeleton_json
 
@@ -18,19 +20,46 @@ def body():
     return spider()
 
 
+Z_UP = UpDirection(up="z", confidence=0.9)
+
+
 def text(skeleton):
-    return views.files(skeleton_json(skeleton), ())["skeleton.json"].decode()
+    return views.files(skeleton_json(skeleton, Z_UP), ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
     content = json.loads(text(body))
-    assert list(content) == ["format", "unit", "fps", "frames", "joints", "positions", "bones", "confidence"]
-    assert content["format"] == "kinetree.skeleton/1"
-    assert (content["unit"], content["fps"], content["frames"]) == ("mm", 10.0, list(range(12)))
-    assert content["joints"][0] == {"name": "trunk", "parent": None, "kind": "root"}
-    assert content["joints"][2] == {"name": "hand", "parent": 1, "kind": "leaf"}
+    assert list(content) == [
+        "format", "unit", "fps", "up", "up_confidence", "frames", "seconds", "joints", "positions", "rotations", "bones",
+        "confidence",
+    ]  # fmt: skip
+    assert content["format"] == "kinetree.skeleton/2"
+    assert (content["unit"], content["fps"], content["up"], content["frames"]) == ("mm", 10.0, "z", list(range(12)))
+    np.testing.assert_allclose(content["seconds"], np.arange(12) / 10)
+    joint = content["joints"][2]
+    assert (joint["name"], joint["parent"], joint["kind"]) == ("hand", 1, "leaf")
+    assert content["joints"][0]["parent"] is None
+    assert [joint["range"] for joint in content["joints"]] == body.degrees.tolist()
     np.testing.assert_array_equal(content["positions"], body.positions)
     np.testing.assert_array_equal(content["confidence"], body.confidence)
+
+
+def test_rotations_and_rest_pose_carry_every_joint_to_its_position(body):
+    content = json.loads(text(body))
+    rest = [joint["rest"] for joint in content["joints"]]
+    for t, quaternions in [(None, [r["rotation"] for r in rest]), *enumerate(content["rotations"])]:
+        X, G = [], []
+        for joint, held, q in zip(content["joints"], rest, quaternions, strict=True):
+            p, local = joint["parent"], Rotation.from_quat(q).as_matrix()
+            root = held["position"] if t is None else content["positions"][t][0]
+            X.append(np.array(root) if p is None else X[p] + G[p] @ held["offset"])
+            G.append(local if p is None else G[p] @ local)
+        expected = body.rest if t is None else body.positions[t]
+        np.testing.assert_allclose(X, expected, atol=1e-6)
+
+
+def test_time_is_null_where_nobody_knows_it():
+    assert json.loads(text(spider(fps=None)))["seconds"] is None
 
 
 def test_bones_are_as_long_as_the_way_between_their_joints_in_every_frame(body):

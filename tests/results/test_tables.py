@@ -6,8 +6,12 @@ import io
 import numpy as np
 import pytest
 from results.rigged_bodies import spider
+from scipy.signal import savgol_filter
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline import views
+from kinetree.schemas.results.tables import TablesParams
+from kinetree.tasks.results.formats import tables as format_of_tables
 from kinetree.tasks.results.formats.tables import bone_angles
 from kinetree.tasks.results.tables import tables
 
@@ -17,8 +21,12 @@ def body():
     return spider()
 
 
-def rows(skeleton, name):
-    return list(csv.reader(io.StringIO(views.files(tables(skeleton), ())[f"tables/{name}.csv"].decode(), newline="")))
+def files(skeleton, **params):
+    return views.files(tables(skeleton, TablesParams(**params)), ())
+
+
+def rows(skeleton, name, **params):
+    return list(csv.reader(io.StringIO(files(skeleton, **params)[f"tables/{name}.csv"].decode(), newline="")))
 
 
 def test_trajectories_are_a_row_a_frame_with_its_time(body):
@@ -28,6 +36,58 @@ def test_trajectories_are_a_row_a_frame_with_its_time(body):
     np.testing.assert_array_equal(numbers[:, 0], body.frames)
     np.testing.assert_allclose(numbers[:, 1], np.arange(12) / 10)
     np.testing.assert_allclose(numbers[:, 2:].reshape(body.positions.shape), body.positions, rtol=1e-8, atol=1e-7)
+
+
+def test_motion_has_a_row_for_every_joint_in_every_frame(body):
+    head, *values = rows(body, "motion")
+    assert head == [
+        "frame", "seconds", "joint", "x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "qx", "qy", "qz", "qw", "confidence",
+    ]  # fmt: skip
+    assert [row[2] for row in values] == list(body.names) * 12
+    numbers = np.array([[row[0], row[1], *row[3:]] for row in values], dtype=float).reshape(12, 7, 16)
+    np.testing.assert_allclose(numbers[..., 2:5], body.positions, rtol=1e-8, atol=1e-7)
+    np.testing.assert_allclose(np.linalg.norm(numbers[..., 11:15], axis=-1), 1.0, atol=1e-8)
+    velocity = savgol_filter(body.positions, 5, 3, deriv=1, delta=0.1, axis=0)
+    np.testing.assert_allclose(numbers[..., 5:8], velocity, rtol=1e-7, atol=1e-6)
+    acceleration = savgol_filter(body.positions, 5, 3, deriv=2, delta=0.1, axis=0)
+    np.testing.assert_allclose(numbers[..., 8:11], acceleration, rtol=1e-7, atol=1e-5)
+
+
+def test_smoothing_is_said():
+    assert views.remarks(tables(spider(), TablesParams(window=0.7, degree=2))) == (
+        "velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",
+    )
+    (remark,) = views.remarks(tables(spider(fps=None), TablesParams()))
+    assert "no velocities" in remark
+    assert {row[6] for row in rows(spider(fps=None), "motion")[1:]} == {""}
+
+
+def test_joints_are_told_with_parent_and_range(body):
+    head, *values = rows(body, "joints")
+    assert head == ["joint", "parent", "kind", "length", "range", "unit"]
+    assert values[2][:3] == ["hand", "arm", "leaf"]
+    assert [float(row[4]) for row in values] == pytest.approx(body.degrees.tolist())
+
+
+def test_parquet_holds_the_same_tables(body):
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pip install pyarrow brings the reader")
+    written = files(body, form="parquet")
+    assert set(written) == {name.replace(".csv", ".parquet") for name in files(body)}
+    table = parquet.read_table(io.BytesIO(written["tables/motion.parquet"])).to_pydict()
+    assert list(table) == rows(body, "motion")[0]
+    np.testing.assert_array_equal(np.reshape(table["y"], (12, 7)), body.positions[..., 1])
+    unknown = parquet.read_table(io.BytesIO(files(spider(fps=None), form="parquet")["tables/motion.parquet"]))
+    assert unknown["vx"].null_count == len(unknown)
+    assert written == files(body, form="parquet")
+
+
+def test_missing_package_says_which_extra_brings_it(monkeypatch):
+    def absent(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(format_of_tables, "import_module", absent)
+    with pytest.raises(ConfigError, match=r"pip install 'kinetree\[parquet\]'"):
+        files(spider(), form="parquet")
 
 
 def test_time_is_empty_where_nobody_knows_it():

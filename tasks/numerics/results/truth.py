@@ -16,7 +16,7 @@ from kinetree.tasks.numerics.results.bvh_reader import LARGEST_NUMBER, read_bvh
 Kind = Literal["joint", "tip"]
 KINDS: Mapping[str, Kind] = {"root": "joint", "joint": "joint", "tip": "tip", "leaf": "tip"}
 """The kinds of joints in a file, and what each of them is here."""
-SKELETON_FORMAT = "kinetree.skeleton/1"
+SKELETON_FORMATS = ("kinetree.skeleton/1", "kinetree.skeleton/2")
 
 
 class TruthSettings(NamedTuple):
@@ -117,8 +117,8 @@ def truth_of_json(content: Any, name: str, settings: TruthSettings | None = None
     """
     if not isinstance(content, Mapping) or not {"joints", "positions"} <= set(content):
         raise InputError(f"{name}: it has no joints and positions; expected a truth.json, as kinetree synth writes it")
-    if content.get("format", SKELETON_FORMAT) != SKELETON_FORMAT:
-        raise InputError(f"{name}: format {content['format']!r} is not known; {SKELETON_FORMAT} is")
+    if content.get("format", SKELETON_FORMATS[0]) not in SKELETON_FORMATS:
+        raise InputError(f"{name}: format {content['format']!r} is not known; {' and '.join(SKELETON_FORMATS)} are")
     least_turn = (settings or TruthSettings()).scored_degrees
     rows = content["joints"]
     if not isinstance(rows, list) or not rows or not all(isinstance(row, Mapping) and "name" in row for row in rows):

@@ -3,32 +3,61 @@
 import json
 from typing import Any
 
-from kinetree.schemas.results.skeleton_json import FORMAT, Bone, Document, Joint
+import numpy as np
+
+from kinetree.schemas.array import Floats
+from kinetree.schemas.results.skeleton_json import FORMAT, Bone, Document, Joint, Rest
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames, seconds
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
+DIGITS = 9
+"""Decimals of quaternions and seconds."""
 
 
-def document(skeleton: Skeleton) -> Document:
-    """The content of skeleton.json: joints, bones, positions and confidence."""
+def document(skeleton: Skeleton, up: UpDirection) -> Document:
+    """The content of skeleton.json: joints, rest pose, positions, rotations and confidence in every frame."""
     parents = [None if p < 0 else p for p in skeleton.parents]
-    rows = zip(skeleton.names, parents, skeleton.kinds, strict=True)
     lengths = skeleton.lengths.tolist()
+    B = rest_frames(skeleton.rest, skeleton.parents)
+    rotations = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents))
     return Document(
         format=FORMAT,
         unit=skeleton.unit,
         fps=skeleton.fps,
+        up=up.up,
+        up_confidence=up.confidence,
         frames=list(skeleton.frames),
-        joints=[Joint(name=name, parent=parent, kind=kind) for name, parent, kind in rows],
+        seconds=None if skeleton.fps is None else np.round(seconds(skeleton, skeleton.fps), DIGITS).tolist(),
+        joints=_joints(skeleton, B),
         positions=skeleton.positions.tolist(),
+        rotations=np.round(rotations, DIGITS).tolist(),
         bones=[Bone(parent=p, child=j, length=lengths[j]) for j, p in enumerate(parents) if p is not None],
         confidence=skeleton.confidence.tolist(),
     )
 
 
-def skeleton_file(skeleton: Skeleton) -> bytes:
+def _joints(skeleton: Skeleton, B: Floats) -> list[Joint]:
+    """The joints with their rest pose."""
+    offset = local_offsets(skeleton.rest, B, skeleton.parents).tolist()
+    identity = np.broadcast_to(np.eye(3), (1, *B.shape))
+    rotation = np.round(quaternions(local_rotations(identity, B, skeleton.parents))[0], DIGITS).tolist()
+    return [
+        Joint(
+            name=skeleton.names[j],
+            parent=None if skeleton.parents[j] < 0 else skeleton.parents[j],
+            kind=skeleton.kinds[j],
+            range=float(skeleton.degrees[j]),
+            rest=Rest(position=tuple(skeleton.rest[j].tolist()), offset=tuple(offset[j]), rotation=tuple(rotation[j])),
+        )
+        for j in range(len(skeleton.names))
+    ]
+
+
+def skeleton_file(skeleton: Skeleton, up: UpDirection) -> bytes:
     """The file skeleton.json, with one line a frame, so that people and `diff` can read it."""
-    fields = document(skeleton).model_dump(mode="json")
+    fields = document(skeleton, up).model_dump(mode="json")
     entries = [f"  {json.dumps(name)}: {_lines(name, value)}" for name, value in fields.items()]
     return ("{\n" + ",\n".join(entries) + "\n}\n").encode()
 
@@ -40,7 +69,7 @@ def schema() -> dict[str, Any]:
 
 def _lines(name: str, value: Any) -> str:
     """One field as JSON; long lists with one line an element."""
-    if name in ("joints", "positions", "bones", "confidence") and value:
+    if name in ("joints", "positions", "rotations", "bones", "confidence") and value:
         return "[\n    " + ",\n    ".join(_text(row) for row in value) + "\n  ]"
     return _text(value)
 

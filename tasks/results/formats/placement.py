@@ -8,7 +8,7 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.results.glb import ASSUMED_FPS
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.numerics.results.placement import Axis, guessed_metres
+from kinetree.tasks.numerics.results.placement import Axis, guessed_metres, upright_rotation
 from kinetree.tasks.numerics.results.units import METRES
 
 
@@ -53,3 +53,16 @@ def placed(skeleton: Skeleton, rotation: Floats, scale: float) -> Skeleton:
             "drift": skeleton.drift * scale,
         }
     )
+
+
+def in_unit(
+    skeleton: Skeleton, found: UpDirection, up: Literal["y", "z"], scale: float | None, unit: str
+) -> tuple[Skeleton, Placement]:
+    """The same body with an axis up and in a unit, and what is known or assumed of the input.
+
+    up    : axis of the result that points up
+    scale : length in the result of one unit of the input; None: the result is in `unit`
+    unit  : as in METRES
+    """
+    known = placement(skeleton, found, metres=scale and scale * METRES[unit])
+    return placed(skeleton, upright_rotation(known.up, up), scale or known.metres / METRES[unit]), known

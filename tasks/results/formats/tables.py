@@ -1,39 +1,86 @@
-"""A skeleton as tables: positions, confidence, angles between bones and bone lengths (ours)."""
+"""A skeleton as tables: motion, positions, confidence, angles between bones and bone lengths (ours)."""
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from typing import NamedTuple
 
 import numpy as np
 
+from kinetree.errors import ConfigError
 from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.results.formats.rig import children
+from kinetree.tasks.numerics.results.derivatives import Derivatives, derivatives
+from kinetree.tasks.results.formats.rig import children, local_rotations, quaternions, rest_frames, seconds
 
 DIGITS = 9
 """Significant digits of every number."""
 
 
-def tables(skeleton: Skeleton) -> Mapping[str, bytes]:
-    """CSV files by name (RFC 4180), in UTF-8.
+Column = Sequence[object] | Floats
 
-    positions.csv   frame, seconds, then x, y, z of every joint in the sequence's unit
-    confidence.csv  frame, seconds, then every joint's confidence, 0 to 1
-    angles.csv      frame, seconds, then for every pair of bones with a common joint the angle between them in degrees, 180
-                    where they are in line; columns are named parent/joint/child
-    bones.csv       parent, child, length, unit
-    Seconds are empty where the frame rate is not known.
+
+class Table(NamedTuple):
+    """A table: names of the columns, and one list, tuple or array of values for each."""
+
+    columns: Mapping[str, Column]
+
+
+def tables(skeleton: Skeleton, found: Derivatives | None) -> Mapping[str, Table]:
+    """All tables by name.
+
+    motion      a row a frame and joint: frame, seconds, joint, position x y z, velocity vx vy vz, acceleration ax ay az,
+                rotation qx qy qz qw against the parent as in skeleton.json, confidence
+    joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths
+    positions   a row a frame: frame, seconds, then x, y, z of every joint
+    confidence  a row a frame: frame, seconds, then every joint's confidence, 0 to 1
+    angles      a row a frame: frame, seconds, then for every pair of bones with a common joint the angle between them in
+                degrees, 180 where they are in line; columns are named parent/joint/child
+    bones       parent, child, length, unit
+    Lengths are in the sequence's unit. Seconds, velocities and accelerations are empty where the frame rate is not known.
     """
-    names, X = skeleton.names, skeleton.positions
+    names, X, parents = skeleton.names, skeleton.positions, skeleton.parents
     pairs, angles = bone_angles(skeleton)
-    lengths = skeleton.lengths
-    bones = [(names[p], names[j], _number(lengths[j]), skeleton.unit or "") for j, p in enumerate(skeleton.parents) if p >= 0]
-    return {
-        "positions.csv": _series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
-        "confidence.csv": _series(skeleton, names, skeleton.confidence),
-        "angles.csv": _series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
-        "bones.csv": _text([("parent", "child", "length", "unit"), *bones]),
+    inner = [j for j, p in enumerate(parents) if p >= 0]
+    bones: dict[str, Column] = {
+        "parent": [names[parents[j]] for j in inner],
+        "child": [names[j] for j in inner],
+        "length": skeleton.lengths[inner],
+        "unit": [skeleton.unit or ""] * len(inner),
     }
+    joints: dict[str, Column] = {
+        "joint": names,
+        "parent": [names[p] if p >= 0 else "" for p in parents],
+        "kind": skeleton.kinds,
+        "length": skeleton.lengths,
+        "range": skeleton.degrees,
+        "unit": [skeleton.unit or ""] * len(names),
+    }
+    return {
+        "motion": Table(_motion(skeleton, found)),
+        "joints": Table(joints),
+        "positions": _series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
+        "confidence": _series(skeleton, names, skeleton.confidence),
+        "angles": _series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
+        "bones": Table(bones),
+    }
+
+
+def motion_derivatives(skeleton: Skeleton, window: float, degree: int) -> Derivatives | None:
+    """Velocity and acceleration of every joint per second; None where the frame rate is not known."""
+    if skeleton.fps is None:
+        return None
+    return derivatives(np.array(skeleton.positions), seconds(skeleton, skeleton.fps), window, degree)
+
+
+def table_files(tables: Mapping[str, Table], form: str) -> Mapping[str, bytes]:
+    """Files by name: CSV (RFC 4180) in UTF-8, or Parquet.
+
+    raises : ConfigError where Parquet is asked for and the extra is not installed
+    """
+    write = _parquet if form == "parquet" else _csv
+    return {f"{name}.{form}": write(table) for name, table in tables.items()}
 
 
 def bone_angles(skeleton: Skeleton) -> tuple[list[tuple[int, int, int]], Floats]:
@@ -51,21 +98,61 @@ def bone_angles(skeleton: Skeleton) -> tuple[list[tuple[int, int, int]], Floats]
     return pairs, angles
 
 
-def _series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> bytes:
+def _motion(skeleton: Skeleton, found: Derivatives | None) -> dict[str, Column]:
+    """The columns of the table of motion: frame by frame, and in each frame joint by joint."""
+    frames, joints = skeleton.positions.shape[:2]
+    columns: dict[str, Column] = {
+        "frame": np.repeat(skeleton.frames, joints).tolist(),
+        "seconds": np.repeat(_seconds(skeleton), joints),
+        "joint": list(skeleton.names) * frames,
+    }
+    B = rest_frames(skeleton.rest, skeleton.parents)
+    quaternion = quaternions(local_rotations(skeleton.rotation, B, skeleton.parents))
+    unknown = np.full_like(skeleton.positions, np.nan)
+    velocity, acceleration = (unknown, unknown) if found is None else found[:2]
+    for prefix, axes, values in (
+        ("", "xyz", skeleton.positions), ("v", "xyz", velocity), ("a", "xyz", acceleration), ("q", "xyzw", quaternion),
+    ):  # fmt: skip
+        columns |= {f"{prefix}{axis}": values[..., k].ravel() for k, axis in enumerate(axes)}
+    return {**columns, "confidence": skeleton.confidence.ravel()}
+
+
+def _series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> Table:
     """A table with one row a frame."""
-    first = skeleton.frames[0]
-    seconds = ["" if skeleton.fps is None else _number((frame - first) / skeleton.fps) for frame in skeleton.frames]
-    rows = zip(skeleton.frames, seconds, values, strict=True)
-    return _text([("frame", "seconds", *columns), *((frame, at, *map(_number, row)) for frame, at, row in rows)])
+    heads: dict[str, Column] = {"frame": skeleton.frames, "seconds": _seconds(skeleton)}
+    return Table(heads | {name: values[:, k] for k, name in enumerate(columns)})
 
 
-def _text(rows: Iterable[Sequence[object]]) -> bytes:
-    """Rows as the bytes of a CSV file."""
+def _seconds(skeleton: Skeleton) -> Floats:
+    """(frame,) time since the first frame; NaN where the frame rate is not known."""
+    return np.full(len(skeleton.frames), np.nan) if skeleton.fps is None else seconds(skeleton, skeleton.fps)
+
+
+def _csv(table: Table) -> bytes:
+    """A table as the bytes of a CSV file; unknown numbers are empty."""
     file = io.StringIO()
-    csv.writer(file).writerows(rows)
+    writer = csv.writer(file)
+    writer.writerow(table.columns)
+    columns = [map(_number, c) if isinstance(c, np.ndarray) else c for c in table.columns.values()]
+    writer.writerows(zip(*columns, strict=True))
     return file.getvalue().encode()
 
 
+def _parquet(table: Table) -> bytes:
+    """A table as the bytes of a Parquet file; unknown numbers are null."""
+    try:
+        arrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
+    except ImportError:
+        raise ConfigError("Parquet needs a package that is not installed: pip install 'kinetree[parquet]' brings it") from None
+    columns = {
+        name: arrow.array(values, from_pandas=True) if isinstance(values, np.ndarray) else arrow.array(list(values))
+        for name, values in table.columns.items()
+    }
+    file = io.BytesIO()
+    parquet.write_table(arrow.table(columns), file)
+    return file.getvalue()
+
+
 def _number(x: float) -> str:
-    """A number as text."""
-    return f"{x:.{DIGITS}g}"
+    """A number as text; nothing for an unknown one."""
+    return "" if np.isnan(x) else f"{x:.{DIGITS}g}"

@@ -39,9 +39,10 @@ def test_truth_json_is_read():
     assert np.array_equal(truth.X, np.arange(18.0).reshape(2, 3, 3))
 
 
-def test_skeleton_json_of_another_run_is_a_truth_too():
+@pytest.mark.parametrize("version", [1, 2])
+def test_skeleton_json_of_another_run_is_a_truth_too(version):
     content = {
-        "format": "kinetree.skeleton/1",
+        "format": f"kinetree.skeleton/{version}",
         "unit": None,
         "fps": 25.0,
         "frames": [3, 5],
@@ -56,7 +57,7 @@ def test_skeleton_json_of_another_run_is_a_truth_too():
     assert truth.parents == (-1, 0, 1)
     assert truth.scored == (False, True, False)
     assert truth.frames == (3, 5)
-    with pytest.raises(InputError, match=r"format 'kinetree\.skeleton/9' is not known; kinetree\.skeleton/1 is"):
+    with pytest.raises(InputError, match=r"format 'kinetree\.skeleton/9' is not known; kinetree\.skeleton/1 and .*/2 are"):
         truth_of_json({**content, "format": "kinetree.skeleton/9"}, "skeleton.json")
 
 
