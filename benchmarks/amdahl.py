@@ -1,0 +1,218 @@
+"""How much more workers help: the nodes of a run, with the seconds on record, scheduled on 1 to 64 workers.
+
+    python benchmarks/amdahl.py [OUTPUT_FOLDER | --frames 36 --vertices 6000] [--times 3] [--until skeleton]
+
+Prints the speedup by number of workers, the longest path through the graph by task, and the seconds of every task. Without a
+folder it computes a generated human first, in one thread, and counts processor seconds, which no other program disturbs; the
+records of a run hold seconds by the clock.
+
+The simulation keeps to the loom: nodes travel in its parcels, the deepest task first, and one process sends them all.
+`--times 3` makes the sequence three times as long: there are three of every node of a frame, a traversal is three times as
+deep, and what gathers all frames takes three times as long.
+"""
+
+import argparse
+import graphlib
+import heapq
+import itertools
+import tempfile
+import time
+import unittest.mock
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import SimpleNamespace
+
+from kinetree.pipeline import execute
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.node import Node, project
+from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.task import Space
+
+WORKERS = (1, 2, 4, 8, 16, 64)
+AT_WORKER, IN_LOOP = 0.003, 0.002
+"""Seconds that a node takes beside those on record, at its worker and in the process that sends all of them."""
+FRAME = "frame"
+
+
+@dataclass(frozen=True)
+class Job:
+    """One node: over which space its task runs, how deep that is in the graph, what it takes and what it waits for."""
+
+    node: Node
+    space: Space
+    depth: int
+    seconds: float
+    before: frozenset[Node]
+
+
+Jobs = dict[Node, Job]
+
+
+def main() -> None:
+    """Prints the tables."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("folder", type=Path, nargs="?", help="output folder of a run that is done")
+    options.add_argument("--frames", type=int, default=36, help="of the generated human")
+    options.add_argument("--vertices", type=int, default=6000, help="of the generated human")
+    options.add_argument("--times", type=int, default=1, help="how many times as long the sequence is to be")
+    options.add_argument("--until", nargs="+", default=(), help="only these tasks and those they need")
+    chosen = options.parse_args()
+    with tempfile.TemporaryDirectory() as beside:
+        pipeline = Pipeline.of(chosen.folder) if chosen.folder else computed(Path(beside), chosen.frames, chosen.vertices)
+        jobs = recorded(pipeline.schedule(until=chosen.until or pipeline.tasks.unasked))
+    jobs = stretched(jobs, chosen.times)
+    print(f"{len(jobs)} nodes, {sum(job.seconds for job in jobs.values()):.1f} s of computing")
+    alone = makespan(jobs, 1)
+    for workers in WORKERS:
+        seconds = makespan(jobs, workers)
+        print(f"{workers:>4} workers{seconds:>10.1f} s{alone / seconds:>8.2f} times, {alone / seconds / workers:>4.0%} busy")
+    path = longest_path(jobs)
+    print(f"\nlongest path: {sum(job.seconds for job in path):.1f} s in {len(path)} nodes")
+    _print_tasks(path)
+    print("\nall nodes")
+    _print_tasks(jobs.values())
+
+
+def computed(folder: Path, frames: int, vertices: int) -> Pipeline:
+    """The run of a generated human in one thread, with processor seconds on record."""
+    synth = {"figure": "human", "frames": frames, "vertices": vertices}
+    pipeline = Pipeline.of({"output": str(folder), "source": {"synth": synth}, "compute": {"executor": "sync"}})
+    with unittest.mock.patch.object(execute, "time", SimpleNamespace(perf_counter=time.process_time)):
+        pipeline.run()
+    return pipeline
+
+
+def recorded(schedule: Schedule) -> Jobs:
+    """The nodes of a schedule with the seconds on record; raises ValueError where a node has no record."""
+    graph = schedule.graph
+    nodes: defaultdict[str, list[Node]] = defaultdict(list)
+    for node in schedule.entries:
+        nodes[node.task].append(node)
+    jobs: Jobs = {}
+    for depth, task in enumerate(graph.tasks):
+        tellers = {graph.openers[space] for space in graph.needed_spaces(task)}
+        tellers |= {graph.writers[task.along]} if task.along else set()
+        for node in () if task.is_origin else nodes[task.name]:
+            entry = schedule.entries[node]
+            if entry.record is None or entry.inputs is None:
+                raise ValueError(f"{entry.label} has no record; run the folder to its end first")
+            read = {n for _, found in entry.inputs for n in found}
+            read |= {n for teller in tellers for n in nodes[teller.name] if _agree(task.over, node, teller.over, n)}
+            before = frozenset(n for n in read if n != node and not graph.by_name[n.task].is_origin)
+            jobs[node] = Job(node, task.over, depth, entry.record.seconds, before)
+    return jobs
+
+
+def stretched(jobs: Jobs, times: int) -> Jobs:
+    """The nodes of a sequence so many times as long, as the head of this file says."""
+    longer: Jobs = {}
+    frames = len({node.at[job.space.index(FRAME)] for node, job in jobs.items() if FRAME in job.space})
+    for job in jobs.values():
+        if FRAME in job.space:
+            copies = [replace(job, node=_copy(job, times, k), before=_read_by_copy(jobs, job, times, k)) for k in range(times)]
+        else:
+            gathered = sum(FRAME in jobs[n].space for n in job.before)
+            seconds = job.seconds * (times if gathered >= frames else 1)
+            read = [_copy(jobs[n], times, k) for n in job.before for k in range(times)]
+            copies = [replace(job, seconds=seconds, before=frozenset(read))]
+        longer.update((copy.node, copy) for copy in copies)
+    return longer
+
+
+def makespan(jobs: Jobs, workers: int) -> float:
+    """Seconds until the last node is done, if every free worker takes the deepest node that is ready, with its parcel."""
+    waits = {node: set(job.before) for node, job in jobs.items()}
+    after: defaultdict[Node, list[Node]] = defaultdict(list)
+    for node, job in jobs.items():
+        for read in job.before:
+            after[read].append(node)
+    ready = [(-job.depth, node.at, node) for node, job in jobs.items() if not job.before]
+    heapq.heapify(ready)
+    sent: set[Node] = set()
+    under_way: list[tuple[float, int, list[Node]]] = []
+    now = 0.0
+    numbers = itertools.count()
+    while ready or under_way:
+        while ready and len(under_way) < workers:
+            parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[2])
+            sent.update(parcel)
+            took = sum(jobs[node].seconds + AT_WORKER for node in parcel)
+            heapq.heappush(under_way, (now + took, next(numbers), parcel))
+        done, _, parcel = heapq.heappop(under_way)
+        now = max(done, now) + IN_LOOP * len(parcel)
+        for node in parcel:
+            for later in after[node]:
+                waits[later].discard(node)
+                if not waits[later] and later not in sent:
+                    heapq.heappush(ready, (-jobs[later].depth, later.at, later))
+    return now
+
+
+def longest_path(jobs: Jobs) -> list[Job]:
+    """The nodes, each waiting for the one before, that take longest together: no number of workers is faster."""
+    until: dict[Node, float] = {}
+    last: dict[Node, Node | None] = {}
+    for node in _in_order(jobs):
+        last[node] = max(jobs[node].before, key=until.__getitem__, default=None)
+        before = last[node]
+        until[node] = jobs[node].seconds + (until[before] if before else 0.0)
+    node: Node | None = max(until, key=until.__getitem__)
+    path: list[Job] = []
+    while node is not None:
+        path.append(jobs[node])
+        node = last[node]
+    return path[::-1]
+
+
+def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Node]], first: Node) -> list[Node]:
+    """The nodes that travel together, by the rule of `Schedule.send`."""
+    parcel = [first]
+    for member in parcel if first.at else ():
+        for node in after[member]:
+            is_here = node.at == first.at and jobs[node].space == jobs[first].space
+            if is_here and node not in parcel and waits[node] <= set(parcel):
+                parcel.append(node)
+    return parcel
+
+
+def _read_by_copy(jobs: Jobs, job: Job, times: int, copy: int) -> frozenset[Node]:
+    """What a copy of a frame's node reads: of its own frame the same copy, of a neighbour's the nearest one."""
+    found = set()
+    for read in (jobs[node] for node in job.before):
+        if FRAME not in read.space:
+            found.add(read.node)
+            continue
+        here, there = (j.node.at[j.space.index(FRAME)] for j in (job, read))
+        beside = copy + (there > here) - (there < here)
+        inside = replace(read, node=Node(read.node.task, job.node.at)) if 0 <= beside < times and here != there else read
+        found.add(_copy(inside, times, beside % times))
+    return frozenset(found)
+
+
+def _copy(job: Job, times: int, number: int) -> Node:
+    at = (n * times + number if dim == FRAME else n for dim, n in zip(job.space, job.node.at, strict=True))
+    return Node(job.node.task, tuple(at))
+
+
+def _agree(space: Space, node: Node, other_space: Space, other: Node) -> bool:
+    shared = tuple(dim for dim in space if dim in other_space)
+    return project(node.at, space, shared) == project(other.at, other_space, shared)
+
+
+def _in_order(jobs: Jobs) -> Iterable[Node]:
+    return graphlib.TopologicalSorter({node: job.before for node, job in jobs.items()}).static_order()
+
+
+def _print_tasks(jobs: Iterable[Job]) -> None:
+    seconds: defaultdict[str, list[float]] = defaultdict(list)
+    for job in jobs:
+        seconds[job.node.task].append(job.seconds)
+    print(f"{'task':<24}{'nodes':>8}{'seconds':>10}{'longest':>10}")
+    for task, took in sorted(seconds.items(), key=lambda row: -sum(row[1])):
+        print(f"{task:<24}{len(took):>8}{sum(took):>10.2f}{max(took):>10.2f}")
+
+
+if __name__ == "__main__":
+    main()
