@@ -15,6 +15,7 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.comparison import Comparison, ParameterDifference
 from kinetree.schemas.results.evaluation import Evaluation, EvaluationParams
 from kinetree.schemas.results.truth import TruthParams
@@ -22,7 +23,9 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.comparison import check_frames_and_unit, check_sequence, compared_run, comparison
+from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.scene import Limits, Scene, scene
 from kinetree.tasks.results.plots.drawing import view
 
@@ -125,8 +128,7 @@ def scenes(a: FinishedRun, b: FinishedRun, limits: Limits = SHOWN) -> tuple[Scen
         scene(
             run.skeleton,
             run.by_frame(Alignment),
-            run.by_frame(Projection),
-            run.by_frame(Mesh),
+            _inputs(run, limits),
             run.there.artifact(Leaves),
             run.there.artifact(Intervals),
             limits,
@@ -135,6 +137,13 @@ def scenes(a: FinishedRun, b: FinishedRun, limits: Limits = SHOWN) -> tuple[Scen
         for run in (a, b)
     )
     return first, second
+
+
+def _inputs(run: FinishedRun, limits: Limits) -> dict[int, CoarseMesh]:
+    """The input meshes of the frames that play, coarse."""
+    frames = [run.skeleton.frames[t] for t in evenly_spread(len(run.skeleton.frames), limits.frames)]
+    meshes, projections = run.by_frame(Mesh), run.by_frame(Projection)
+    return coarse_meshes({f: meshes[f] for f in frames}, {f: projections[f] for f in frames}, limits.input_vertices)
 
 
 def evaluated(pipeline: Pipeline) -> Evaluation | None:

@@ -14,18 +14,12 @@ RUN = "null/*what ran*/"
 
 
 class ReportParams(Params):
-    """How much of a sequence the page shows."""
+    """What the page says and how finely it shows the body."""
 
     title: str = ""
     """Title of the page; empty: made of the numbers of joints and frames."""
-    frames: int = Field(default=90, ge=1, le=1000)
-    """Most frames that the player shows; with more the page opens slowly."""
     vertices: int = Field(default=4000, ge=50)
     """Most vertices of the aligned mesh in the player."""
-    input_vertices: int = Field(default=2500, ge=50)
-    """Most vertices of an input mesh in the player."""
-    views: int = Field(default=4, ge=1, le=12)
-    """Number of frames in pictures of the body."""
 
 
 class Report(Artifact):

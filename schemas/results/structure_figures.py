@@ -1,21 +1,13 @@
 """Chapters of a report that show how a method found its joints; every method leaves them in this form."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.schemas.array import Array, Artifact, Floats, Params
 from kinetree.schemas.dims import BYTE, JOINT, PICTURE
-
-
-class Picture(Params):
-    """One picture."""
-
-    caption: str
-    """What it shows."""
-    kind: Literal["png", "svg"]
-    """png for surfaces, svg for lines."""
+from kinetree.schemas.results.figures import Picture
 
 
 class Chapter(Params):

@@ -1,19 +1,25 @@
 """Results for people and programs: comparison with the truth, exported files, figures, the report."""
 
+from kinetree.tasks.results.alignment_figures import alignment_figures
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
+from kinetree.tasks.results.coarse_mesh import coarse_mesh
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.excerpt import excerpt
 from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.motion_figures import motion_figures
 from kinetree.tasks.results.paper_figures import paper_figures
 from kinetree.tasks.results.ply import ply
 from kinetree.tasks.results.reeb_figures import reeb_figures
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.rignet import rignet
 from kinetree.tasks.results.segmentation import segmentation
+from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.structure_figures import structure_figures
 from kinetree.tasks.results.tables import tables
+from kinetree.tasks.results.topology_figures import topology_figures
 from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.truth import truth
 from kinetree.tasks.results.usd import usd
@@ -32,6 +38,12 @@ RESULTS = (
     blender,
     trc,
     c3d,
+    excerpt,
+    coarse_mesh,
+    topology_figures,
+    skeleton_figures,
+    motion_figures,
+    alignment_figures,
     report,
 )
 FIGURES = (structure_figures,)

@@ -2,39 +2,32 @@
 
 from collections.abc import Mapping
 from html import escape
-from typing import Any
 
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
-from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.alignment_figures import AlignmentFigures
+from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.evaluation import Evaluation
+from kinetree.schemas.results.excerpt import Excerpt
+from kinetree.schemas.results.motion_figures import MotionFigures
 from kinetree.schemas.results.report import Report, ReportParams
+from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.results.topology_figures import TopologyFigures
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.schemas.topology.correlation import Correlation
-from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.numerics.results.scene import evenly_spread
-from kinetree.tasks.results.page.chapters import sections
+from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.scene import Limits, scene
-from kinetree.tasks.results.page.warnings import WarningLimits, counted, skin_distance, warnings
-from kinetree.tasks.results.plots.alignment import alignment as alignment_figure
-from kinetree.tasks.results.plots.alignment import reference_frame
+from kinetree.tasks.results.page.warnings import WarningLimits, counted, warnings
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
-from kinetree.tasks.results.plots.macroscopic import correlation as correlation_figure
-from kinetree.tasks.results.plots.macroscopic import mu as mu_figure
-from kinetree.tasks.results.plots.motion import angles
-from kinetree.tasks.results.plots.structure import confidence, tree
-from kinetree.tasks.results.plots.structure import skeleton as skeleton_figure
 from kinetree.tasks.views.results import evaluation_remarks
 from kinetree.tasks.views.topology import UNSURE
 
@@ -45,65 +38,49 @@ VARIATION = "length varies by, %"
 def report(
     skeleton: Skeleton,
     structure_figures: StructureFigures,
+    skeleton_figures: SkeletonFigures,
+    motion_figures: MotionFigures,
+    topology_figures: TopologyFigures,
+    alignment_figures: AlignmentFigures,
     sequence: Sequence,
-    connectivity: Connectivity,
-    correlation: Correlation,
     intervals: Intervals,
     leaves: Leaves,
     evaluation: Evaluation,
     up_direction: UpDirection,
     frame_confidence: FrameConfidence,
+    excerpt: Excerpt,
+    coarse_mesh: Mapping[int, CoarseMesh],
     alignment: Mapping[int, Alignment],
-    projection: Mapping[int, Projection],
     mesh: Mapping[int, Mesh],
-    geodesics: Mapping[int, Geodesics],
     params: ReportParams,
 ) -> Report:
-    """Draws the result of the run on one page that needs no network (ours)."""
-    of_sequence = {"skeleton": skeleton, "correlation": correlation, "intervals": intervals, "leaves": leaves}
-    by_frame = {"alignment": alignment, "mesh": mesh, "geodesics": geodesics}
-
-    def fetch(name: str, frame: int | None = None) -> Any:
-        return of_sequence[name] if frame is None else by_frame[name][frame]
-
-    limits = Limits(params.frames, params.vertices, params.input_vertices)
-    up = up_direction.axis
-    frames = [skeleton.frames[t] for t in evenly_spread(len(skeleton.frames), params.views)]
+    """Lays out the result of the run on one page that needs no network (ours)."""
+    limits = Limits(len(excerpt.frames), params.vertices, excerpt.input_vertices)
+    inputs = {frame: coarse_mesh[frame] for frame in excerpt.frames}
+    structure = pictures(skeleton_figures) + pictures(motion_figures) + _joints(skeleton, intervals, structure_figures)
     has_truth = evaluation.summary is not None
+    aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
-        facts=_facts(skeleton, sequence, intervals, up_direction, alignment),
-        warnings=warnings(skeleton, sequence, intervals, leaves, frame_confidence, alignment, mesh),
-        scene=scene(skeleton, alignment, projection, mesh, leaves, intervals, limits, up),
+        facts=_facts(skeleton, sequence, intervals, up_direction, alignment_figures),
+        warnings=warnings(skeleton, sequence, intervals, leaves, frame_confidence, alignment_figures.skin_distance, mesh),
+        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis),
         sections=[
-            Section("structure", "Joints and parts", _structure(fetch, frames, up, skeleton, intervals, structure_figures)),
+            Section("structure", "Joints and parts", structure),
             *([Section("truth", "Comparison with the truth", _comparison(evaluation))] if has_truth else []),
             *sections(structure_figures),
-            Section("intervals", "Topology over time", _topology(fetch, frames, up)),
-            Section("alignment", "Alignment", _alignment(fetch, frames, up, connectivity)),
+            Section("intervals", "Topology over time", pictures(topology_figures)),
+            Section("alignment", "Alignment", aligned),
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
-def _structure(
-    fetch: Any, frames: list[int], up: int, skeleton: Skeleton, intervals: Intervals, figures: StructureFigures
-) -> str:
-    """Pictures of the skeleton and a table of its joints."""
+def _joints(skeleton: Skeleton, intervals: Intervals, figures: StructureFigures) -> str:
+    """A table of the skeleton's joints."""
     unit = skeleton.unit or "the unit of the input"
-    pictures = (
-        picture(skeleton_figure(fetch, frames, up), "Parts and skeleton; white where the surface is not rigid.", vector=False)
-        + picture(tree(fetch, frames, up), "The tree of joints with bone lengths and the range of every joint's angle.")
-        + picture(
-            confidence(fetch, frames, up),
-            "Confidence of every joint over time, and the drift of every joint: the distance between its two parts.",
-        )
-        + picture(
-            angles(fetch, frames, up), "Angle of every joint against the reference pose; bold where confidence is below 0.5."
-        )
-    )
     note = f"<p>Lengths in {escape(unit)}. Intervals are listed where a joint's mean confidence is at least 0.5.</p>"
-    return pictures + note + table(*_joint_table(skeleton, intervals, figures))
+    return note + table(*_joint_table(skeleton, intervals, figures))
 
 
 def _joint_table(skeleton: Skeleton, intervals: Intervals, figures: StructureFigures) -> tuple[list[str], list[list[object]]]:
@@ -153,35 +130,17 @@ def _comparison(evaluation: Evaluation) -> str:
     return remarks + picture(evaluation_figure(evaluation), caption) + table(head, rows)
 
 
-def _topology(fetch: Any, frames: list[int], up: int) -> str:
-    """Pictures of the correlation, the intervals and μ."""
-    return picture(
-        correlation_figure(fetch, frames, up),
-        "Correlation C(t) (Eq. 2) with cuts and intervals; below, every cue relative to its threshold.",
-    ) + picture(
-        mu_figure(fetch, frames, up), "μ on the surface, from low (dark) to high (bright), with the leaves.", vector=False
-    )
-
-
-def _alignment(fetch: Any, frames: list[int], up: int, connectivity: Connectivity) -> str:
-    """A picture of the residuals, where anything was aligned."""
-    if connectivity.fixed:
-        return "<p>All frames have the same faces, so nothing had to be aligned.</p>"
-    caption = "Distance of the aligned mesh from every frame, over time and on the surface."
-    return picture(alignment_figure(fetch, frames, up), caption, vector=False)
-
-
 def _facts(
-    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, up_direction: UpDirection, alignments: Mapping[int, Alignment]
+    skeleton: Skeleton, sequence: Sequence, intervals: Intervals, up_direction: UpDirection, figures: AlignmentFigures
 ) -> list[tuple[str, str]]:
     """The numbers at the head of the page, with their names."""
-    distance = f"{100 * skin_distance(skeleton, alignments):.2g} % of the body's diagonal"
+    distance = f"{100 * figures.skin_distance:.2g} % of the body's diagonal"
     return [
         ("frames", str(len(skeleton.frames))),
         ("joints", str(skeleton.kinds.count("joint"))),
         ("leaves", str(skeleton.kinds.count("leaf"))),
         ("intervals", str(len(intervals.begin))),
-        ("reference frame", str(reference_frame(skeleton, alignments))),
+        ("reference frame", str(figures.reference)),
         ("skin to aligned mesh", distance),
         ("unit", sequence.unit or "not known"),
         ("frames a second", f"{sequence.fps:g}" if sequence.fps else "not known"),

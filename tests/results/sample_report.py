@@ -13,25 +13,38 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
+from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.scene import evenly_spread
+from kinetree.tasks.results.alignment_figures import alignment_figures
+from kinetree.tasks.results.coarse_mesh import coarse_mesh
+from kinetree.tasks.results.excerpt import excerpt
+from kinetree.tasks.results.motion_figures import motion_figures
+from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.document import Page, Section, document, table
 from kinetree.tasks.results.page.scene import Limits, Scene, scene
+from kinetree.tasks.results.report import report
+from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.structure_figures import structure_figures
+from kinetree.tasks.results.topology_figures import topology_figures
 
 UP = UpDirection(up="y", confidence=1.0)
 
 
 def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
     """The spider playing."""
-    arguments = artifacts(skeleton, anew=anew)
-    names = ("skeleton", "alignment", "projection", "mesh", "leaves", "intervals")
-    return scene(*(arguments[name] for name in names), limits or Limits())
+    arguments, chosen = artifacts(skeleton, anew=anew), limits or Limits()
+    body = arguments["skeleton"]
+    shown = {body.frames[t]: arguments["mesh"][body.frames[t]] for t in evenly_spread(len(body.frames), chosen.frames)}
+    inputs = coarse_meshes(shown, arguments["projection"], chosen.input_vertices)
+    return scene(body, arguments["alignment"], inputs, arguments["leaves"], arguments["intervals"], chosen)
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
@@ -69,6 +82,31 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
             for t, (f, order) in enumerate(zip(frames, orders, strict=True))
         },
     }  # fmt: skip
+
+
+def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
+    """What the task `report` reads, made of `artifacts` with changes by the tasks before it."""
+    all_of_it = {**artifacts(changes.get("skeleton")), **changes}
+
+    def some(*names: str) -> dict[str, Any]:
+        return {name: all_of_it[name] for name in names}
+
+    all_of_it["excerpt"] = excerpt(**some("sequence", "mesh"), params=params)
+    coarse: dict[int, CoarseMesh] = {}
+    for frame, mesh in all_of_it["mesh"].items():
+        before = coarse.get(all_of_it["excerpt"].previous(frame))
+        projection = all_of_it["projection"][frame]
+        coarse[frame] = coarse_mesh(
+            mesh=mesh, projection=projection, excerpt=all_of_it["excerpt"], previous=before, index=(frame,)
+        )
+    all_of_it["coarse_mesh"] = coarse
+    topology = some("excerpt", "correlation", "intervals", "leaves", "up_direction", "mesh", "geodesics")
+    aligned = some("skeleton", "excerpt", "connectivity", "up_direction", "alignment")
+    all_of_it["topology_figures"] = topology_figures(**topology)
+    all_of_it["alignment_figures"] = alignment_figures(**aligned)
+    all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
+    all_of_it["motion_figures"] = motion_figures(**some("skeleton"))
+    return {argument.name: all_of_it[argument.name] for argument in report.arguments}
 
 
 def _projected(skeleton: Skeleton, order: npt.NDArray[np.int64]) -> Projection:

@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 import trimesh
 from results.rigged_bodies import skinned, spider
-from results.sample_report import artifacts, confident, judged
+from results.sample_report import artifacts, confident, judged, page_artifacts
 
 from kinetree.schemas.input.mesh import Cleaning
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.results.report import RUN, ReportParams
 from kinetree.tasks.results.report import report
 
 
-def page(params: ReportParams | None = None, **changes: Any) -> str:
-    arguments = {**artifacts(changes.get("skeleton")), **changes}
-    return report(**arguments, params=params or ReportParams(frames=4, views=1)).text.tobytes().decode()
+def page(title: str = "", **changes: Any) -> str:
+    arguments = page_artifacts(ExcerptParams(frames=4, views=1), **changes)
+    return report(**arguments, params=ReportParams(title=title)).text.tobytes().decode()
 
 
 def warnings(text: str) -> list[str]:
@@ -126,7 +127,7 @@ def test_same_run_is_the_same_page_to_the_byte(plain: str) -> None:
 def test_no_word_from_outside_becomes_markup(field: str) -> None:
     bad = "</script><script>alert(1)</script>\n<img src=x onerror=alert(1)>$\\frac$ & {{run}}"
     if field == "title":
-        content = page(ReportParams(frames=2, views=1, title=bad))
+        content = page(title=bad)
     elif field == "unit":
         sequence = artifacts()["sequence"].model_copy(update={"unit": bad})
         content = page(skeleton=spider(unit=bad), sequence=sequence)

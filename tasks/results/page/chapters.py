@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinetree.schemas.array import Floats
-from kinetree.schemas.results.structure_figures import Chapter, Picture, StructureFigures
+from kinetree.schemas.results.figures import Figures, Picture
+from kinetree.schemas.results.structure_figures import Chapter, StructureFigures
 from kinetree.tasks.results.page.document import Section, embedded, rendered
 
 if TYPE_CHECKING:
@@ -32,6 +33,21 @@ class FigureChapter:
     heading: str
     figures: Sequence[CaptionedFigure]
     paragraphs: Sequence[str] = ()
+
+
+def rendered_figures(figures: Sequence[CaptionedFigure]) -> dict[str, Any]:
+    """Renders some figures and returns the fields of `Figures`."""
+    files = [rendered(d.figure, vector=d.vector) for d in figures]
+    return {
+        "pictures": tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in figures),
+        "end": np.cumsum([len(f) for f in files], dtype=np.int64),
+        "content": np.frombuffer(b"".join(files), dtype=np.uint8),
+    }
+
+
+def pictures(figures: Figures) -> str:
+    """The pictures as HTML that contains their files."""
+    return "".join(embedded(content, p.caption, p.kind) for content, p in zip(figures.files(), figures.pictures, strict=True))
 
 
 def rendered_chapters(chapters: Sequence[FigureChapter], length_variation: Floats) -> StructureFigures:

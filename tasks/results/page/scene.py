@@ -10,17 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.schemas.array import Floats
-from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
-from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.geometry.decimation import decimated
-from kinetree.tasks.numerics.results.scene import Lattice, evenly_spread, part_colouring
+from kinetree.tasks.numerics.results.scene import Lattice, part_colouring
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF
-from kinetree.tasks.results.plots.drawing import view
+from kinetree.tasks.results.plots.drawing import directions
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,7 @@ class Scene(NamedTuple):
 def scene(
     skeleton: Skeleton,
     alignments: Mapping[int, Alignment],
-    projections: Mapping[int, Projection],
-    meshes: Mapping[int, Mesh],
+    inputs: Mapping[int, CoarseMesh],
     leaves: Leaves,
     intervals: Intervals,
     limits: Limits,
@@ -60,19 +58,20 @@ def scene(
 
     Coordinates are rotated so that x points to the right, y up and z towards the viewer.
 
-    alignments, projections, meshes : by source frame number
-    up                              : axis that points up, see `view`
-    axes                            : directions of the view, as `view` gives them; None for those of these meshes
+    alignments : by source frame number
+    inputs     : by source frame number, the input meshes of the frames that play
+    up         : axis that points up, see `view`
+    axes       : directions of the view, as `view` gives them; None for those of these meshes
     """
-    selected_frames = evenly_spread(len(skeleton.frames), limits.frames)
-    frames = [skeleton.frames[t] for t in selected_frames]
-    axes = view([meshes[frame].vertices for frame in frames], up) if axes is None else axes
+    frames = [frame for frame in skeleton.frames if frame in inputs]
+    selected_frames = np.array([skeleton.frames.index(frame) for frame in frames])
+    shown = [inputs[frame] for frame in frames]
+    axes = directions(np.mean([m.extent for m in shown], axis=0), up) if axes is None else axes
     selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
-    inputs = _coarse_inputs([meshes[f] for f in frames], [projections[f] for f in frames], skeleton, limits.input_vertices)
-    changed = [i == 0 or m.faces is not inputs[i - 1].faces for i, m in enumerate(inputs)]
-    new_faces = [m.faces for m, is_new in zip(inputs, changed, strict=True) if is_new]
-    points = [positions.reshape(-1, 3), *(m.vertices @ axes for m in inputs)]
+    vertices = np.concatenate([m.vertices for m in shown]) @ axes
+    new_faces = [m.faces for m in shown if len(m.faces)]
+    points = [positions.reshape(-1, 3), vertices]
     low, high = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
     lattice = Lattice.around(low, high)
     arrays: dict[str, NDArray[Any]] = {
@@ -80,11 +79,11 @@ def scene(
         "faces": faces.astype(np.uint32),
         "label": skeleton.label[selected].astype(np.int16),
         "joints": (skeleton.positions[selected_frames] @ axes).astype(np.float32),
-        "input_vertices": lattice.levels(np.concatenate([m.vertices for m in inputs]) @ axes),
+        "input_vertices": lattice.levels(vertices),
         "input_faces": np.concatenate(new_faces).astype(np.uint32),
-        "input_label": np.concatenate([m.label for m in inputs]).astype(np.int16),
-        "input_vertex_offsets": _offsets([len(m.vertices) for m in inputs]),
-        "input_face_spans": _spans([m.faces for m in inputs]),
+        "input_label": np.concatenate([_label(skeleton, m) for m in shown]).astype(np.int16),
+        "input_vertex_offsets": _offsets([len(m.vertices) for m in shown]),
+        "input_face_spans": _spans([len(m.faces) for m in shown]),
     }
     if len(leaves.positions):
         at = [leaves.frames.index(frame) for frame in frames]
@@ -102,7 +101,7 @@ def scene(
         "intervals": _starts(intervals, skeleton.frames, selected_frames),
         "arrays": layout,
     }
-    return Scene(description, block, _omitted(skeleton, meshes, frames, len(selected), limits))
+    return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
 
 
 def _tree(skeleton: Skeleton) -> dict[str, Any]:
@@ -122,31 +121,12 @@ def _tree(skeleton: Skeleton) -> dict[str, Any]:
     }
 
 
-class _CoarseInput(NamedTuple):
-    """An input mesh with few vertices, and the part of each of them."""
-
-    vertices: Floats
-    faces: Ints
-    label: Ints
-
-
-def _coarse_inputs(meshes: list[Mesh], projections: list[Projection], skeleton: Skeleton, count: int) -> list[_CoarseInput]:
-    """Every frame's input mesh with about `count` vertices and their part labels.
-
-    Frames with the same faces are decimated in the same way and share their faces, so that a page holds these once.
-    """
-    inputs: list[_CoarseInput] = []
-    last, selected, faces = None, np.zeros(0, np.int64), np.zeros((0, 3), np.int64)
-    for mesh, projection in zip(meshes, projections, strict=True):
-        if last is None or not np.array_equal(mesh.faces, last):
-            last = mesh.faces
-            selected, faces = decimated(np.array(mesh.vertices), mesh.faces, count)
-        label = np.full(len(mesh.vertices), -1, np.int64)
-        known = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
-        corner = np.argmax(projection.share, axis=1)
-        label[mesh.vertex_of_input[known]] = skeleton.label[skeleton.faces[projection.face[known], corner[known]]]
-        inputs.append(_CoarseInput(np.asarray(mesh.vertices)[selected], faces, label[selected]))
-    return inputs
+def _label(skeleton: Skeleton, mesh: CoarseMesh) -> Ints:
+    """(vertex,) part of every vertex of a coarse mesh, −1 for none."""
+    known = mesh.reference_face >= 0
+    label = np.full(len(known), -1, np.int64)
+    label[known] = skeleton.label[skeleton.faces[mesh.reference_face[known], mesh.reference_corner[known]]]
+    return label
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], str]:
@@ -171,11 +151,11 @@ def _offsets(counts: list[int]) -> NDArray[np.uint32]:
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
 
 
-def _spans(faces: list[Ints]) -> NDArray[np.uint32]:
-    """(frame, 2) where the faces of each frame begin and end, if faces shared with the frame before are stored once."""
+def _spans(counts: list[int]) -> NDArray[np.uint32]:
+    """(frame, 2) where the faces of each frame begin and end; a frame without own faces has those of the one before."""
     spans = [(0, 0)]
-    for k, F in enumerate(faces):
-        spans.append(spans[-1] if k and F is faces[k - 1] else (spans[-1][1], spans[-1][1] + len(F)))
+    for count in counts:
+        spans.append((spans[-1][1], spans[-1][1] + count) if count else spans[-1])
     return np.array(spans[1:], np.uint32)
 
 
@@ -188,16 +168,14 @@ def _starts(intervals: Intervals, frames: tuple[int, ...], selected_frames: Ints
     return starts
 
 
-def _omitted(
-    skeleton: Skeleton, meshes: Mapping[int, Mesh], frames: list[int], vertices: int, limits: Limits
-) -> tuple[str, ...]:
+def _omitted(skeleton: Skeleton, inputs: list[CoarseMesh], vertices: int, limits: Limits) -> tuple[str, ...]:
     """What the page does not show, in words."""
     omitted = []
-    if len(frames) < len(skeleton.frames):
-        omitted.append(f"the player shows {len(frames)} of {len(skeleton.frames)} frames")
+    if len(inputs) < len(skeleton.frames):
+        omitted.append(f"the player shows {len(inputs)} of {len(skeleton.frames)} frames")
     if vertices < len(skeleton.vertices):
         omitted.append(f"the aligned mesh is shown with {vertices} of its {len(skeleton.vertices)} vertices")
-    largest = max(len(meshes[frame].vertices) for frame in frames)
+    largest = max(m.size for m in inputs)
     if largest > limits.input_vertices:
         omitted.append(f"input meshes are shown with about {limits.input_vertices} of up to {largest} vertices")
     return tuple(omitted)

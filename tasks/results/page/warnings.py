@@ -7,13 +7,10 @@ import numpy as np
 
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
-from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.results.scene import evenly_spread
-from kinetree.tasks.results.formats.rig import skinned
 from kinetree.tasks.views.input import sequence_remarks
 from kinetree.tasks.views.registration import frame_confidence_remarks
 from kinetree.tasks.views.structure import skeleton_remarks
@@ -28,8 +25,6 @@ class WarningLimits(NamedTuple):
     skin_distance: float = 0.015
     """Root mean square distance between the skin and the aligned meshes, share of the body's diagonal, above which the
     skeleton does not explain the motion."""
-    compared: int = 24
-    """Frames in which the skin is compared with the aligned mesh, evenly spread; more take longer."""
     confidence: float = 0.5
     """Mean confidence below which a joint is named."""
     named: int = 12
@@ -42,32 +37,19 @@ def warnings(
     intervals: Intervals,
     leaves: Leaves,
     frame_confidence: FrameConfidence,
-    alignments: Mapping[int, Alignment],
+    skin_distance: float,
     meshes: Mapping[int, Mesh],
 ) -> list[str]:
     """All warnings of a report, the most serious first; none where everything is well.
 
-    alignments, meshes : by source frame number
+    skin_distance : between skin and aligned meshes, share of the body's diagonal
+    meshes        : by source frame number
     """
     return [
-        *_of_skeleton(skeleton, alignments),
+        *_of_skeleton(skeleton, skin_distance),
         *sequence_remarks(sequence),
         *_of_frames(intervals, leaves, frame_confidence, meshes),
     ]
-
-
-def skin_distance(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> float:
-    """Root mean square distance between the skinned mesh and the aligned meshes of some frames.
-
-    alignments : by source frame number
-    returns    : share of the diagonal of the body's bounding box
-    """
-    size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
-    compared = evenly_spread(len(skeleton.frames), WarningLimits().compared)
-    squared = [
-        np.sum((skinned(skeleton, int(t)) - alignments[skeleton.frames[t]].vertices) ** 2, axis=1).mean() for t in compared
-    ]
-    return float(np.sqrt(np.mean(squared))) / max(size, 1e-300)
 
 
 def counted(count: int, noun: str) -> str:
@@ -75,14 +57,13 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _of_skeleton(skeleton: Skeleton, alignments: Mapping[int, Alignment]) -> Iterator[str]:
+def _of_skeleton(skeleton: Skeleton, distance: float) -> Iterator[str]:
     """Warnings about the joints and the surface."""
     turning = [j for j, kind in enumerate(skeleton.kinds) if kind == "joint"]
     if not turning:
         yield from skeleton_remarks(skeleton)
     if len(skeleton.frames) < WarningLimits().short:
         yield f"only {counted(len(skeleton.frames), 'frame')}: joints are found by motion, more frames show more of them"
-    distance = skin_distance(skeleton, alignments)
     if distance > WarningLimits().skin_distance:
         yield (
             f"the skeleton does not explain the motion: its skin is {100 * distance:.2g} % of the body's diagonal away from the"

@@ -67,7 +67,14 @@ def view(bodies: list[Floats], up: int = 1) -> Floats:
     up      : axis that points up: 0, 1, 2 for x, y, z, and ~0, ~1, ~2 for the opposite directions
     returns : (xyz, 3) columns are the directions
     """
-    extent = np.mean([np.ptp(V, axis=0) for V in bodies], axis=0)
+    return directions(np.mean([np.ptp(V, axis=0) for V in bodies], axis=0), up)
+
+
+def directions(extent: Floats, up: int = 1) -> Floats:
+    """The directions of a view of bodies of an extent, as `view` gives them.
+
+    extent : (xyz,) mean over the bodies
+    """
     axis = up if up >= 0 else ~up
     eye = min((a for a in range(3) if a != axis), key=lambda a: float(extent[a]))
     view = np.eye(3)[:, [3 - eye - axis, axis, eye]]

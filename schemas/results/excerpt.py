@@ -1,0 +1,40 @@
+"""What of a sequence the report shows: which frames play, which stand in pictures, and which of them share their faces."""
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from kinetree.schemas.array import Artifact, Params
+
+
+class ExcerptParams(Params):
+    """How much of a sequence the report shows."""
+
+    frames: int = Field(default=90, ge=1, le=1000)
+    """Most frames that the player shows; with more the page opens slowly."""
+    input_vertices: int = Field(default=2500, ge=50)
+    """Most vertices of an input mesh in the player."""
+    views: int = Field(default=4, ge=1, le=12)
+    """Number of frames in pictures of the body."""
+
+
+class Excerpt(Artifact):
+    """The frames of a sequence that the report shows."""
+
+    orders: ClassVar[str] = "frame"
+
+    frames: tuple[int, ...]
+    """Source frame number of every frame that the player shows, ascending."""
+    alike: tuple[int, ...]
+    """For each of these, the first of the frames up to it that all have its faces: they are made coarse alike."""
+    pictured: tuple[int, ...]
+    """Source frame numbers of the frames in pictures of the body."""
+    input_vertices: int
+    """Most vertices of an input mesh in the player."""
+
+    def previous(self, member: int) -> int | None:
+        """The frame whose coarse mesh this one takes over; None where it has its own, or is not shown."""
+        if member not in self.frames:
+            return None
+        first = self.alike[self.frames.index(member)]
+        return None if first == member else first

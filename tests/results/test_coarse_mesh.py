@@ -1,0 +1,55 @@
+"""Coarse meshes keep vertices of the mesh, know their part, and are shared where faces are."""
+
+import numpy as np
+from results.rigged_bodies import spider
+from results.sample_report import artifacts
+
+from kinetree.schemas.results.coarse_mesh import CoarseMesh
+from kinetree.schemas.results.excerpt import Excerpt
+from kinetree.tasks.results.coarse_mesh import coarse_mesh
+from kinetree.tasks.results.page.coarse import alike, coarse_meshes
+
+COUNT = 100
+CONTENT = artifacts()
+CHOSEN = Excerpt(frames=(0, 4), alike=(0, 0), pictured=(0,), input_vertices=COUNT)
+
+
+def of(frame: int, previous: CoarseMesh | None = None) -> CoarseMesh:
+    mesh, projection = CONTENT["mesh"][frame], CONTENT["projection"][frame]
+    return coarse_mesh(mesh=mesh, projection=projection, excerpt=CHOSEN, previous=previous, index=(frame,))
+
+
+def test_vertices_are_some_of_the_mesh() -> None:
+    made, mesh = of(0), CONTENT["mesh"][0]
+    np.testing.assert_array_equal(made.vertices, mesh.vertices[made.kept])
+    assert len(made.kept) <= 1.3 * COUNT < made.size == len(mesh.vertices)
+    assert made.faces.max() == len(made.kept) - 1
+
+
+def test_every_vertex_knows_the_point_of_the_reference_that_it_is() -> None:
+    made, body = of(0), spider()
+    order = np.random.default_rng(0).permutation(len(body.vertices))
+    np.testing.assert_array_equal(body.faces[made.reference_face, made.reference_corner], order[made.kept])
+
+
+def test_frame_with_the_same_faces_has_the_same_vertices_and_holds_no_faces() -> None:
+    first = of(0)
+    later = of(4, first)
+    np.testing.assert_array_equal(later.vertices, CONTENT["mesh"][4].vertices[first.kept])
+    assert (len(later.kept), len(later.faces)) == (0, 0)
+
+
+def test_frame_that_is_not_shown_is_empty() -> None:
+    assert (of(5).size, len(of(5).vertices)) == (0, 0)
+
+
+def test_many_at_once_are_those_made_one_by_one() -> None:
+    shown = {frame: CONTENT["mesh"][frame] for frame in CHOSEN.frames}
+    made = coarse_meshes(shown, CONTENT["projection"], COUNT)
+    assert made[0] == of(0)
+    assert made[4] == of(4, of(0))
+
+
+def test_equal_faces_count_only_without_others_between() -> None:
+    one, two = np.zeros((1, 3), np.int32), np.ones((1, 3), np.int32)
+    assert alike({3: one, 5: one, 6: two, 9: one}) == (3, 3, 6, 9)

@@ -1,0 +1,13 @@
+"""Pictures of the joints name them all."""
+
+from results.rigged_bodies import spider
+
+from kinetree.tasks.results.motion_figures import motion_figures
+
+
+def test_every_picture_names_the_joints() -> None:
+    body = spider()
+    files = motion_figures(skeleton=body).files()
+    assert len(files) == 3
+    for name in (name for name, kind in zip(body.names, body.kinds, strict=True) if kind == "joint"):
+        assert all(name.encode() in file for file in files), name
