@@ -14,6 +14,7 @@ from kinetree.tasks.registration import REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, RESULTS
 from kinetree.tasks.structure import STRUCTURE
+from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.skeleton import skeleton
 from kinetree.tasks.topology import TOPOLOGY
@@ -21,6 +22,8 @@ from kinetree.tasks.topology import TOPOLOGY
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
     "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, frame_confidence, *FIGURES_2014, *RESULTS)),
-    "reeb": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, pose_refinement, skeleton, frame_confidence, *FIGURES_2009, *RESULTS)),
+    "reeb": Graph.of(
+        (*INPUT, *TOPOLOGY, *PAPER_2009, pose_refinement, further_pose, skeleton, frame_confidence, *FIGURES_2009, *RESULTS)
+    ),
 }
 """The graph of each method, checked when this module is imported."""

@@ -64,7 +64,7 @@ def articulation(known: Known, uncertain: tuple[int, ...] = SPOILT) -> Kinematic
         X[:, j] = X[:, parents[j]] + np.einsum("txy,y->tx", R[:, parents[j]], rest[j] - rest[parents[j]])
     own = np.array([0, 1, 3, 4])[known.label]
     return KinematicTree(
-        frames=tuple(range(FIRST, FIRST + FRAMES)), fps=None, unit=None, names=("root", "a", "a_end", "b", "c"),
+        frames=tuple(range(FIRST, FIRST + FRAMES)), names=("root", "a", "a_end", "b", "c"),
         parents=parents, kinds=("root", "joint", "leaf", "joint", "joint"), positions=X, rotation=R, confidence=confidence,
         rest=rest, degrees=np.zeros(5), drift=np.zeros(5), support=np.zeros(5, int), vertices=known.V, faces=known.F, label=own,
         influence=np.stack([own, *np.zeros((3, len(own)), int)], axis=1), weight=np.tile(np.eye(4)[0], (len(own), 1)),

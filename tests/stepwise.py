@@ -1,6 +1,6 @@
 """Step II, task after task, called as the plain functions they are, on generated bodies."""
 
-from collections.abc import Sequence
+import collections.abc as abc
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
+from kinetree.schemas.registration.reference import ReferenceParams
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.schemas.topology.extrema import ExtremaParams
@@ -32,6 +34,7 @@ from kinetree.tasks.registration.roll import roll
 from kinetree.tasks.registration.roll_candidates import roll_candidates
 from kinetree.tasks.registration.stiffness import stiffness
 from kinetree.tasks.registration.tracking import tracking
+from kinetree.tasks.registration.tracking_order import tracking_order
 from kinetree.tasks.topology.extrema import extrema
 from kinetree.tasks.topology.geodesics import geodesics
 from kinetree.tasks.topology.leaves import leaves
@@ -56,7 +59,7 @@ def generated(**told: Any) -> dict[int, Mesh]:
     return {t: cleaned(*made.frame(t)) for t in range(len(made.X))}
 
 
-def along(task: Any, order: Any, frames: Sequence[int], **per_frame: Any) -> dict[int, Any]:
+def along(task: Any, order: Any, frames: abc.Sequence[int], **per_frame: Any) -> dict[int, Any]:
     """A task that reads its own previous artifact, over all frames in the order of its traversal."""
     made: dict[int, Any] = {}
 
@@ -89,6 +92,7 @@ def referred(meshes: dict[int, Mesh]) -> Any:
         tips=seen,
         leaves=leaves(seen, uncut(len(seen)), LeavesParams()),
         connectivity=connectivity(meshes),
+        params=ReferenceParams(),
     )
 
 
@@ -96,7 +100,11 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
-    made.tracking = along(tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams())
+    made.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
+    made.tracking_order = tracking_order(made.reference, made.sequence)
+    made.tracking = along(
+        tracking, made.tracking_order, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams()
+    )
     made.recovery = recovery(graph, made.tracking, meshes)
     made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
     for number in graph.members("pass", ()):
@@ -104,7 +112,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     final = {t: tuple(refit[t] for refit in made.refit) for t in meshes}
     made.alignment = {t: alignment(m, made.reference, graph, made.recovery, final[t]) for t, m in meshes.items()}
     made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
-    made.frame_confidence = frame_confidence(made.alignment, meshes)
+    made.frame_confidence = frame_confidence(made.alignment, meshes, made.sequence)
     return made
 
 

@@ -86,7 +86,7 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     graphs = {t: reeb_graph(m, mu[t], ReebGraphParams(levels=5)) for t, m in mesh.items()}
     inner = {t: perg(m, graphs[t], ends[t], PergParams()) for t, m in mesh.items()}
     alike = similarity(graphs, SimilarityParams())
-    runs = coherent_intervals(inner, CoherentIntervalsParams())
+    runs = coherent_intervals(inner, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"), CoherentIntervalsParams())
     if letter:
         runs = divided(runs)
     start = initial_frames(
@@ -103,7 +103,7 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     one = integrated_structure(start, models, of, alike)
     motion = motions(one, start, moved, inner, mesh, tracks, GraphMotionParams(**forces))
     place = GraphSkeletonParams(joints="edges" if letter else "centres")
-    tree = graph_skeleton(one, motion, mesh, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"), place)
+    tree = graph_skeleton(one, motion, mesh, place)
     aligned = {t: graph_alignment(m) for t, m in motion.items()}
     touching = contact_kinds(one, motion, runs)
     return Volumetric(

@@ -1,8 +1,11 @@
-"""The sequence as a whole: which frames, how fast, in what unit."""
+"""The sequence as a whole: which frames, how fast, in what unit, and which frames decide about the others."""
+
+import collections.abc as abc
+from typing import ClassVar
 
 from pydantic import Field
 
-from kinetree.schemas.array import Artifact, Params
+from kinetree.schemas.array import Artifact, Index, Params
 from kinetree.schemas.input.source import BadFrame
 
 
@@ -13,11 +16,19 @@ class SequenceParams(Params):
     """Frames a second; None takes what the files state, or leaves it unknown."""
     unit: str | None = None
     """Unit of the coordinates, e.g. mm; None takes what the files state, or leaves it unknown."""
+    learn_from: str = ":"
+    """Frames from which the body is learned, as start:stop:step; the others are posed and change no other frame."""
 
 
 class Sequence(Artifact):
-    """The frames of a run in order, with their numbers in the source."""
+    """The frames of a run in order, with their numbers in the source.
 
+    It selects the frames from which the body is learned: what concerns all frames, such as the reference, the stiffness or the
+    rigid parts, is made of these alone. Each other frame opens a member of "further".
+    """
+
+    opens: ClassVar[tuple[str, ...]] = ("further", "further/frame")
+    selects: ClassVar[str] = "frame"
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     fps: float | None
@@ -26,3 +37,19 @@ class Sequence(Artifact):
     """Unit of all lengths; None where nobody knows. No step depends on it."""
     dropped: tuple[BadFrame, ...] = ()
     """Frames that were left out because they cannot be of the same body."""
+    further: tuple[int, ...] = ()
+    """Frames that nothing is learned from, ascending; they are posed as the others taught."""
+
+    @property
+    def learned(self) -> tuple[int, ...]:
+        """Source frame numbers of the frames from which the body is learned, ascending."""
+        further = frozenset(self.further)
+        return tuple(t for t in self.frames if t not in further)
+
+    def selected(self) -> abc.Sequence[int]:
+        """The frames from which the body is learned."""
+        return self.learned
+
+    def members(self, space: str, index: Index) -> abc.Sequence[int]:
+        """The further frames; each holds itself."""
+        return self.further if space == "further" else index

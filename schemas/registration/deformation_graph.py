@@ -27,15 +27,13 @@ class DeformationGraphParams(Params):
 
 
 class DeformationGraph(Artifact):
-    """The rest shape and its graph, and over which frames and how many passes it is fitted.
+    """The rest shape and its graph, and in how many passes it is fitted to all frames.
 
     With fixed connectivity there is nothing to fit: the graph is empty and has no passes.
     """
 
-    opens: ClassVar[tuple[str, ...]] = ("pass", "pass/frame")
+    opens: ClassVar[tuple[str, ...]] = ("pass",)
     orders: ClassVar[str] = "pass"
-    frames: tuple[int, ...]
-    """Source frame number of every frame, ascending."""
     frame: int
     """Source frame number of the reference, which every fit leaves as it is."""
     passes: int
@@ -70,8 +68,8 @@ class DeformationGraph(Artifact):
     """The block of every edge."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:
-        """The passes, numbered from 0, and the frames of each."""
-        return range(self.passes) if space == "pass" else self.frames
+        """The passes, numbered from 0."""
+        return range(self.passes)
 
     def previous(self, member: int) -> int | None:
         """The pass before; None for the first."""

@@ -12,7 +12,7 @@ class Recovery(Artifact):
     """Frames that leave clearly more uncovered than the others, tracked again from the frame beyond them."""
 
     frames: tuple[int, ...]
-    """Source frame number of every frame, ascending."""
+    """Source frame number of every frame that the body is learned from, ascending."""
     uncovered: Annotated[Floats, Array("float64", FRAME)]
     """Share of each frame's surface that the tracked body does not explain."""
     failed: Annotated[Bools, Array("bool", FRAME)]
@@ -30,5 +30,7 @@ class Recovery(Artifact):
 
     def row(self, frame: int) -> int | None:
         """The row of a source frame among the recovered ones; None for a frame whose tracked pose stays."""
+        if frame not in self.frames:
+            return None
         at = np.flatnonzero(self.recovered == self.frames.index(frame))
         return int(at[0]) if len(at) else None

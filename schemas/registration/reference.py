@@ -1,16 +1,23 @@
-"""The one mesh that follows the body, and the order in which frames are reached from it (2014, Sec. 5.3)."""
+"""The one mesh that follows the body (2014, Sec. 5.3)."""
 
 from typing import Annotated
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
 from kinetree.schemas.dims import CORNER, FACE, FRAME, VERTEX, XYZ
 
 
+class ReferenceParams(Params):
+    """Which frame it is, where that is known."""
+
+    frame: int | None = None
+    """Source frame number of the reference; None chooses the best of the frames that the body is learned from."""
+
+
 class Reference(Artifact):
-    """The reference mesh, from which frame it is, and before which frame each frame is reached."""
+    """The reference mesh, and from which frame it is."""
 
     frames: tuple[int, ...]
-    """Source frame number of every frame, ascending."""
+    """Source frame number of every frame among which it was chosen, ascending."""
     frame: int
     """Source frame number of the reference."""
     fixed: bool
@@ -29,10 +36,3 @@ class Reference(Artifact):
     """Root of its area, length: what every length of the alignment is relative to."""
     score: Annotated[Floats, Array("float64", FRAME)]
     """How fit each frame is as the reference, at most 1, higher is better."""
-    before: Annotated[Ints, Array("int32", FRAME)]
-    """Position of the frame from which each frame is reached, −1 for the reference, and for all with fixed connectivity."""
-
-    def previous(self, member: int) -> int | None:
-        """The frame from which this one is reached; None for the reference."""
-        at = int(self.before[self.frames.index(member)])
-        return None if at < 0 else self.frames[at]

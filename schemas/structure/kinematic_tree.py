@@ -9,7 +9,7 @@ from pydantic import Field
 
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, XYZ
-from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.structure.skeleton import ArticulatedBody
 
 MOST_TOGETHER = 6
 """Uncertain frames that are refined by one task, at most."""
@@ -30,8 +30,8 @@ class KinematicTreeParams(Params):
     """The same where some other joint of the body moves clearly."""
 
 
-class KinematicTree(Skeleton):
-    """A skeleton whose poses come from aligned vertices alone; each run of uncertain frames opens a member of "doubt".
+class KinematicTree(ArticulatedBody):
+    """A body whose poses come from aligned vertices alone; each run of uncertain frames opens a member of "doubt".
 
     Parts are numbered as in RigidParts.
     """

@@ -8,18 +8,15 @@ from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import CORNER, FACE, FRAME, INFLUENCE, JOINT, ROW, VERTEX, XYZ
 
 
-class Skeleton(Artifact):
-    """The articulated body: x_j(t) = x_p(t) + R_p(t) (rest_j − rest_p) for every joint j with parent p.
+class ArticulatedBody(Artifact):
+    """A tree of joints with a pose in every frame, and the surface that follows it.
 
+    x_j(t) = x_p(t) + R_p(t) (rest_j − rest_p) for every joint j with parent p.
     The surface follows by linear blend skinning: x_v(t) = Σ_i w_vi [R_i(t) (v − rest_i) + x_i(t)].
     """
 
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
-    fps: float | None
-    """Frames a second; None where it is not known."""
-    unit: str | None
-    """Unit of all lengths; None where it is not known."""
     names: tuple[str, ...]
     """Name of every joint, readable, unique and the same on every run; parents come before children."""
     parents: tuple[int, ...]
@@ -57,3 +54,12 @@ class Skeleton(Artifact):
         parent = np.maximum(self.parents, 0)
         length: Floats = np.where(np.array(self.parents) < 0, 0.0, np.linalg.norm(self.rest - self.rest[parent], axis=1))
         return length
+
+
+class Skeleton(ArticulatedBody):
+    """The result: the body in all frames, with what is known of time and unit."""
+
+    fps: float | None
+    """Frames a second; None where it is not known."""
+    unit: str | None
+    """Unit of all lengths; None where it is not known."""

@@ -2,6 +2,7 @@
 
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints, Params
@@ -29,7 +30,7 @@ class Leaves(Artifact):
     """Every leaf that was followed: where it was, when it was seen, in which intervals it counts, when it was lost."""
 
     frames: tuple[int, ...]
-    """Source frame number of every frame, ascending."""
+    """Source frame number of every frame in which leaves were followed, ascending."""
     rows: Annotated[Ints, Array("int32", LEAF, FRAME)]
     """Which of the frame's extrema it is, −1 where it is not seen."""
     positions: Annotated[Floats, Array("float64", LEAF, FRAME, XYZ, unit="length", finite=False)]
@@ -42,3 +43,13 @@ class Leaves(Artifact):
     """Position of the first frame without it."""
     lost_end: Annotated[Ints, Array("int32", GAP)]
     """Position of the last frame without it, included."""
+
+    def at(self, frame: int) -> Floats:
+        """(leaf, xyz) where the leaves are in a source frame; NaN in a frame in which none were followed."""
+        known: Floats = self.positions[:, self.frames.index(frame)] if frame in self.frames else self.positions[:, 0] * np.nan
+        return known
+
+    def seen(self, frame: int) -> Bools:
+        """(leaf,) whether each leaf is seen in a source frame."""
+        seen: Bools = self.rows[:, self.frames.index(frame)] >= 0 if frame in self.frames else self.rows[:, 0] < -1
+        return seen

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.connectivity import Connectivity, Odd
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
 
 
-@task()
+@task(among=Sequence)
 def connectivity(mesh: Mapping[int, Mesh]) -> Connectivity:
     """Recognises a sequence whose vertices are tracked already, and the frames that keep it from being one (2014, Sec. 7)."""
     first = next(iter(mesh.values()))

@@ -6,14 +6,17 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals, CoherentIntervalsParams
 from kinetree.schemas.paper_2009.perg import Perg
+from kinetree.tasks.input.sequence import refuse_further
 from kinetree.tasks.numerics.paper_2009 import coherent_intervals as numerics
 
 
 @task()
-def coherent_intervals(pergs: Mapping[int, Perg], params: CoherentIntervalsParams) -> CoherentIntervals:
+def coherent_intervals(pergs: Mapping[int, Perg], sequence: Sequence, params: CoherentIntervalsParams) -> CoherentIntervals:
     """Finds the frames without a loop that have the ends (i) and the branch points (ii) of the body (2009, Sec. 2.2)."""
+    refuse_further(sequence, "the method of 2009")
     ends, loops = (np.array([len(a) for a in rows]) for rows in zip(*((p.end, p.reach) for p in pergs.values()), strict=True))
     degrees = tuple(p.degrees for p in pergs.values())
     runs = numerics.coherent_intervals(ends, loops, degrees, ends=params.ends, branches=params.branches, minimum=params.minimum)

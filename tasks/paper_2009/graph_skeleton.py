@@ -6,7 +6,6 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
-from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2009.graph_motion import GraphMotion
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
@@ -25,7 +24,6 @@ def graph_skeleton(
     integrated_structure: IntegratedStructure,
     motions: Mapping[int, GraphMotion],
     meshes: Mapping[int, Mesh],
-    sequence: Sequence,
     params: GraphSkeletonParams,
 ) -> KinematicTree:
     """Places joints between clusters and gives the skeleton its skin, its lengths and its poses (2009, Sec. 2.4, 2.5)."""
@@ -39,8 +37,6 @@ def graph_skeleton(
     )._asdict()  # fmt: skip
     return KinematicTree(
         frames=tuple(motions),
-        fps=sequence.fps,
-        unit=sequence.unit,
         vertices=s.vertices,
         faces=s.faces,
         uncertain=needs_refinement(tree.confidence) if by_centres else np.zeros(len(motions), np.bool_),

@@ -12,6 +12,7 @@ from kinetree.schemas.paper_2014.cylinders import Cylinders
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.paper_2014.kinematic_structure import KinematicStructureParams
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.input.sequence import refuse_further
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.paper_2014 import kinematic_structure as numerics
 from kinetree.tasks.numerics.paper_2014.bones import adjacent, joint_adjacency
@@ -31,6 +32,7 @@ def kinematic_structure(
     params: KinematicStructureParams,
 ) -> Skeleton:
     """Joins joints and rigid parts in one tree, adds bones to the leaves and gives all bones fixed lengths (2014, Sec. 6.3)."""
+    refuse_further(sequence, "the method of 2014")
     reference = interval_references[cylinders.interval]
     label, part = cylinders.label.astype(np.int64), bones.part.astype(np.int64)
     model = numerics.Model(reference.vertices, reference.area, label, part)

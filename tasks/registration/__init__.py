@@ -11,10 +11,12 @@ from kinetree.tasks.registration.roll import roll
 from kinetree.tasks.registration.roll_candidates import roll_candidates
 from kinetree.tasks.registration.stiffness import stiffness
 from kinetree.tasks.registration.tracking import tracking
+from kinetree.tasks.registration.tracking_order import tracking_order
 
 REGISTRATION = (
     reference,
     deformation_graph,
+    tracking_order,
     tracking,
     recovery,
     stiffness,

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kinetree.errors import MeshError
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
@@ -39,6 +40,12 @@ def alignment(
 def _given(mesh: Mesh, reference: Reference) -> Alignment:
     """Fixed connectivity: every vertex is where the frame has it (2014, Sec. 7)."""
     rest, x = np.array(reference.vertices), np.array(mesh.vertices)
+    if len(x) != len(rest) or not np.array_equal(mesh.faces, reference.faces):
+        raise MeshError(
+            f"{len(x)} vertices and {len(mesh.faces)} faces, but the frames that the body was learned from share one"
+            f" connectivity of {len(rest)} and {len(reference.faces)}; leave the frame out, or learn from it as well"
+            " (sequence.learn_from)"
+        )
     return Alignment(
         vertices=x,
         residual=np.zeros(len(x)),

@@ -18,7 +18,6 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
     settings = graph_settings(params)._replace(nodes=nodes)
     made = numerics.deformation_graph(np.array(reference.vertices), np.array(reference.faces), settings)
     return DeformationGraph(
-        frames=reference.frames,
         frame=reference.frame,
         passes=params.passes,
         vertices=made.V,
@@ -47,7 +46,6 @@ def _empty(reference: Reference) -> DeformationGraph:
     """A graph without nodes and passes."""
     whole, real = np.int32, np.float64
     return DeformationGraph(
-        frames=reference.frames,
         frame=reference.frame,
         passes=0,
         vertices=np.empty((0, 3), real),

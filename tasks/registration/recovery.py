@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.tracking import Tracking
@@ -13,7 +14,7 @@ from kinetree.tasks.numerics.registration import recovery as numerics
 from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
-@task()
+@task(among=Sequence)
 def recovery(deformation_graph: DeformationGraph, tracking: Mapping[int, Tracking], mesh: Mapping[int, Mesh]) -> Recovery:
     """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
     frames = tuple(tracking)

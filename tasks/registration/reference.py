@@ -1,15 +1,16 @@
-"""The one mesh that follows the body, and the order in which frames are reached from it."""
+"""The one mesh that follows the body."""
 
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinetree.errors import SourceError
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Mesh
-from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.registration.reference import Reference, ReferenceParams
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.mu_histogram import MuHistogram
@@ -18,13 +19,14 @@ from kinetree.tasks.numerics.registration import reference as numerics
 QUANTILES = 100
 
 
-@task()
+@task(among=Sequence)
 def reference(
     mesh: Mapping[int, Mesh],
     distribution: Mapping[int, MuHistogram],
     tips: Mapping[int, Extrema],
     leaves: Leaves,
     connectivity: Connectivity,
+    params: ReferenceParams,
 ) -> Reference:
     """Chooses the frame to which all others are aligned, free of contact and amid the poses (2014, Sec. 5.3)."""
     frames = tuple(mesh)
@@ -32,7 +34,13 @@ def reference(
     euler = [t.euler for t in tips.values()]
     area = [m.cleaning.area for m in mesh.values()]
     profile = np.stack([_quantiles(d) for d in distribution.values()])
-    chosen = numerics.reference(count, euler, area, profile, _followed(leaves, tuple(tips.values())))
+    if params.frame is not None and params.frame not in frames:
+        raise SourceError(
+            f"reference.frame: frame {params.frame} is none of the {len(frames)} frames that the body is learned from,"
+            f" which are {frames[0]} to {frames[-1]}; see sequence.learn_from"
+        )
+    pinned = None if params.frame is None else frames.index(params.frame)
+    chosen = numerics.reference(count, euler, area, profile, _followed(leaves, tuple(tips.values())), frame=pinned)
     mine = mesh[frames[chosen.frame]]
     return Reference(
         frames=frames,
@@ -45,15 +53,7 @@ def reference(
         faces=mine.faces,
         size=float(np.sqrt(area[chosen.frame])),
         score=chosen.score,
-        before=np.full(len(frames), -1) if connectivity.fixed else outwards(len(frames), chosen.frame),
     )
-
-
-def outwards(count: int, start: int) -> NDArray[np.int64]:
-    """(frame,) the position from which each frame is reached, from `start` to both ends; −1 for `start`."""
-    at = np.arange(count)
-    before: NDArray[np.int64] = np.where(at == start, -1, at - np.sign(at - start))
-    return before
 
 
 def _followed(leaves: Leaves, tips: tuple[Extrema, ...]) -> Floats:

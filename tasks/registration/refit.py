@@ -1,7 +1,9 @@
 """Every frame fitted again by itself, with the stiffness that the sequence taught, pass after pass."""
 
+import numpy as np
+
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Index
+from kinetree.schemas.array import Index, Ints
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
@@ -11,6 +13,7 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.tasks.numerics.registration.deformation import fit
+from kinetree.tasks.numerics.registration.roll import frame_rolls
 from kinetree.tasks.numerics.registration.stiffness import refit_pass
 from kinetree.tasks.registration.pose import graph, rolled_pose, target, tracked_pose
 
@@ -33,7 +36,15 @@ def refit(
     if previous is None:
         start = tracked_pose(tracking, recovery, frame)
     else:
-        start = rolled_pose(nodes, previous, candidates, stiffness, roll.row(frame))
+        start = rolled_pose(nodes, previous, candidates, stiffness, _chosen(roll, candidates, frame))
     if frame != deformation_graph.frame:  # the reference stays what it is
         start = fit(nodes, start, target(mesh, deformation_graph), refit_pass(number).fit, roll.stiffness.copy()).pose
     return Refit(rotation=start.rotation, translation=start.translation)
+
+
+def _chosen(roll: Roll, candidates: RollCandidates, frame: int) -> Ints:
+    """(limb,) the candidates of a frame: those of the paths over the sequence, or its own where nothing is learned from it."""
+    row = roll.row(frame)
+    if row is not None:
+        return row
+    return frame_rolls(np.array(candidates.angle), np.array(candidates.misfit), roll.rolls).astype(np.int32)

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.task import Previous, task
 from kinetree.schemas.array import Floats, Index, Ints
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll import Roll
@@ -24,7 +25,7 @@ from kinetree.tasks.numerics.registration.stiffness import (
 from kinetree.tasks.registration.pose import graph, rolled_pose
 
 
-@task(over="pass", along=DeformationGraph)
+@task(over="pass", along=DeformationGraph, among=Sequence)
 def roll(
     deformation_graph: DeformationGraph,
     stiffness: Stiffness,

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.task import Previous, task
 from kinetree.schemas.array import Index
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
@@ -16,7 +17,7 @@ from kinetree.tasks.numerics.registration.stiffness import learned_stiffness, re
 from kinetree.tasks.registration.pose import graph, pose, tracked_pose
 
 
-@task(over="pass", along=DeformationGraph)
+@task(over="pass", along=DeformationGraph, among=Sequence)
 def stiffness(
     deformation_graph: DeformationGraph,
     tracking: Mapping[int, Tracking],

@@ -3,14 +3,14 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
-from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
+from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
 from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
-@task(over="frame", along=Reference)
+@task(over="frame", along=TrackingOrder)
 def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None, params: TrackingParams) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)

@@ -1,5 +1,6 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
+from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.rigid_parts import rigid_parts
@@ -9,5 +10,6 @@ STRUCTURE = (
     rigid_parts,
     kinematic_tree,
     pose_refinement,
+    further_pose,
     skeleton,
 )

@@ -21,14 +21,13 @@ from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.numerics.structure.pruning import PruningSettings
 
 
-@task()
+@task(among=Sequence)
 def kinematic_tree(
     reference: Reference,
     rigid_parts: RigidParts,
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
     leaves: Leaves,
-    sequence: Sequence,
     params: KinematicTreeParams,
 ) -> KinematicTree:
     """Joins the rigid parts into one tree, places its joints and poses it in every frame (2014, Sec. 6.3)."""
@@ -57,8 +56,6 @@ def kinematic_tree(
     )
     return KinematicTree(
         frames=frames,
-        fps=sequence.fps,
-        unit=sequence.unit,
         vertices=V,
         faces=F,
         uncertain=np.zeros(len(frames), np.bool_) if given else needs_refinement(tree.confidence),

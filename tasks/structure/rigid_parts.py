@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
@@ -16,7 +17,7 @@ from kinetree.tasks.numerics.structure.given_correspondence import limited_confi
 from kinetree.tasks.numerics.structure.oversegmentation import OversegmentationSettings
 
 
-@task()
+@task(among=Sequence)
 def rigid_parts(
     reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, params: RigidPartsParams
 ) -> RigidParts:

@@ -7,13 +7,14 @@ import numpy as np
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
 from kinetree.schemas.input.connectivity import Connectivity
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals, IntervalsParams
 from kinetree.tasks.numerics.topology import intervals as numerics
 
 
-@task()
+@task(among=Sequence)
 def intervals(
     correlation: Correlation, extrema: Mapping[int, Extrema], connectivity: Connectivity, params: IntervalsParams
 ) -> Intervals:

@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves, LeavesParams
 from kinetree.tasks.numerics.topology.leaves import bridged, fixed_leaves, follow, follow_paper, gaps
 
 
-@task()
+@task(among=Sequence)
 def leaves(extrema: Mapping[int, Extrema], intervals: Intervals, params: LeavesParams) -> Leaves:
     """Follows extrema from frame to frame and fixes the leaves of every interval (2014, Sec. 5.1, Eq. 3)."""
     frames = tuple(extrema.values())

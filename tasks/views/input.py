@@ -15,8 +15,17 @@ NAMED_GAPS = 8
 
 @remarks_of(Sequence)
 def sequence_remarks(sequence: Sequence) -> tuple[str, ...]:
-    """Names the frames that were left out, and those that the numbering leaves out."""
-    return (*_dropped(sequence), *_missing(sequence))
+    """Names the frames that were left out, those that the numbering leaves out, and those that nothing is learned from."""
+    return (*_dropped(sequence), *_missing(sequence), *_further(sequence))
+
+
+def _further(sequence: Sequence) -> tuple[str, ...]:
+    """How many frames are posed alone."""
+    if not (more := sequence.further):
+        return ()
+    learned = sequence.learned
+    those = f"frame {more[0]} is" if len(more) == 1 else f"{len(more)} other frames ({more[0]} to {more[-1]}) are"
+    return (f"the body is learned from {len(learned)} frames ({learned[0]} to {learned[-1]}); {those} posed by it",)
 
 
 def _dropped(sequence: Sequence) -> tuple[str, ...]:

@@ -69,3 +69,28 @@ def test_frames_that_were_left_out_are_named_with_the_reason_and_are_no_gap():
     made = sequence(given, SequenceParams())
     assert (made.frames, [bad.frame for bad in made.dropped]) == ((0, 1, 3), [2, 4])
     assert remarks(made) == ("2 of 5 frames were left out of everything: frame 2: empty; frame 4: torn",)
+
+
+def test_a_selection_says_which_frames_the_body_is_learned_from():
+    made = sequence(frames(*[(None, None)] * 6, start=3), SequenceParams(learn_from=":7"))
+    assert (made.frames, made.learned, made.further) == ((3, 4, 5, 6, 7, 8), (3, 4, 5, 6), (7, 8))
+    assert (made.selected(), made.members("further", ()), made.members("further/frame", (8,))) == ((3, 4, 5, 6), (7, 8), (8,))
+    all_of_them = sequence(frames(*[(None, None)] * 6), SequenceParams())
+    assert (all_of_them.learned, all_of_them.members("further", ())) == (all_of_them.frames, ())
+
+
+def test_a_selection_of_one_frame_or_none_is_refused():
+    with pytest.raises(
+        SourceError, match=r"sequence\.learn_from: '0:1' selects frame 0 alone; a body is learned from its motion"
+    ):
+        sequence(frames(*[(None, None)] * 6), SequenceParams(learn_from="0:1"))
+    with pytest.raises(SourceError, match="'9:12' selects none of the 6 frames of the sequence"):
+        sequence(frames(*[(None, None)] * 6), SequenceParams(learn_from="9:12"))
+
+
+def test_further_frames_are_told():
+    told = {"frames": tuple(range(8)), "fps": None, "unit": None}
+    assert remarks(Sequence(**told, further=(6, 7))) == (
+        "the body is learned from 6 frames (0 to 5); 2 other frames (6 to 7) are posed by it",
+    )
+    assert remarks(Sequence(**told, further=(7,))) == ("the body is learned from 7 frames (0 to 6); frame 7 is posed by it",)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from volumetric import volumetric
 
-from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.paper_2009.node_clusters import NodeClustersParams
 from kinetree.tasks.paper_2009.graph_skeleton import graph_skeleton
@@ -42,12 +41,9 @@ def test_removal_cost_of_the_clusters_holds_for_their_motions_too() -> None:
     clusters = {0: node_clusters((0,), here.initial_model[0], here.graph_deformation, dear)}
     one = integrated_structure(here.initial_frames, here.initial_model, clusters, here.similarity)
     assert one.removal_cost == 10.0
-    sequence = Sequence(frames=tuple(here.mesh), fps=25.0, unit="mm")
     costs: tuple[dict[str, float], ...] = ({}, {"removal_cost": 10.0})
     same, other = (
-        graph_skeleton(
-            here.integrated_structure.model_copy(update=cost), here.graph_motion, here.mesh, sequence, GraphSkeletonParams()
-        )
+        graph_skeleton(here.integrated_structure.model_copy(update=cost), here.graph_motion, here.mesh, GraphSkeletonParams())
         for cost in costs
     )
     assert same == here.tree != other

@@ -6,18 +6,21 @@ from typing import Any
 from stepwise import walk
 
 from kinetree.pipeline import views
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 
 
-def told(uncovered: list[float], unreliable: list[float] | None = None, first: int = 10) -> FrameConfidence:
+def told(
+    uncovered: list[float], unreliable: list[float] | None = None, first: int = 10, further: tuple[int, ...] = ()
+) -> FrameConfidence:
     shares = unreliable or [0.0] * len(uncovered)
     frames: Any = {
         first + t: SimpleNamespace(uncovered=u, unreliable=d, distance=0.01)
         for t, (u, d) in enumerate(zip(uncovered, shares, strict=True))
     }
     mesh: Any = {frame: SimpleNamespace(cleaning=SimpleNamespace(area=4.0)) for frame in frames}
-    return frame_confidence(frames, mesh)
+    return frame_confidence(frames, mesh, Sequence(frames=tuple(frames), fps=None, unit=None, further=further))
 
 
 def test_even_alignment_has_no_outliers_and_says_nothing() -> None:
@@ -42,3 +45,9 @@ def test_limb_that_is_not_seen_is_reported_where_the_frame_is_an_inlier() -> Non
 def test_aligned_walk_has_no_outliers() -> None:
     assert walk().frame_confidence.inlier.all()
     assert views.remarks(walk().frame_confidence) == ()
+
+
+def test_further_frames_are_compared_with_those_that_the_body_is_learned_from() -> None:
+    shares = [0.001, 0.001, 0.001, 0.03, 0.03, 0.03, 0.03]
+    assert told(shares).inlier.all()
+    assert told(shares, further=(13, 14, 15, 16)).inlier.tolist() == [True] * 3 + [False] * 4

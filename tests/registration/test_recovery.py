@@ -49,3 +49,8 @@ def test_usual_share_is_the_smallest_but_for_the_reference() -> None:
     made = walk()
     others = [t.uncovered for frame, t in made.tracking.items() if frame != made.reference.frame]
     assert made.recovery.usual == min(others)
+
+
+def test_frame_that_nothing_is_learned_from_keeps_its_tracked_pose() -> None:
+    made = walk()
+    assert made.recovery.row(max(made.mesh) + 1) is None

@@ -1,12 +1,13 @@
-"""Contract of reference: a frame free of contact, the order outwards from it, and words where there is no good one."""
+"""Contract of reference: a frame free of contact, or the one that is named, and words where there is no good one."""
 
 import numpy as np
 import pytest
 
+from kinetree.errors import SourceError
 from kinetree.pipeline import views
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
-from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.registration.reference import Reference, ReferenceParams
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.mu_histogram import MuHistogram
@@ -40,7 +41,13 @@ def same() -> MuHistogram:
 
 
 def chosen(
-    leaves: list[int], *, fixed: bool = False, bent: list[float] | None = None, loop: float = 0.0, first: int = 0
+    leaves: list[int],
+    *,
+    fixed: bool = False,
+    bent: list[float] | None = None,
+    loop: float = 0.0,
+    first: int = 0,
+    frame: int | None = None,
 ) -> Reference:
     frames = range(first, first + len(leaves))
     angles = bent or [0.5] * len(leaves)
@@ -51,6 +58,7 @@ def chosen(
         tips={t: seen(n, a, loop) for t, n, a in zip(frames, leaves, angles, strict=True)},
         leaves=followed(leaves),
         connectivity=Connectivity(fixed=fixed, first_change=None if fixed else first + 1, vertices=4, faces=4),
+        params=ReferenceParams(frame=frame),
     )
 
 
@@ -66,10 +74,17 @@ def test_pose_amid_the_others_goes_before_a_remote_one() -> None:
     assert chosen([5] * 5, bent=[0.5, 0.5, 1.5, 0.5, 0.5]).frame in (1, 3)
 
 
-def test_frames_are_reached_outwards_in_both_directions() -> None:
-    told = chosen([5] * 5, first=3)
-    assert told.frame == 5
-    assert [told.previous(t) for t in range(3, 8)] == [4, 5, None, 5, 6]
+def test_a_frame_that_is_named_is_the_reference_whatever_its_score() -> None:
+    leaves = [4, 4, 4, 5, 5, 5, 5, 5, 4, 4]
+    told = chosen(leaves, first=10, frame=11)
+    assert (told.frame, told.free, told.leaves) == (11, False, 5)
+    assert np.array_equal(told.vertices, V + 11)
+    assert np.array_equal(told.score, chosen(leaves, first=10).score)
+
+
+def test_a_frame_that_nothing_is_learned_from_cannot_be_the_reference() -> None:
+    with pytest.raises(SourceError, match=r"reference\.frame: frame 9 is none of the 4 frames .* which are 10 to 13"):
+        chosen([5] * 4, first=10, frame=9)
 
 
 def test_contact_in_every_frame_gives_the_least_bad_one_and_says_so() -> None:
@@ -91,9 +106,8 @@ def test_fewer_than_three_limbs_are_enough_and_the_run_says_so(leaves: int, word
 
 
 def test_one_or_two_frames_have_a_reference() -> None:
-    assert chosen([5]).previous(0) is None
+    assert chosen([5]).frame == 0
     two = chosen([5, 5])
-    assert sorted((two.previous(0), two.previous(1)), key=str) == [two.frame, None]
     assert any(text.startswith("only two frames; joints that do not turn between them") for text in views.remarks(two))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
-from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.structure.skeleton import ArticulatedBody, Skeleton
 
 RINGS = 6
 
@@ -40,7 +40,7 @@ def tree_of(skeleton: Skeleton) -> KinematicTree:
     below = [k for k, j in enumerate(carriers) if parents[j] >= 0]
     count = len(carriers)
     pair = np.array([*([carriers.index(parents[carriers[k]]), k] for k in below), [0, count]], np.int32)
-    fields = {name: getattr(skeleton, name) for name in Skeleton.model_fields}
+    fields = {name: getattr(skeleton, name) for name in ArticulatedBody.model_fields}
     return KinematicTree(
         **fields, uncertain=np.zeros(len(skeleton.frames), bool), pair=pair,
         centre=skeleton.rest[[*(carriers[k] for k in below), 0]], border_drift=np.full(len(pair), 0.01),

@@ -7,7 +7,6 @@ import pytest
 from articulated import Known, chain, swings, three_arms
 from pydantic import ValidationError
 
-from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
@@ -36,7 +35,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
     reference = Reference(
         frames=frames, frame=FIRST + 2, vertices=body.V, faces=body.F,
         size=float(np.sqrt(body.area.sum())), fixed=True, leaves=len(tips), free=True,
-        score=np.zeros(count), before=np.array([1, 2, -1, *range(2, count - 1)]),
+        score=np.zeros(count),
     )  # fmt: skip
     parts = rigid(body, frames)
     zero, one = np.zeros(len(body.V)), np.ones(len(body.V))
@@ -49,8 +48,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
         frames=frames, rows=np.zeros((len(tips), count), int), positions=positions, kept=np.ones((1, len(tips)), bool),
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
-    sequence = Sequence(frames=frames, fps=25.0, unit="mm")
-    return kinematic_tree(reference, parts, aligned, {}, leaves, sequence, KinematicTreeParams(**params))
+    return kinematic_tree(reference, parts, aligned, {}, leaves, KinematicTreeParams(**params))
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

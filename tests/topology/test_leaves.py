@@ -61,3 +61,11 @@ def test_body_without_tips_has_no_leaves() -> None:
     assert told.kept.shape == (1, 0)
     literal = leaves({n: seen() for n in range(FRAMES)}, cut(11), LeavesParams(method="nearest"))
     assert literal.rows.shape == (0, FRAMES)
+
+
+def test_in_a_frame_in_which_none_were_followed_no_leaf_is_known() -> None:
+    told = leaves({t: seen((0, 0, 1), (0, 1, 0)) for t in (3, 4, 5)}, cut(2), LeavesParams())
+    assert (told.at(4) == told.positions[:, 1]).all()
+    assert told.seen(4).tolist() == [True, True]
+    assert np.isnan(told.at(6)).all()
+    assert told.seen(6).tolist() == [False, False]

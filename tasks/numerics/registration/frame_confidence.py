@@ -42,16 +42,19 @@ def stretches(rest: Floats, x: Floats, F: Ints) -> Floats:
     return _stretches(rest, x, start, ring)
 
 
-def inliers(uncovered: Floats, residual: Floats, settings: FrameConfidenceSettings | None = None) -> Flags:
+def inliers(
+    uncovered: Floats, residual: Floats, settings: FrameConfidenceSettings | None = None, usual: Flags | None = None
+) -> Flags:
     """Frames that the alignment explains: no more uncovered than the others, and no farther away (ours).
 
     uncovered : (frame,) share of each frame that the body does not explain
     residual  : (frame,) median distance of the body to each frame's surface, any unit
+    usual     : (frame,) the frames with which all are compared; None takes all
     returns   : (frame,) False for frames that stand out
     """
     settings = settings or FrameConfidenceSettings()
-    near = residual <= settings.residual * np.median(residual)
-    return ~failures(uncovered) & near & (uncovered <= settings.uncovered)
+    near = residual <= settings.residual * np.median(residual if usual is None else residual[usual])
+    return ~failures(uncovered, usual=usual) & near & (uncovered <= settings.uncovered)
 
 
 @compiled

@@ -70,15 +70,17 @@ def recovery(
     return Recovery(failed, usual, recovered)
 
 
-def failures(uncovered: Floats, settings: RecoverySettings | None = None) -> Flags:
+def failures(uncovered: Floats, settings: RecoverySettings | None = None, usual: Flags | None = None) -> Flags:
     """Frames that stand out: u > median + max(4 MAD, margin) (ours).
 
     uncovered : (frame,) share of each frame that the body leaves uncovered
+    usual     : (frame,) the frames whose median and deviation count; None takes all
     returns   : (frame,)
     """
     settings = settings or RecoverySettings()
-    median = float(np.median(uncovered))
-    deviation = float(np.median(np.abs(uncovered - median)))
+    among = uncovered if usual is None else uncovered[usual]
+    median = float(np.median(among))
+    deviation = float(np.median(np.abs(among - median)))
     return uncovered > max(median + settings.deviations * deviation, median + settings.margin)
 
 

@@ -55,6 +55,7 @@ def reference(
     profile: Floats,
     stems: Floats,
     settings: ReferenceSettings | None = None,
+    frame: int | None = None,
 ) -> Reference:
     """The frame with most leaves; among those one of large area, few handles, a pose near all others, in the middle (ours).
 
@@ -66,6 +67,7 @@ def reference(
     area    : (frame,) mesh unit²
     profile : (frame, quantile) quantiles over the surface of μ / area^1.5, by which another body is recognised
     stems   : (leaf, frame, station, xyz) points along the limbs, mesh unit, which show how limbs are bent; NaN where not seen
+    frame   : position of the frame that is taken whatever its score; None takes the best
     returns : Reference; ties go to the frame nearest to the middle, then to the earlier one
     """
     settings = settings or ReferenceSettings()
@@ -79,7 +81,7 @@ def reference(
     pose = settings.pose * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
     aside = settings.aside * distance / max(len(count), settings.short)
     score = 1.0 - missing - lack**2 / settings.area - settings.handle * handles - pose - aside - np.where(own, 0.0, far)
-    frame = int(np.lexsort((distance, -np.round(score, 9)))[0])
+    frame = int(np.lexsort((distance, -np.round(score, 9)))[0]) if frame is None else frame
     return Reference(frame, bool(missing[frame] == 0), score)
 
 

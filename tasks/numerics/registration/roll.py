@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
 
 class RollSettings(NamedTuple):
@@ -51,6 +51,23 @@ def chosen_rolls(angle: Floats, misfit: Floats, reference: int, settings: RollSe
         clear = roll > settings.clear
         if clear.sum() >= settings.frames and _is_clearly_better(angle[clear, k], misfit[clear, k], path[clear], settings):
             out[:, k] = np.where(roll > settings.least, path, -1)
+    return out
+
+
+def frame_rolls(angle: Floats, misfit: Floats, rolls: Flags, settings: RollSettings | None = None) -> Ints:
+    """Which candidate every limb takes in one frame by itself, of limbs that are known to roll (ours).
+
+    angle, misfit : (limb, candidate) as in `chosen_rolls`
+    rolls         : (limb,) limbs that rolled clearly in other frames; of others noise would pick the roll
+    returns       : (limb,) candidates, −1 where the limb stays
+    """
+    settings = settings or RollSettings()
+    out = np.full(len(angle), -1, dtype=np.int64)
+    for k in np.flatnonzero(rolls):
+        best = misfit[k].argmin(keepdims=True)
+        is_clear = abs(angle[k, best[0]]) > settings.clear
+        if is_clear and _is_clearly_better(angle[k : k + 1], misfit[k : k + 1], best, settings):
+            out[k] = best[0]
     return out
 
 

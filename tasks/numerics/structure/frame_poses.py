@@ -49,6 +49,7 @@ def frame_poses(
     parents: Ints,
     confidence: Floats | None = None,
     settings: FramePosesSettings | None = None,
+    expected: Floats | None = None,
 ) -> FramePoses:
     """Fits the finished body to every frame.
 
@@ -58,6 +59,8 @@ def frame_poses(
     start      : joints, and poses to start from
     parents    : (part,) −1 for the root
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
+    expected   : (frame, part, 3, 3) rotation against its parent at which a part is held that a frame does not show; None
+                 interpolates between the frames that do
     """
     chosen = settings or FramePosesSettings()
     share = area / area.sum()
@@ -67,8 +70,8 @@ def frame_poses(
         motion = fitted(sums(V[sample], x[:, sample], W[sample], parents, mass), start, parents)
     else:
         s = sums(V[sample], x[:, sample], W[sample], parents, mass * np.maximum(confidence[:, sample], 1e-6))
-        free = fitted(s, start, parents, _prior(start, V, label, share, parents, seen, chosen))
-        motion = fitted(s, free, parents, _prior(free, V, label, share, parents, seen, chosen))
+        free = fitted(s, start, parents, _prior(start, V, label, share, parents, seen, chosen, expected))
+        motion = fitted(s, free, parents, _prior(free, V, label, share, parents, seen, chosen, expected))
     weight = np.ones(x.shape[:2]) if confidence is None else confidence
     square = weight * ((predicted(V, W, motion, parents) - x) ** 2).sum(axis=2)
     error = np.sqrt(
@@ -131,13 +134,23 @@ def interpolated(turn: Floats, known: Flags) -> Floats:
 
 
 def _prior(
-    motion: Motion, V: Floats, label: Ints, area: Floats, parents: Ints, seen: Floats, chosen: FramePosesSettings
+    motion: Motion,
+    V: Floats,
+    label: Ints,
+    area: Floats,
+    parents: Ints,
+    seen: Floats,
+    chosen: FramePosesSettings,
+    expected: Floats | None = None,
 ) -> PosePrior:
     """Each part's rotation from frames that saw it and its parent, held as firmly as its own surface would hold it."""
     turn = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)
     turn[:, 0] = motion.R[:, 0]
     both = np.minimum(seen, seen[:, np.maximum(parents, 0)])
     reach = np.bincount(label, area * ((V - motion.rest[label]) ** 2).sum(axis=1), len(parents))
+    if expected is not None:
+        wanted = np.where((both >= chosen.seen)[:, :, None, None], turn, expected)
+        return PosePrior(wanted, chosen.hold * reach * (1.0 - both) ** 2)
     wanted = np.stack([interpolated(turn[:, a], both[:, a] >= chosen.seen) for a in range(len(parents))], axis=1)
     return PosePrior(wanted, chosen.hold * reach * (1.0 - both) ** 2)
 

@@ -86,8 +86,7 @@ def scene(
         "input_face_spans": _spans([len(m.faces) for m in shown]),
     }
     if len(leaves.positions):
-        at = [leaves.frames.index(frame) for frame in frames]
-        arrays["leaves"] = (leaves.positions[:, at].transpose(1, 0, 2) @ axes).astype(np.float32)
+        arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
     layout, block = packed(arrays)
     description = {
         **_tree(skeleton),
@@ -98,7 +97,7 @@ def scene(
         "centre": positions.mean(axis=(0, 1)).tolist(),
         "low": lattice.low.tolist(),
         "scale": lattice.scale,
-        "intervals": _starts(intervals, skeleton.frames, selected_frames),
+        "intervals": _starts(intervals, frames),
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
@@ -159,12 +158,13 @@ def _spans(counts: list[int]) -> NDArray[np.uint32]:
     return np.array(spans[1:], np.uint32)
 
 
-def _starts(intervals: Intervals, frames: tuple[int, ...], selected_frames: Ints) -> list[dict[str, int]]:
+def _starts(intervals: Intervals, frames: list[int]) -> list[dict[str, int]]:
     """First and last frame of each interval, and the position of the first among the frames that are shown."""
     starts = []
-    for begin, end in zip(intervals.begin, intervals.end, strict=True):
-        at = int(np.searchsorted(selected_frames, begin))
-        starts.append({"at": min(at, len(selected_frames) - 1), "begin": frames[int(begin)], "end": frames[int(end)]})
+    for row in zip(intervals.begin, intervals.end, strict=True):
+        begin, end = (intervals.frames[int(t)] for t in row)
+        at = int(np.searchsorted(frames, begin))
+        starts.append({"at": min(at, len(frames) - 1), "begin": begin, "end": end})
     return starts
 
 

@@ -51,11 +51,9 @@ def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def _draw_leaves(axes: "Axes", leaves: Any, frame: int, axis: Floats) -> None:
     """The leaves of one frame with their numbers; hollow where the position is interpolated."""
-    at = leaves.frames.index(frame)
-    for leaf, position in enumerate(leaves.positions[:, at]):
+    for leaf, (position, is_seen) in enumerate(zip(leaves.at(frame), leaves.seen(frame), strict=True)):
         if not np.isnan(position).any():
             x, y, _ = position @ axis
-            is_seen = leaves.rows[leaf, at] >= 0
             colour = COLOURS[leaf % len(COLOURS)]
             axes.plot(x, y, "o", ms=7, color=colour if is_seen else "none", mec="white" if is_seen else colour)
             axes.annotate(

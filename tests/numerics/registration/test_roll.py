@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kinetree.tasks.numerics.registration.roll import chosen_rolls
+from kinetree.tasks.numerics.registration.roll import chosen_rolls, frame_rolls
 
 FRAMES, TURNS, REFERENCE = 20, 12, 4
 
@@ -74,3 +74,11 @@ def test_time_may_run_either_way_and_limbs_do_not_know_each_other():
 def test_a_body_without_limbs_and_one_frame_alone_are_served():
     assert chosen_rolls(np.zeros((FRAMES, 0, TURNS)), np.zeros((FRAMES, 0, TURNS)), REFERENCE).shape == (FRAMES, 0)
     assert (chosen_rolls(np.zeros((1, 2, TURNS)), np.ones((1, 2, TURNS)), 0) == -1).all()
+
+
+def test_in_one_frame_only_limbs_that_are_known_to_roll_take_the_candidate_that_clearly_fits_better():
+    angle = np.radians([[0.0, 30.0, 60.0, 90.0, 180.0]] * 4)
+    clear = [0.5, 0.4, 0.1, 0.4, 0.5]
+    misfit = np.array([clear, clear, [0.5, 0.5, 0.5, 0.5, 0.48], [0.1, 0.3, 0.4, 0.5, 0.5]])
+    assert frame_rolls(angle, misfit, np.array([True, False, True, True])).tolist() == [2, -1, -1, -1]
+    assert frame_rolls(angle[:0], misfit[:0], np.zeros(0, bool)).tolist() == []

@@ -1,0 +1,70 @@
+"""The finished body posed in one frame by itself, held as in a known frame where little is seen (2014, Sec. 7.3; ours)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.structure.articulated_fit import Motion
+from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, relative_rotations
+from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
+from kinetree.tasks.numerics.structure.pose_refinement import KnownPoses
+
+
+class FurtherPose(NamedTuple):
+    """A frame's pose.
+
+    pose       : rotations of all parts and the root's joint
+    confidence : (part,) 0 to 1, as in `frame_poses`
+    seen       : (part,) whether most of it and of its parent was certain
+    """
+
+    pose: FramePose
+    confidence: Floats
+    seen: Flags
+
+
+def further_pose(body: SkinnedBody, x: Floats, confidence: Floats | None, known: KnownPoses, distance: Ints) -> FurtherPose:
+    """The pose that the aligned vertices show.
+
+    body       : as it was learned
+    x          : (vertex, xyz) where each vertex is aligned to, mesh unit
+    confidence : (vertex,) 0 to 1; None where every vertex was followed
+    known      : poses of the frames that the body was learned from
+    distance   : (frame,) how far each of these is in time; a part that is not seen is held as in the nearest that saw it
+    """
+    parts = len(body.parents)
+    area = Surface.of(body.V, body.F).area
+    W = np.zeros((len(body.V), parts))
+    np.add.at(W, (np.arange(len(W))[:, None], body.bound), body.weight)
+    weight = np.ones(len(x)) if confidence is None else np.maximum(confidence, 1e-6)
+    start = _rigid_parts(body, x, area * weight)
+    above = np.maximum(body.parents, 0)
+    expected = _nearest_turns(known, body.parents, distance)
+    rows = None if confidence is None else confidence[None]
+    found = frame_poses(body.V, x[None], area, body.label, W, start, body.parents, rows, expected=expected)
+    share = confident_share(body.label, area, rows, 1, parts)[0]
+    root = found.motion.x[0] + found.motion.R[0, 0] @ body.rest[0]
+    seen = np.minimum(share, share[above]) >= FramePosesSettings().seen
+    return FurtherPose(FramePose(found.motion.R[0], root), found.confidence[0], seen)
+
+
+def _rigid_parts(body: SkinnedBody, x: Floats, weight: Floats) -> Motion:
+    """Every part where its own vertices are: where a fit starts."""
+    R = np.empty((1, len(body.parents), 3, 3))
+    shift = np.zeros(3)
+    for p in range(len(body.parents)):
+        mine = body.label == p
+        R[0, p], t = rigid_motion(body.V[mine], x[mine], weight[mine]) if mine.any() else (R[0, body.parents[p]], shift)
+        shift = t if p == 0 else shift
+    return Motion(body.rest, R, shift[None])
+
+
+def _nearest_turns(known: KnownPoses, parents: Ints, distance: Ints) -> Floats:
+    """(1, part, 3, 3) rotation of each part against its parent in the nearest frame that saw both; the nearest if none did."""
+    turn = relative_rotations(known.R, parents)
+    sure = np.minimum(known.confidence, known.confidence[:, np.maximum(parents, 0)])
+    far = np.where(sure >= FramePosesSettings().seen, 0, distance.max() + 1) + distance[:, None]
+    return turn[far.argmin(axis=0), np.arange(len(parents))][None]

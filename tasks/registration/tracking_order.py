@@ -1,0 +1,18 @@
+"""The order in which frames are reached from the reference."""
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.registration.tracking_order import TrackingOrder
+from kinetree.tasks.numerics.registration import tracking_order as numerics
+
+
+@task()
+def tracking_order(reference: Reference, sequence: Sequence) -> TrackingOrder:
+    """Orders the frames outwards from the reference; frames that nothing is learned from hang on to that tree (ours)."""
+    frames = sequence.frames
+    learned = np.isin(frames, reference.frames)
+    before = numerics.tracking_order(learned, frames.index(reference.frame))
+    return TrackingOrder(frames=frames, before=np.full(len(frames), -1) if reference.fixed else before)

@@ -1,0 +1,37 @@
+"""Laws of the pose in one frame by itself."""
+
+import numpy as np
+from fitting import FRAMES, arms, true
+
+from kinetree.tasks.numerics.structure.further_pose import further_pose
+from kinetree.tasks.numerics.structure.pose_refinement import KnownPoses
+
+KNOWN, BODY = arms()
+POSES = KnownPoses(KNOWN.R[:10], np.ones((10, 4)))
+BEHIND = np.arange(10, 0, -1)
+
+
+def degrees(R: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """(part,) angle between rotations."""
+    cosine = (np.einsum("pxy,pxy->p", R, true) - 1.0) / 2.0
+    return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def test_exact_vertices_give_the_exact_pose() -> None:
+    for frame in (10, FRAMES - 1):
+        found = further_pose(BODY, KNOWN.x[frame], None, POSES, BEHIND)
+        assert degrees(found.pose.R, KNOWN.R[frame]).max() < 0.01
+        np.testing.assert_allclose(found.pose.x, true(KNOWN, frame).x, atol=1e-4)
+        assert found.seen.all()
+        assert found.confidence.min() > 0.99
+
+
+def test_a_part_that_is_not_seen_is_held_as_in_the_nearest_frame_that_saw_it() -> None:
+    confidence = np.where(KNOWN.label == 2, 0.0, 1.0)
+    spoilt = KNOWN.x[12] + 8.0 * (KNOWN.label == 2)[:, None]
+    known = POSES._replace(confidence=np.where(np.arange(10)[:, None] == 9, np.where(np.arange(4) == 2, 0.1, 1.0), 1.0))
+    found = further_pose(BODY, spoilt, confidence, known, BEHIND)
+    assert found.seen.tolist() == [True, True, False, True]
+    held = KNOWN.R[12, 0] @ KNOWN.R[8, 0].T @ KNOWN.R[8, 2]  # frame 9 did not see it
+    assert degrees(found.pose.R, np.stack([*KNOWN.R[12, :2], held, KNOWN.R[12, 3]])).max() < 1.0
+    assert found.confidence[2] < 0.01 < 0.99 < found.confidence[1]
