@@ -186,9 +186,10 @@ def test_every_numeric_file_is_tried_by_laws() -> None:
 
 
 def unread(graph: Graph) -> set[str]:
-    """Artifacts that no other task of the graph reads, that no plot draws and that leave nothing in the output folder."""
+    """Artifacts that no other task of the graph reads or goes by, that no plot draws and that leave nothing in the output folder."""
     drawn = {name for path in PLOTTED for name in re.findall(r'fetch\("(\w+)"', path.read_text())}
     read = {a.artifact for task in graph.tasks for a in task.arguments if not issubclass(task.returns, a.artifact)}
+    read |= {told for task in graph.tasks for told in (task.along, task.among) if told}
     left = [views.leaves_files, views.group_name, views.page_name]
     stored = {t.returns for t in graph.tasks if t.name not in drawn and not any(leaves(t.returns) for leaves in left)}
     return {artifact.__name__ for artifact in stored if not any(issubclass(artifact, r) for r in read)}

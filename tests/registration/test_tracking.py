@@ -25,7 +25,7 @@ def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbou
     for t, here in made.tracking.items():
         assert here.steps == abs(t - made.reference.frame)
         if here.steps > 0:
-            before = made.tracking[made.reference.previous(t)]
+            before = made.tracking[made.tracking_order.previous(t)]
             assert np.array_equal(here.earlier_rotation, before.rotation)
             assert np.array_equal(here.earlier_translation, before.translation)
 
@@ -44,7 +44,7 @@ def test_usual_is_the_least_uncovered_on_the_way_but_for_the_reference() -> None
         on_the_way, at = [], t
         while at != made.reference.frame:
             on_the_way.append(made.tracking[at].uncovered)
-            at = made.reference.previous(at)
+            at = made.tracking_order.previous(at)
         assert here.usual == min(on_the_way, default=0.0)
 
 
@@ -56,7 +56,12 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
     turned = np.array(meshes[strange].vertices) @ np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
     meshes[strange] = meshes[strange].model_copy(update={"vertices": turned + 0.3 * made.reference.size})
     again = along(
-        tracking, made.reference, list(meshes), mesh=meshes, deformation_graph=made.deformation_graph, params=TrackingParams()
+        tracking,
+        made.tracking_order,
+        list(meshes),
+        mesh=meshes,
+        deformation_graph=made.deformation_graph,
+        params=TrackingParams(),
     )
     assert again[strange].uncovered > 0.1
     assert again[last].uncovered < 0.1
@@ -80,7 +85,9 @@ def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
     monkeypatch.setattr(numeric_recovery, "tracking", listening)
-    first = along(tracking, made.reference, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS)
+    first = along(
+        tracking, made.tracking_order, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS
+    )
     assert not np.array_equal(first[0].translation, made.tracking[0].translation)
     poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.tracking.items()}
     count, poses[3] = len(fits), poses[3].model_copy(update={"uncovered": 0.9})

@@ -16,7 +16,7 @@ def told(V: np.ndarray, F: np.ndarray, x: np.ndarray, **params: float) -> RigidP
     frames = tuple(range(FIRST, FIRST + len(x)))
     reference = Reference(
         frames=frames, frame=FIRST + 2, vertices=V, faces=F, size=1.0, fixed=True, leaves=0, free=True,
-        score=np.zeros(len(x)), before=np.array([1, 2, -1, *range(2, len(x) - 1)]),
+        score=np.zeros(len(x)),
     )  # fmt: skip
     zero, one = np.zeros(len(V)), np.ones(len(V))
     aligned = {
