@@ -186,7 +186,7 @@ def test_every_numeric_file_is_tried_by_laws() -> None:
 
 
 def unread(graph: Graph) -> set[str]:
-    """Artifacts that no other task of the graph reads or goes by, that no plot draws and that leave nothing in the output folder."""
+    """Artifacts that no task of the graph reads or goes by, that no plot draws and that leave nothing in the output folder."""
     drawn = {name for path in PLOTTED for name in re.findall(r'fetch\("(\w+)"', path.read_text())}
     read = {a.artifact for task in graph.tasks for a in task.arguments if not issubclass(task.returns, a.artifact)}
     read |= {told for task in graph.tasks for told in (task.along, task.among) if told}
@@ -201,6 +201,6 @@ def test_every_artifact_has_a_reader(method: str) -> None:
 
 
 def test_artifact_that_nobody_reads_is_named() -> None:
-    assert unread(Graph.of(INPUT)) == {"Sequence", "Connectivity"}
+    assert unread(Graph.of(INPUT)) == {"Connectivity"}
     without_report = [task for task in METHODS["mesoscopic"].tasks if task.name != "report"]
     assert {"FrameConfidence", "StructureFigures"} <= unread(Graph.of(without_report))
