@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from kinetree.errors import ConfigError
+from kinetree.errors.small_text import small_text
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.yaml_text import parsed
 
 SAVED = "config.yaml"
 """Name under which a run leaves its configuration in its output folder."""
+LARGEST = 4 * 2**20
+"""Bytes of a configuration that is read."""
 Paths = Mapping[str, frozenset[tuple[str, ...]]]
 
 
@@ -124,7 +127,12 @@ def compute_block(blocks: Mapping[str, Any], reading: Reading) -> Any:
 
 
 def expanded(path: str | Path) -> Path:
-    """The path with ~ replaced; one that names no user's home is a name like any other."""
+    """The path with ~ replaced; one that names no user's home is a name like any other.
+
+    raises : ConfigError where it has a NUL byte, which no path can have
+    """
+    if "\0" in str(path):
+        raise ConfigError(f"{str(path)!r}: not a path: it has a NUL byte")
     try:
         return Path(path).expanduser()
     except RuntimeError:
@@ -138,10 +146,7 @@ def _yaml_names(folder: Traversable | None) -> list[str]:
 def _file(path: Any, seen: tuple[str, ...], reading: Reading) -> tuple[dict[str, Any], str]:
     if str(path) in seen:
         raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
-    try:
-        blocks = parsed(path.read_text(encoding="utf-8"), str(path))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read: {error}") from None
+    blocks = parsed(small_text(path, ConfigError, LARGEST), str(path))
     if blocks is not None and not isinstance(blocks, dict):
         raise ConfigError(f"{path}: expected keys with values at the top, got {type(blocks).__name__}")
     base = path.absolute().parent if isinstance(path, Path) else Path.cwd()

@@ -4,7 +4,6 @@ import asyncio
 import concurrent.futures
 import contextlib
 import importlib
-import json
 import logging
 import signal
 import time
@@ -17,9 +16,11 @@ from typing import Any
 from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, performance_report
 
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
+from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.config import Compute
 
 CONNECT_SECONDS = 10
+SCHEDULER_FILE_BYTES = 2**20
 ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
 FOLLOW_SECONDS = 0.25
@@ -99,9 +100,8 @@ def at(compute: Compute) -> Iterator[Client]:
     """A scheduler that somebody else runs; raises ClusterError where nobody answers."""
     asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
     try:
-        address = compute.scheduler or json.loads(Path(str(compute.scheduler_file)).read_text())["address"]
-        client = Client(address, timeout=CONNECT_SECONDS)
-    except (ValueError, KeyError) as error:
+        client = Client(compute.scheduler or _left_address(Path(str(compute.scheduler_file))), timeout=CONNECT_SECONDS)
+    except (ValueError, KeyError, TypeError) as error:
         raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
     except (OSError, TimeoutError) as error:
         raise ClusterError(
@@ -110,6 +110,13 @@ def at(compute: Compute) -> Iterator[Client]:
         ) from error
     with client:
         yield client
+
+
+def _left_address(file: Path) -> str:
+    """What a scheduler left in its file; raises OSError where the file is not there yet."""
+    file.stat()
+    held = small_json(small_text(file, ConfigError, SCHEDULER_FILE_BYTES), str(file), ConfigError)
+    return str(held["address"])
 
 
 @contextlib.contextmanager

@@ -6,6 +6,7 @@ from typing import Any
 import yaml
 
 from kinetree.errors import ConfigError
+from kinetree.errors.small_text import BoundedLoader, small_yaml
 
 _INT = "tag:yaml.org,2002:int"
 _FLOAT = "tag:yaml.org,2002:float"
@@ -14,7 +15,7 @@ _POINT = re.compile(r"[-+]?(?:[0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+
                     r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")  # fmt: skip
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(BoundedLoader):
     """Plain values only, each key once; numbers as in YAML 1.2."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
@@ -40,16 +41,6 @@ _Loader.add_implicit_resolver(_FLOAT, re.compile(f"^(?:{_POINT.pattern})$"), lis
 def parsed(text: str, where: str) -> Any:
     """The plain value that a YAML text holds.
 
-    raises : ConfigError with the line, where it is no YAML, asks for anything but plain values, or is nested beyond reason
+    raises : ConfigError with the line, where it is no YAML, asks for anything but plain values, or is too large or deep
     """
-    try:
-        return yaml.load(text, Loader=_Loader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
-        problem = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise ConfigError(f"{where}{line}: not valid YAML: {problem}") from None
-    except RecursionError:
-        raise ConfigError(f"{where}: not a configuration: its values are nested too deeply") from None
-    except ValueError as error:
-        raise ConfigError(f"{where}: not valid YAML: {error}; put texts that look like dates or numbers in quotes") from None
+    return small_yaml(text, where, ConfigError, _Loader)

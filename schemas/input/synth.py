@@ -50,7 +50,7 @@ class SynthParams(Params):
     """How many frames."""
     fps: float | None = Field(default=None, gt=0)
     """Frames a second; None takes the figure's own."""
-    vertices: int = Field(default=3000, ge=100)
+    vertices: int = Field(default=3000, ge=100, le=500_000)
     """Vertices of a frame, within about a tenth."""
     contacts: tuple[ContactParams, ...] = ()
     """Which limb touches what, when; there the surface's topology changes."""

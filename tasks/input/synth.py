@@ -3,6 +3,7 @@
 import importlib.resources
 import json
 import os
+import reprlib
 import shutil
 from dataclasses import fields
 from functools import lru_cache
@@ -11,15 +12,17 @@ from typing import Any
 
 import numpy as np
 import trimesh
-import yaml
 
 from kinetree.errors import ConfigError, FigureError
+from kinetree.errors.small_text import small_text, small_yaml
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure, named
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 
 FIGURES = importlib.resources.files("kinetree.configs") / "figures"
+LARGEST = 4 * 2**20
+"""Bytes of a figure's file that is read."""
 
 
 def recipe(params: SynthParams) -> str:
@@ -92,8 +95,9 @@ def _description(params: SynthParams) -> dict[str, Any]:
         return _read(Path(params.file))
     kind, colon, seed = params.figure.partition(":")
     if kind == "random" and colon:
-        if not (seed.isascii() and seed.isdigit()):
-            raise FigureError(f"figure {params.figure!r}: write random:SEED with a whole number, e.g. random:7")
+        if not (seed.isascii() and seed.isdigit() and len(seed) <= 18):
+            what = f"figure {reprlib.repr(params.figure)}"
+            raise FigureError(f"{what}: write random:SEED with a whole number of at most 18 digits, e.g. random:7")
         return {"random": int(seed)}
     known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}
     named(params.figure, known)
@@ -102,12 +106,7 @@ def _description(params: SynthParams) -> dict[str, Any]:
 
 def _read(path: Any) -> dict[str, Any]:
     """A figure's description from a YAML file."""
-    try:
-        description = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise FigureError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    except yaml.YAMLError as error:
-        raise FigureError(f"{path}: not valid YAML: {error}") from None
+    description = small_yaml(small_text(path, FigureError, LARGEST), str(path), FigureError)
     if not isinstance(description, dict):
         raise FigureError(f"{path}: expected a figure with its joints, got {type(description).__name__}")
     return description

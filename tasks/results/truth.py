@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.errors import InputError
+from kinetree.errors.small_text import small_text
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
@@ -88,13 +89,7 @@ def _stamp(path: str) -> tuple[int, int]:
 def _read(params: TruthParams, *stamps: tuple[int, int]) -> Truth:
     """The truth in the files named by the parameters; kept in memory until a file changes."""
     path = Path(params.file)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file; a truth is a truth.json, a skeleton.json or a .bvh file") from None
-    return _artifact(read_truth(text, path.name), path.name, params)
+    return _artifact(read_truth(small_text(path), path.name), path.name, params)
 
 
 def _artifact(motion: TrueMotion | None, source: str, params: TruthParams | None) -> Truth:

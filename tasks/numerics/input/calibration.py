@@ -15,6 +15,7 @@ import numpy as np
 import yaml
 
 from kinetree.errors import SourceError
+from kinetree.errors.small_text import BoundedLoader, small_json, small_text, small_yaml
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.source import natural_order
 
@@ -84,7 +85,7 @@ def written_calibration(calibration: Calibration) -> str:
 
 
 def _json(files: Sequence[Path], where: str) -> Calibration:
-    held = json.loads(files[0].read_text(encoding="utf-8"))
+    held = small_json(small_text(files[0], SourceError, LARGEST), where, SourceError)
     if not isinstance(held, dict) or not isinstance(held.get("cameras"), list) or not held["cameras"]:
         what = 'one entry a camera with "name", "size" and "P", or "K", "R" and "t"'
         raise SourceError(f'{where}: no list "cameras"; {FORMAT} has {what}')
@@ -117,8 +118,8 @@ def _opencv(files: Sequence[Path], where: str) -> Calibration:
     """Nodes K_name, Rot_name or R_name (a matrix or a rotation vector), T_name and dist_name or P_name, for every name."""
     held: dict[str, Any] = {}
     for path in files:
-        text = re.sub(r"^%YAML:?\s?\d\.\d\s*(---)?", "", path.read_text(encoding="utf-8"))
-        held.update(yaml.load(text, Loader=_OpenCV) or {})
+        text = re.sub(r"^%YAML:?\s?\d\.\d\s*(---)?", "", small_text(path, SourceError, LARGEST))
+        held.update(small_yaml(text, str(path), SourceError, _OpenCV) or {})
     listed = held.get("names") or sorted({k.partition("_")[2] for k in held if k.startswith(("K_", "P_"))}, key=natural_order)
     if not listed:
         raise SourceError(f"{where}: no list names and no nodes K_name or P_name, of which a calibration is made")
@@ -136,7 +137,7 @@ def _opencv_size(held: Mapping[str, Any], name: str) -> tuple[int, int] | None:
     return None if rows is None or columns is None else (int(rows), int(columns))
 
 
-class _OpenCV(yaml.SafeLoader):
+class _OpenCV(BoundedLoader):
     """Plain YAML and the tag !!opencv-matrix."""
 
 

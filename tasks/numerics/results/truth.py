@@ -1,7 +1,6 @@
 """Reads a true skeleton: a truth.json, a skeleton.json of kinetree, or a BVH file (2014, Sec. 7.1)."""
 
 import itertools
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -9,6 +8,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from kinetree.errors import InputError
+from kinetree.errors.small_text import small_json
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.motion import turning_angles
 from kinetree.tasks.numerics.results.bvh_reader import LARGEST_NUMBER, read_bvh
@@ -71,13 +71,7 @@ def read_truth(text: str, name: str) -> TrueMotion:
         return truth_of_bvh(text, name)
     if ending != "json":
         raise InputError(f"{name}: a truth is a truth.json, as kinetree synth writes it, a skeleton.json or a .bvh file")
-    try:
-        content = json.loads(text)
-    except ValueError as error:
-        raise InputError(f"{name}: not JSON: {error}") from None
-    except RecursionError:
-        raise InputError(f"{name}: lists are nested too deep; expected a truth.json") from None
-    return truth_of_json(content, name)
+    return truth_of_json(small_json(text, name), name)
 
 
 def truth_of_bvh(text: str, name: str, settings: TruthSettings | None = None) -> TrueMotion:
