@@ -102,8 +102,7 @@ def small_yaml(text: str, where: str, error: type[InputError] = InputError, load
     except RecursionError:
         raise error(f"{where}: not valid YAML: its values are nested too deeply") from None
     except (ValueError, TypeError, AttributeError, LookupError, OverflowError) as problem:  # a scalar that its tag does not fit
-        what = f"a value cannot be read ({_brief(problem)})"
-        raise error(f"{where}: not valid YAML: {what}; put texts that look like dates or numbers in quotes") from None
+        raise error(f"{where}: not valid YAML: {_brief(problem)}; put texts that look like dates or numbers in quotes") from None
 
 
 def _opened(path: Any, error: type[InputError]) -> Any:
@@ -130,4 +129,5 @@ def _whole(digits: str) -> int:
 
 
 def _brief(problem: Exception) -> str:
-    return re.sub(r"[;:] use sys\..*", "", str(problem)) if isinstance(problem, ValueError) else type(problem).__name__
+    is_told = isinstance(problem, ValueError)
+    return re.sub(r"[;:] use sys\..*", "", str(problem)) if is_told else "a value is not what its tag says"

@@ -203,14 +203,14 @@ def test_yaml_without_keys_is_refused(write, text):
 
 def test_bytes_that_are_no_text_are_refused(tmp_path):
     (tmp_path / "a.yaml").write_bytes(b"\xff\xfe\x00mesh")
-    assert refusal(tmp_path / "a.yaml").startswith(f"{tmp_path / 'a.yaml'}: cannot be read: ")
+    assert refusal(tmp_path / "a.yaml").startswith(f"{tmp_path / 'a.yaml'}: not a text file in UTF-8: byte 0 is 0xff")
     (tmp_path / "b.yaml").write_bytes(b"mesh: \x00")
     assert "special characters are not allowed" in refusal(tmp_path / "b.yaml")
 
 
 def test_values_nested_beyond_reason_are_refused(write):
     path = write("deep.yaml", "mesh: " + "[" * 5000 + "]" * 5000)
-    assert refusal(path) == f"{path}: not a configuration: its values are nested too deeply"
+    assert refusal(path) == f"{path}, line 1: not valid YAML: its values are nested too deeply"
 
 
 def test_value_that_unfolds_without_end_is_told_in_a_few_words(write):

@@ -99,9 +99,9 @@ def test_camera_that_cannot_be_is_named(read, camera, words):
     ("text", "name", "words"),
     [
         ("{}", "calibration.json", 'no list "cameras"'),
-        ("[", "calibration.json", "cannot be read as a calibration"),
+        ("[", "calibration.json", "not JSON"),
         ("%YAML:1.0\n---\na: 1\n", "calibration.yml", "no nodes K_name or P_name"),
-        ("!!python/object/apply:os.system ['true']", "calibration.yml", "cannot be read as a calibration"),
+        ("!!python/object/apply:os.system ['true']", "calibration.yml", "could not determine a constructor"),
         ("PK", "cameras.npz", "cannot be read as a calibration"),
     ],
 )
