@@ -102,7 +102,27 @@ def small_yaml(text: str, where: str, error: type[InputError] = InputError, load
     except RecursionError:
         raise error(f"{where}: not valid YAML: its values are nested too deeply") from None
     except (ValueError, TypeError, AttributeError, LookupError, OverflowError) as problem:  # a scalar that its tag does not fit
-        raise error(f"{where}: not valid YAML: {_brief(problem)}; put texts that look like dates or numbers in quotes") from None
+        raise error(
+            f"{where}: not valid YAML: {_brief(problem)}; put texts that look like dates or numbers in quotes"
+        ) from None
+
+
+def json_only(value: Any, where: str, error: type[InputError] = InputError) -> Any:
+    """The value, if it has nothing but what JSON can hold.
+
+    raises : `error` that names the first key that is no text, or the first date, set or other thing
+    """
+    if isinstance(value, dict):
+        for key, part in value.items():
+            if not isinstance(key, str):
+                raise error(f"{where}: the key {key!r} is no text; put it in quotes")
+            json_only(part, f"{where}: {key}", error)
+    elif isinstance(value, list):
+        for part in value:
+            json_only(part, where, error)
+    elif not isinstance(value, str | bool | int | float | None):
+        raise error(f"{where}: {value!r} is of type {type(value).__name__}; put texts that look like dates in quotes")
+    return value
 
 
 def _opened(path: Any, error: type[InputError]) -> Any:

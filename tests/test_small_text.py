@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kinetree.errors import ConfigError, InputError
-from kinetree.errors.small_text import DEPTH, VALUES, BoundedLoader, small_json, small_text, small_yaml
+from kinetree.errors.small_text import DEPTH, VALUES, BoundedLoader, json_only, small_json, small_text, small_yaml
 
 BOMB = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
     f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 12)
@@ -67,7 +67,9 @@ def test_json_beyond_reason_is_refused(text: str, what: str) -> None:
 
 
 def test_json_of_ordinary_numbers_is_what_it_says() -> None:
-    assert small_json('{"a": [1, -2, 1.5, 1e3, 12345678901234567890]}', "a.json") == {"a": [1, -2, 1.5, 1e3, 12345678901234567890]}
+    assert small_json('{"a": [1, -2, 1.5, 1e3, 12345678901234567890]}', "a.json") == {
+        "a": [1, -2, 1.5, 1e3, 12345678901234567890]
+    }
 
 
 @pytest.mark.parametrize(
@@ -96,3 +98,18 @@ def test_yaml_of_ordinary_depth_with_aliases_is_what_it_says() -> None:
     assert small_yaml(text, "a.yaml", loader=BoundedLoader) == {"a": [1, 2], "b": [1, 2], "c": {"d": 3}}
     depth = DEPTH - 2
     assert str(small_yaml("[" * depth + "1" + "]" * depth, "a.yaml")).count("[") == depth
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("a: {b: 2001-01-01}", "a: b: datetime.date"),
+        ("a: [1, {2: 3}]", "a: the key 2 is no text"),
+        ("a: !!binary aGVsbG8=", "of type bytes"),
+        ("a: !!set {b}", "of type set"),
+    ],
+)
+def test_what_json_cannot_hold_is_named(text: str, what: str) -> None:
+    with pytest.raises(InputError, match=what):
+        json_only(small_yaml(text, "a.yaml"), "a.yaml")
+    assert json_only({"a": [1, 2.5, None, True, "b"]}, "a.yaml") == {"a": [1, 2.5, None, True, "b"]}

@@ -14,7 +14,7 @@ import numpy as np
 import trimesh
 
 from kinetree.errors import ConfigError, FigureError
-from kinetree.errors.small_text import small_text, small_yaml
+from kinetree.errors.small_text import json_only, small_text, small_yaml
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure, named
@@ -106,7 +106,7 @@ def _description(params: SynthParams) -> dict[str, Any]:
 
 def _read(path: Any) -> dict[str, Any]:
     """A figure's description from a YAML file."""
-    description = small_yaml(small_text(path, FigureError, LARGEST), str(path), FigureError)
+    description = json_only(small_yaml(small_text(path, FigureError, LARGEST), str(path), FigureError), str(path), FigureError)
     if not isinstance(description, dict):
         raise FigureError(f"{path}: expected a figure with its joints, got {type(description).__name__}")
     return description
