@@ -29,7 +29,7 @@ from kinetree.pipeline.history import History, closing, new_name, opening, summa
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.origins import found
-from kinetree.pipeline.output import as_yaml, pages, write_config, write_pages, write_results, write_run_json
+from kinetree.pipeline.output import as_yaml, claim, pages, write_config, write_pages, write_results, write_run_json
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.snapshot import Snapshot
@@ -133,6 +133,7 @@ class Pipeline:
         files = Files.of(self.store)
         there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
         schedule = there.schedule
+        owned = claim(self.config, schedule)
         self.store.create()
         files.save()
         write_config(self.config)
@@ -145,7 +146,7 @@ class Pipeline:
         try:
             with beating(self.store, opened["name"]):
                 self._go(schedule, watch, client)
-            left += write_results(self.config.output, schedule) + pages(schedule)
+            left += write_results(owned, schedule) + pages(schedule)
             status = "failed" if account.failures else "done"
         except Exception:
             status = "stopped"

@@ -13,6 +13,7 @@ from kinetree.pipeline import views
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.entry import DONE, Entry
+from kinetree.pipeline.ownership import HEAD, Owned
 from kinetree.pipeline.place import Folder
 from kinetree.pipeline.schedule import Schedule
 from kinetree.schemas.array import Artifact
@@ -22,8 +23,7 @@ RUN_JSON = "run.json"
 
 def write_config(config: Config) -> None:
     """Leaves the configuration, so that every command can name the output folder instead of the file."""
-    head = "# The configuration of the last run into this folder; what is not here is the default.\n"
-    _write(config.output, SAVED, head + as_yaml(config.portable()))
+    _write(config.output, SAVED, HEAD + as_yaml(config.portable()))
 
 
 def as_yaml(saved: dict[str, Any]) -> str:
@@ -37,14 +37,24 @@ def write_run_json(config: Config, summed: dict[str, Any]) -> None:
     _write(config.output, RUN_JSON, json.dumps(summed, indent=2, ensure_ascii=False) + "\n")
 
 
-def write_results(folder: Path, schedule: Schedule) -> list[str]:
+def claim(config: Config, schedule: Schedule) -> Owned:
+    """The output folder, if nothing is in the way of what a run leaves whatever it computes; raises StoreError."""
+    owned = Owned.of(config.output)
+    classes = [entry.task.returns for entry in schedule.entries.values()]
+    names = [name for cls in dict.fromkeys(classes) for name in (views.group_name(cls), views.page_name(cls)) if name]
+    owned.claim((SAVED, RUN_JSON, *names))
+    return owned
+
+
+def write_results(owned: Owned, schedule: Schedule) -> list[str]:
     """Leaves the files and groups of every artifact that has some, each whole or not at all; returns their names.
 
     One that lies there with the same bytes is not touched.
-    raises : StoreError where the folder cannot be written; DamagedArtifactError, after which a run makes it again
+    raises : StoreError where the folder cannot be written or has such a file of somebody else's; DamagedArtifactError, after
+             which a run makes it again
     """
     done = [e for e in schedule.entries.values() if e.state in DONE and leaves(e.task.returns)]
-    return [name for entry in done for name in write_result(folder, schedule, entry)]
+    return [name for entry in done for name in write_result(owned, schedule, entry)]
 
 
 def write_pages(folder: Path, schedule: Schedule, run: Mapping[str, Any]) -> None:
@@ -63,10 +73,11 @@ def pages(schedule: Schedule) -> list[str]:
     return [name for name in done if name]
 
 
-def write_result(folder: Path, schedule: Schedule, entry: Entry) -> list[str]:
+def write_result(owned: Owned, schedule: Schedule, entry: Entry) -> list[str]:
     """Leaves the files and the group of one node that is done; see `write_results`."""
-    place, name = Folder(folder, "output folder", beside=""), views.group_name(entry.task.returns)
+    place, name = Folder(owned.folder, "output folder", beside=""), views.group_name(entry.task.returns)
     files = _files(schedule, entry)
+    owned.claim([*files, *([name] if name else [])])
     for path, data in files.items():
         if place.size(path) != len(data) or place.get(path) != data:
             place.put(path, data)

@@ -29,6 +29,7 @@ from kinetree.pipeline import application, views
 from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output import write_elsewhere
+from kinetree.pipeline.ownership import MARKER
 from kinetree.pipeline.store import artifact_path
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.export import EXTRAS, export
@@ -72,7 +73,7 @@ def out(configured, tmp_path):
 
 
 def names(folder):
-    return sorted(p.name for p in folder.iterdir())
+    return sorted(p.name for p in folder.iterdir() if p.name != MARKER)
 
 
 def ran(result):

@@ -78,14 +78,15 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list
     """Where the files are, and the remarks on them."""
     from kinetree.pipeline import views
     from kinetree.pipeline.output import write_elsewhere, write_result
+    from kinetree.pipeline.ownership import Owned
 
     schedule = pipeline.computed(task).schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
     remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
     if output is not None:
         return write_elsewhere(output, schedule, task, MESH_FILES), remarks
-    folder = pipeline.config.output
-    return [folder / name for entry in done for name in write_result(folder, schedule, entry)], remarks
+    owned = Owned.of(pipeline.config.output)
+    return [owned.folder / name for entry in done for name in write_result(owned, schedule, entry)], remarks
 
 
 def _write_schema(output: Path | None) -> None:

@@ -1,0 +1,56 @@
+"""Laws of the output folder: a file that no run has left there stays, and what a run left is its own."""
+
+import shutil
+
+import pytest
+
+from kinetree.errors import StoreError
+from kinetree.pipeline.output import RUN_JSON
+from kinetree.pipeline.ownership import MARKER, Owned
+
+
+def test_a_folder_that_is_not_there_is_all_ours(tmp_path):
+    Owned.of(tmp_path / "deep" / "out").claim(["a.json", "parts/1.ply", "parts/2.ply"])
+    assert Owned.of(tmp_path / "deep" / "out").names == {"a.json", "parts"}
+
+
+def test_what_is_listed_may_be_replaced_and_nothing_else(tmp_path):
+    Owned.of(tmp_path).claim(["a.json"])
+    (tmp_path / "a.json").write_text("altered")
+    (tmp_path / "b.json").write_text("mine")
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "link").symlink_to("nowhere")
+    Owned.of(tmp_path).claim(["a.json", "c.json"])
+    for path in ("b.json", "parts/1.ply", "link"):
+        with pytest.raises(StoreError, match=f"no run has left {path.partition('/')[0]} there"):
+            Owned.of(tmp_path).claim(["a.json", "d.json", path])
+    assert Owned.of(tmp_path).names == {"a.json", "c.json"}, "what was refused is not listed"
+
+
+def test_files_are_listed_before_they_are_written(tmp_path):
+    owned = Owned.of(tmp_path)
+    owned.claim(["a.json"])
+    (tmp_path / "a.json").write_text("written by a run that was killed then")
+    Owned.of(tmp_path).claim(["a.json"])
+
+
+def test_output_folder_that_was_copied_without_its_list_is_ours(toys):
+    toys.write(1)
+    first = toys.pipeline()
+    first.run()
+    (toys.output / MARKER).unlink()
+    assert first.run()["status"] == "done"
+    assert {RUN_JSON, "config.yaml"} <= (Owned.of(toys.output).names or set())
+
+
+@pytest.mark.parametrize("name", ["config.yaml", "run.json"])
+def test_run_into_a_folder_of_somebody_else_replaces_nothing(toys, name):
+    toys.write(1)
+    there = toys.pipeline()
+    shutil.rmtree(toys.output, ignore_errors=True)
+    toys.output.mkdir(parents=True)
+    (toys.output / name).write_text("{}")
+    with pytest.raises(StoreError, match=f"no run has left {name} there"):
+        there.run()
+    assert [path.name for path in toys.output.iterdir()] == [name]
+    assert (toys.output / name).read_text() == "{}"
