@@ -24,8 +24,6 @@ from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.views.topology import UNSURE
 
 leave_group(Segmentation, "segmentation.zarr")
-NAMES_OF_METRES = {metres: f"1 {unit}" for unit, metres in METRES.items()}
-"""A unit, by its length in metres."""
 
 
 @files_of(Exported)
@@ -116,7 +114,8 @@ def placed_remarks(file: PlacedFile, scale: str) -> tuple[str, ...]:
     scale : name of the parameter that says the unit
     """
     rate = f"frame rate not known: {file.assumed_fps:g} frames a second assumed; set sequence.fps" if file.assumed_fps else ""
-    guess = f"unit not known: by the size of the body, one unit is taken for {NAMES_OF_METRES.get(file.metres)}"
+    unit = next((unit for unit in METRES if METRES[unit] == file.metres), f"{file.metres} m")
+    guess = f"unit not known: by the size of the body, one unit is taken for 1 {unit}"
     size = f"{guess}; set sequence.unit or {scale}" if file.metres_from == "size" else ""
     up = f"up direction not certain: {file.up} of the input is taken to point up; set up_direction.up"
     return tuple(line for line in (rate, size, up if file.up_confidence < UNSURE else "") if line)
