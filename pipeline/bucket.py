@@ -6,6 +6,7 @@ An object appears whole or not at all, so nothing is renamed. Endpoint, region a
 
 import contextlib
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
@@ -15,6 +16,7 @@ from kinetree.errors import StoreError
 from kinetree.pipeline.place import Listed
 
 T = TypeVar("T")
+_NAME = re.compile("[A-Za-z0-9][A-Za-z0-9._-]*")
 LISTED_AT_ONCE = 1000
 """Objects in one answer of a service that lists."""
 ASKED_AT_ONCE = 16
@@ -28,19 +30,27 @@ class Bucket:
 
     is_remote = True
 
-    def __init__(self, url: str) -> None:
-        """Opens nothing; raises StoreError where the extra is not installed or the address is none."""
+    def __init__(self, url: str, name: str = "store") -> None:
+        """Opens nothing; raises StoreError where the extra is not installed or the address is none.
+
+        name : what messages call the place
+        """
+        self._name = name
+        bucket, _, prefix = url.partition("://")[2].strip("/").partition("/")
+        if not _NAME.fullmatch(bucket):  # it may be a password: it is not quoted
+            raise StoreError(
+                f"{name}: this is not the address of a bucket; expected s3://bucket/folder, and credentials in the environment"
+                " (AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY) and not in the address"
+            )
+        self.url, self.prefix = url.rstrip("/"), prefix
         try:
             from obstore.store import S3Store
         except ImportError:
-            raise StoreError(f"store {url}: s3:// needs a package that is not installed: pip install 'kinetree[s3]'") from None
-        self.url = url.rstrip("/")
-        self.prefix = self.url.partition("://")[2].partition("/")[2]
+            raise StoreError(f"{name} {url}: s3:// needs a package that is not installed: pip install 'kinetree[s3]'") from None
         try:
-            bucket = self.url.partition("://")[2].partition("/")[0]
             self._store: Any = S3Store(bucket, client_options=_client_options(), retry_config=RETRIES)
         except Exception as error:  # obstore raises many kinds for a wrong address
-            raise StoreError(f"store {self.url}: {_short(error)}; expected s3://bucket/folder") from None
+            raise StoreError(f"{name} {self.url}: {_short(error)}; expected s3://bucket/folder") from None
 
     def get(self, path: str) -> bytes | None:
         """The bytes at `path`; None where nothing is."""
@@ -77,9 +87,14 @@ class Bucket:
         with self._refusals("write", path):
             self._store.put(self._key(path), data)
 
+    def look(self, path: str) -> Listed | None:
+        """Size, time and tag of one object; None where nothing is."""
+        return self._asked(path, lambda store, key: _listed(store.head(key)))
+
     def size(self, path: str) -> int | None:
         """Bytes of one object; None where nothing is."""
-        return self._asked(path, lambda store, key: int(store.head(key)["size"]))
+        found = self.look(path)
+        return None if found is None else found.size
 
     def names(self, path: str) -> list[str]:
         """Names directly below `path`, sorted; empty where nothing is."""
@@ -94,12 +109,18 @@ class Bucket:
         top = f"{key}/" if key else ""
         with self._refusals("list", path):
             found = [o for chunk in self._store.list(top or None, chunk_size=LISTED_AT_ONCE) for o in chunk]
-        told = {o["path"].removeprefix(top): Listed(int(o["size"]), float(o["last_modified"].timestamp())) for o in found}
-        return dict(sorted(told.items()))
+        return dict(sorted((o["path"].removeprefix(top), _listed(o)) for o in found))
+
+    def children(self, path: str) -> dict[str, Listed]:
+        """The objects directly below `path`, by name, sorted; empty where nothing is."""
+        with self._refusals("list", path):
+            found = self._store.list_with_delimiter(self._key(path) or None)["objects"]
+        return dict(sorted((o["path"].rpartition("/")[2], _listed(o)) for o in found))
 
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change of an object; 0 where nothing is."""
-        return self._asked(path, lambda store, key: float(store.head(key)["last_modified"].timestamp())) or 0.0
+        found = self.look(path)
+        return 0.0 if found is None else found.modified
 
     def remove(self, path: str) -> None:
         """Removes an object, or all below a prefix; nothing happens where nothing is."""
@@ -134,9 +155,13 @@ class Bucket:
             raise
         except Exception as error:  # obstore raises one kind per service and cause
             raise StoreError(
-                f"store {self.url}: cannot {verb} {path or 'it'}: {_short(error)}; check the address, and AWS_ENDPOINT_URL,"
-                " AWS_REGION and the credentials in the environment"
+                f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {_short(error)}; check the address, and"
+                " AWS_ENDPOINT_URL, AWS_REGION and the credentials in the environment"
             ) from None
+
+
+def _listed(told: Any) -> Listed:
+    return Listed(int(told["size"]), float(told["last_modified"].timestamp()), str(told["e_tag"] or ""))
 
 
 def _client_options() -> Any:

@@ -18,6 +18,7 @@ from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.memory import peak_bytes, reset_peak
+from kinetree.pipeline.remote import brought
 from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
@@ -151,8 +152,8 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         values["params"] = task.params.model_validate(step.params)
     if task.asks_index:
         values["index"] = _asked_index(task, step)
-    with limited(task.threads):
-        artifact = task(**values)
+    with brought(values) as here, limited(task.threads):
+        artifact = task(**here)
     if type(artifact) is not task.returns:
         raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
     digest, size = bench.store.publish(artifact)

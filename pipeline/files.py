@@ -1,9 +1,11 @@
 """Digests of the user's files, remembered: a file whose size, times and inode did not change is not read again.
 
 The memory is a convenience that may be lost or shared at any time. A file touched within the last seconds is read again,
-because its next change might leave no trace in its times. An altered byte makes the store forget all of it.
+because its next change might leave no trace in its times. An altered byte makes the store forget all of it. A file may lie
+in a bucket (remote.py); then what its service tells of it in a listing takes the place of times and inode.
 """
 
+import contextlib
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -13,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from kinetree.pipeline.key import file_digest
+from kinetree.pipeline.place import Listed
+from kinetree.pipeline.remote import ASKED_AT_ONCE, copied, found, is_remote, look
 from kinetree.pipeline.sealed import sealed, unsealed
 from kinetree.pipeline.store import Store
 
@@ -28,6 +32,8 @@ class Files:
     store: Store
     _known: dict[str, Any] = field(default_factory=dict)
     _learnt: bool = False
+    _listed: dict[str, Listed] = field(default_factory=dict)
+    """What was found in buckets, by address."""
 
     @staticmethod
     def of(store: Store) -> "Files":
@@ -35,33 +41,62 @@ class Files:
         known = unsealed(store.place.get(MEMORY))
         return Files(store, known if isinstance(known, dict) else {})
 
-    def digests(self, paths: Sequence[Path]) -> list[str]:
+    @staticmethod
+    def is_remote(where: str) -> bool:
+        """Whether this is an address in a bucket, which `found` reads, and not a path."""
+        return is_remote(where)
+
+    def found(self, where: str) -> list[str]:
+        """The addresses at a folder, a pattern or an address in a bucket, sorted; raises InputError where there are none."""
+        listed = found(where)
+        self._listed |= listed
+        return list(listed)
+
+    def digests(self, paths: Sequence[Path | str]) -> list[str]:
         """Digest of the bytes of each file; "unreadable: …" for one that cannot be read, so that its node can say so."""
         with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)) * 2)) as pool:
             return [parts[0] for parts in pool.map(lambda path: self._remembered(path, "bytes", _bytes), paths)]
 
-    def parts(self, path: Path, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
-        """Digests of the parts of one file (or of a folder of files) as `read` makes them; `kind` names how."""
+    def parts(self, path: Path | str, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
+        """Digests of the parts of one file (or of a folder of files) as `read` makes them; `kind` names how.
+
+        read : is given the file, or a copy of it where it lies in a bucket
+        """
         return self._remembered(path, kind, read)
+
+    def parts_of_each(
+        self, paths: Sequence[Path | str], kind: str, read: Callable[[Path], Sequence[str]]
+    ) -> list[Sequence[str]]:
+        """The same of many files, several at a time: where they lie in buckets most of the time is waiting."""
+        with ThreadPoolExecutor(ASKED_AT_ONCE) as pool:
+            return list(pool.map(lambda path: self._remembered(path, kind, read), paths))
 
     def save(self) -> None:
         """Keeps what was learnt, where the store exists."""
         if self._learnt and self.store.exists:
             self.store.place.put(MEMORY, sealed(self._known))
 
-    def _remembered(self, path: Path, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
-        stamp = _stamp(path)
+    def _remembered(self, path: Path | str, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
+        listed = self._listed.get(str(path)) or (look(str(path)) if is_remote(path) else None)
+        stamp = _stamp(Path(path)) if listed is None else [listed.size, listed.modified, listed.tag]
         name = f"{kind}:{path}"
         entry = self._known.get(name)
         if stamp is not None and isinstance(entry, list) and len(entry) == 2 and entry[0] == stamp:
             digests: list[str] = entry[1]
             return digests
-        digests = list(read(path))
-        lasting = not digests or not digests[0].startswith(UNREADABLE)
-        if lasting and stamp is not None and stamp == _stamp(path) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS:
+        with copied(str(path)) if is_remote(path) else contextlib.nullcontext(Path(path)) as file:
+            digests = list(read(file))
+        if (not digests or not digests[0].startswith(UNREADABLE)) and stamp is not None and _has_settled(path, stamp):
             self._known[name] = [stamp, digests]
             self._learnt = True
         return digests
+
+
+def _has_settled(path: Path | str, stamp: list[Any]) -> bool:
+    """Whether the next change of a file will leave a trace in its stamp."""
+    if is_remote(path):
+        return bool(stamp[-1])  # a service names every state of an object
+    return stamp == _stamp(Path(path)) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS
 
 
 def _bytes(path: Path) -> list[str]:

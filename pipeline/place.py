@@ -23,6 +23,8 @@ class Listed:
     size: int
     modified: float
     """Seconds since the epoch of its last change."""
+    tag: str = ""
+    """What a service calls this state of its bytes; empty where it does not say."""
 
 
 class Place(Protocol):

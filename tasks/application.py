@@ -126,7 +126,7 @@ APPLICATION = Application(
         Shortcut(
             ("--input", "-i"),
             "source.input",
-            "Folder or glob of meshes, silhouettes or volumes, one per frame; or one file with all frames.",
+            "Folder or glob of meshes, silhouettes or volumes, one per frame, or one file with all frames; meshes also at s3://.",
             "FOLDER",
             is_input=True,
         ),

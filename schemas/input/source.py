@@ -16,7 +16,7 @@ class SourceParams(Params):
     """Where the sequence is and which of its frames are wanted."""
 
     input: Annotated[str, PathLike()] = ""
-    """Folder or glob of meshes, silhouettes or volumes, or one file that holds all frames."""
+    """Folder or glob of meshes, silhouettes or volumes, or one file that holds all frames; meshes also at s3://."""
     synth: SynthParams | None = None
     """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"

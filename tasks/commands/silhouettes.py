@@ -36,6 +36,8 @@ def silhouettes(
         raise ConfigError(f"--up {up}: write x, y or z")
     if output.exists() and (not output.is_dir() or any(output.iterdir())):
         raise ConfigError(f"{output}: not an empty folder; name a new one, so that no mask of another sequence stays in it")
+    if "://" in meshes:
+        raise ConfigError(f"{meshes}: masks are rendered from a folder or file of this machine; copy the meshes there")
     listed = source(SourceParams(input=str(Path(meshes).absolute()), frames=frames), Files.of(Store.at(output)))
     if any(one.kind in ("silhouettes", "volume") for one in listed.values()):
         raise ConfigError(f"{meshes}: no meshes; silhouettes are rendered from a sequence of meshes")

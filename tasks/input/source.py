@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from pathlib import Path
+from pathlib import Path, PurePath, PurePosixPath
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
+from kinetree.tasks.numerics.input.formats import suffixes as mesh_suffixes
 from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers, selected_frames
 from kinetree.tasks.numerics.input.input_kind import input_kind
 from kinetree.tasks.numerics.input.silhouettes import mask_files, read_masks, read_packed_masks
@@ -27,11 +28,15 @@ from kinetree.tasks.numerics.input.source import (
     ARRAYS,
     Frames,
     mesh_files,
+    one_format,
     read_npz,
     refuse_unreadable,
     written,
 )
 from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
+
+REMOTE = "content and measures/1"
+"""How the memory of files calls what is read of a mesh in a bucket."""
 
 
 @origin(over="frame")
@@ -67,12 +72,24 @@ def _measured(sources: Mapping[int, Source], files: Files) -> dict[int, FrameMea
     """What the surface of every frame is like, or why it cannot be read; nothing where frames are no meshes yet."""
     kinds = {s.kind for s in sources.values()}
     if kinds <= {"npz", "zarr"}:
-        path, kind = Path(next(iter(sources.values())).path), kinds.pop()
+        path, kind = next(iter(sources.values())).path, kinds.pop()
         held = files.parts(path, f"{kind}/measures/1", lambda where: _measures_of_parts(where, kind))
         return {t: _parsed(held[s.part or 0]) for t, s in sources.items()}
     if kinds == {"file"}:
-        return {t: _parsed(files.parts(Path(s.path), "measures/1", _measures_of_file)[0]) for t, s in sources.items()}
+        return {t: _parsed(_measures(s.path, files)) for t, s in sources.items()}
     return {}
+
+
+def _measures(path: str, files: Files) -> str:
+    """The measures of one mesh file, or why it cannot be read, as JSON."""
+    if files.is_remote(path):
+        return files.parts(path, REMOTE, _content_and_measures)[1]
+    return files.parts(Path(path), "measures/1", _measures_of_file)[0]
+
+
+def _content_and_measures(path: Path) -> Sequence[str]:
+    """Digest and measures of a copy of a mesh file, which is made once for both."""
+    return [file_digest(path), *_measures_of_file(path)]
 
 
 def _measures_of_file(path: Path) -> Sequence[str]:
@@ -101,6 +118,10 @@ def _parsed(text: str) -> FrameMeasures | str:
 
 def _found(where: str, files: Files) -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
+    if files.is_remote(where):
+        return _in_bucket(where, files)
+    if "://" in where:
+        raise SourceError(f"{where.partition('://')[0]}:// is not read; give a folder, a pattern, a file or s3://bucket/folder")
     path = written(Path(where))
     if _is_zarr(path):
         return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
@@ -117,7 +138,25 @@ def _found(where: str, files: Files) -> dict[int, Source]:
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
 
 
-def _numbered(sources: Sequence[Source], paths: Sequence[Path]) -> dict[int, Source]:
+def _in_bucket(where: str, files: Files) -> dict[int, Source]:
+    """Every frame of a folder or pattern of mesh files in a bucket, or of one npz there."""
+    addresses = files.found(where)
+    named = {PurePosixPath(address.partition("://")[2]): address for address in addresses}
+    suffixes = {path.suffix.lower() for path in named}
+    if suffixes == {".npz"} and len(addresses) == 1:
+        return dict(enumerate(_packed(addresses[0], "npz", files)))
+    if not suffixes & set(mesh_suffixes()):
+        raise SourceError(
+            f"{where}: no mesh among its files ({', '.join(sorted(suffixes))}); in a bucket a folder or pattern of mesh files"
+            f" ({' '.join(mesh_suffixes())}) or one npz is read; silhouettes, volumes and zarr are read from folders"
+        )
+    paths = one_format(list(named), where)
+    told = files.parts_of_each([named[path] for path in paths], REMOTE, _content_and_measures)
+    sources = [Source(content=content, path=named[path]) for path, (content, _) in zip(paths, told, strict=True)]
+    return _numbered(sources, paths)
+
+
+def _numbered(sources: Sequence[Source], paths: Sequence[PurePath]) -> dict[int, Source]:
     """The frames of numbered files, by number."""
     return dict(zip(frame_numbers(paths), sources, strict=True))
 
@@ -298,9 +337,9 @@ def _mesh_digest(V: Floats, F: Ints) -> str:
     return digest([array_digest(V), array_digest(F)])
 
 
-def _packed(path: Path, kind: str, files: Files) -> list[Source]:
-    """Every frame of one npz or zarr file."""
-    if not path.exists():
+def _packed(path: Path | str, kind: str, files: Files) -> list[Source]:
+    """Every frame of one npz or zarr file, or of an npz in a bucket."""
+    if isinstance(path, Path) and not path.exists():
         raise SourceError(f"{path}: there is no such file")
 
     def parts(where: Path) -> Sequence[str]:

@@ -53,6 +53,8 @@ def test_ring_goes_around_the_longest_side_or_the_one_that_is_named(meshes, tmp_
 def test_what_cannot_be_is_refused_and_nothing_is_written(meshes, tmp_path):
     with pytest.raises(ConfigError, match="--up w: write x, y or z"):
         silhouettes(str(meshes), tmp_path / "masks", up="w", cameras=3, size=64, elevation=0.0, frames=":")
+    with pytest.raises(ConfigError, match="^s3://walk/scans: masks are rendered from a folder or file of this machine"):
+        silhouettes("s3://walk/scans", tmp_path / "masks", cameras=3, size=64)
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "a").touch()
     with pytest.raises(ConfigError, match="not an empty folder"):

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path
+from pathlib import PurePath
 
 from kinetree.errors import SourceError
 
@@ -15,7 +15,7 @@ MOST_DIGITS = 9
 """Digits of a frame number; a longer number in a name is a time or a digest, and the files are numbered in their order."""
 
 
-def frame_numbers(files: Sequence[Path]) -> list[int]:
+def frame_numbers(files: Sequence[PurePath]) -> list[int]:
     """The number of every file: the one number that runs in their names; 0, 1, 2, … in their order where none does.
 
     files  : in natural order, one a frame
@@ -77,7 +77,7 @@ def _ascending(numbers: Sequence[Sequence[int]], running: Sequence[int]) -> list
     return next((c for c in columns if all(a < b for a, b in pairwise(c))), None)
 
 
-def _refuse_several(files: Sequence[Path], kinds: Sequence[tuple[str, ...]]) -> None:
+def _refuse_several(files: Sequence[PurePath], kinds: Sequence[tuple[str, ...]]) -> None:
     """Files whose names differ in more than numbers."""
     usual = Counter(kinds).most_common(1)[0][0]
     one = files[kinds.index(usual)]
@@ -88,16 +88,16 @@ def _refuse_several(files: Sequence[Path], kinds: Sequence[tuple[str, ...]]) -> 
     )
 
 
-def _refuse_repeated(files: Sequence[Path], numbers: Sequence[Sequence[int]], running: Sequence[int]) -> None:
+def _refuse_repeated(files: Sequence[PurePath], numbers: Sequence[Sequence[int]], running: Sequence[int]) -> None:
     """Files of one folder whose last number begins again, such as walk1_0001 and walk2_0001."""
-    seen: dict[tuple[Path, int], Path] = {}
+    seen: dict[tuple[PurePath, int], PurePath] = {}
     for path, row in zip(files, numbers, strict=True):
         other = seen.setdefault((path.parent, row[running[-1]]), path)
         if other is not path:
             _refuse_equal(other, path)
 
 
-def _refuse_equal(one: Path, other: Path) -> None:
+def _refuse_equal(one: PurePath, other: PurePath) -> None:
     """Two files of one number."""
     raise SourceError(
         f"{one} and {other}: two files have the same number; the frames of one body have names that differ in one running"
@@ -107,10 +107,10 @@ def _refuse_equal(one: Path, other: Path) -> None:
 
 def _counts(kinds: Sequence[tuple[str, ...]]) -> str:
     """How many files there are of the first few series."""
-    counted = Counter(Path("#".join(kind)).name for kind in kinds).most_common()
+    counted = Counter(PurePath("#".join(kind)).name for kind in kinds).most_common()
     return ", ".join(f"{n} × {name}" for name, n in counted[:4]) + (", …" if len(counted) > 4 else "")
 
 
-def _pattern(path: Path) -> str:
+def _pattern(path: PurePath) -> str:
     """The file's name with a star in place of its last number."""
     return re.sub(r"[0-9]+(?=[^0-9]*$)", "*", path.stem) + path.suffix

@@ -7,12 +7,12 @@ is opened, and whatever cannot be a mesh is refused with its name and the reason
 import glob
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePath
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked, suffixes
 
+AnyPath = TypeVar("AnyPath", bound=PurePath)
 ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
 UNPACKED_BYTES = 256 * 2**20
 """An array of more bytes than this …"""
@@ -54,17 +55,27 @@ def mesh_files(where: Path | str) -> list[Path]:
         pattern = "matches of "
     else:
         raise SourceError(_not_a_folder(path))
+    return one_format(files, f"{pattern}{path}", path if path.is_dir() else None)
+
+
+def one_format(files: Sequence[AnyPath], where: str, folder: Path | None = None) -> list[AnyPath]:
+    """The meshes among files, in natural order.
+
+    where  : what messages call the place of the files
+    folder : which they all lie in, if they do
+    raises : SourceError if there is no mesh among them, or meshes are of several formats
+    """
     kinds = Counter(p.suffix.lower() for p in files)
     meshes = {kind: n for kind, n in sorted(kinds.items()) if kind in suffixes()}
     if not meshes:
         others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
         known = " ".join(suffixes())
-        raise SourceError(f"{pattern}{path}: no mesh among its files ({others}); {known} are read, one file a frame")
+        raise SourceError(f"{where}: no mesh among its files ({others}); {known} are read, one file a frame")
     if len(meshes) > 1:
         counts = ", ".join(f"{n} × {kind}" for kind, n in meshes.items())
         likely = max(meshes, key=lambda kind: meshes[kind])
-        example = (path / f"*{likely}") if path.is_dir() else path.with_suffix(likely)
-        raise SourceError(f"{pattern}{path}: meshes of several formats ({counts}); choose by a pattern such as {example}")
+        example = f"*{likely}" if folder is None else folder / f"*{likely}"
+        raise SourceError(f"{where}: meshes of several formats ({counts}); choose by a pattern such as {example}")
     return sorted((p for p in files if p.suffix.lower() in meshes), key=lambda p: [natural_order(q) for q in p.parts])
 
 
