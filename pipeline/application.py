@@ -76,6 +76,9 @@ class Application:
     sections: tuple[Section, ...] = ()
     """The commands, in the order of the help."""
     shortcuts: tuple[Shortcut, ...] = ()
+    data_sets: 'Callable[[], "Graph"] | None' = None
+    """Imports and gives the graph that sums up a data set, over the dimension `sequence`: `linked` tasks give the artifacts of
+    every sequence that was computed; one origin, whose params have the field `sequences`, lists what became of all."""
     renamed: Mapping[str, str] = field(default_factory=dict)
     """What blocks and parameters (as task.name) of earlier versions are called now; what refuses the old name says so."""
     first_steps: tuple[tuple[str, str], ...] = ()
@@ -145,6 +148,7 @@ def built_in(name: str, *examples: str) -> Command:
 
 _BUILT_IN = {
     "run": ("commands", "Run the steps that are out of date and say where the results are."),
+    "dataset": ("dataset_commands", "Run, plan or look at many sequences with one configuration."),
     "gc": ("commands", "Delete from the store what no longer belongs to a run you keep."),
     "verify": ("commands", "Read all of a store and say what is damaged; with --repair, compute that again."),
     "plan": ("queries", "Say what a run would compute and why, without computing anything."),

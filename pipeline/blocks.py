@@ -63,7 +63,7 @@ def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -
     if target is None:
         return {}, "config"
     if isinstance(target, Mapping):
-        return _extended(dict(target), Path.cwd(), "config", (), reading)
+        return extended(dict(target), Path.cwd(), "config", (), reading)
     path = expanded(target)
     if path.is_dir():
         if not (path / SAVED).is_file():
@@ -91,14 +91,14 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     bare = value.strip()
     given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
     if not dot:
-        blocks.update(_absolute({task: given}, Path.cwd(), paths))
+        blocks.update(absolute({task: given}, Path.cwd(), paths))
         return
     for inner in reversed(name.split(".")):
         given = {inner: given}
     block = blocks.get(task)
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
-    blocks[task] = _merged(block or {}, _absolute({task: given}, Path.cwd(), paths)[task])
+    blocks[task] = merged(block or {}, absolute({task: given}, Path.cwd(), paths)[task])
 
 
 def portable(blocks: Mapping[str, Any], folder: Path, paths: Paths) -> dict[str, Any]:
@@ -146,18 +146,23 @@ def _yaml_names(folder: Traversable | None) -> list[str]:
 def _file(path: Any, seen: tuple[str, ...], reading: Reading) -> tuple[dict[str, Any], str]:
     if str(path) in seen:
         raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
+    base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
+    return extended(read_yaml(path), base, str(path), (*seen, str(path)), reading)
+
+
+def read_yaml(path: Any) -> dict[str, Any]:
+    """The keys at the top of a YAML file; raises ConfigError."""
     blocks = parsed(small_text(path, ConfigError, LARGEST), str(path))
     if blocks is not None and not isinstance(blocks, dict):
         raise ConfigError(f"{path}: expected keys with values at the top, got {type(blocks).__name__}")
-    base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
-    return _extended(blocks or {}, base, str(path), (*seen, str(path)), reading)
+    return blocks or {}
 
 
-def _extended(
+def extended(
     blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...], reading: Reading
 ) -> tuple[dict[str, Any], str]:
     """The blocks with their paths made absolute, over those of the preset or file they extend."""
-    blocks = _absolute(blocks, base, reading.paths)
+    blocks = absolute(blocks, base, reading.paths)
     parent = blocks.pop("extends", None)
     if parent is None:
         return blocks, where
@@ -166,15 +171,16 @@ def _extended(
         presets = ", ".join(reading.preset_names) or "there are none"
         raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({presets}) nor a file")
     below, _ = _file(source, seen, reading)
-    return _merged(below, blocks), where
+    return merged(below, blocks), where
 
 
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    merged = dict(below)
+def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of both, block by block; those above win."""
+    both = dict(below)
     for key, value in above.items():
-        both = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
-        merged[key] = _merged(merged[key], value) if both else value
-    return merged
+        is_block = isinstance(value, Mapping) and isinstance(both.get(key), Mapping)
+        both[key] = merged(both[key], value) if is_block else value
+    return both
 
 
 def _moved(blocks: dict[str, Any], where: str, folder: Path) -> tuple[dict[str, Any], str]:
@@ -185,7 +191,7 @@ def _moved(blocks: dict[str, Any], where: str, folder: Path) -> tuple[dict[str, 
     return {**blocks, "output": str(folder)}, where
 
 
-def _absolute(blocks: Mapping[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
+def absolute(blocks: Mapping[str, Any], base: Path, paths: Paths) -> dict[str, Any]:
     """Paths are relative to the file that names them."""
 
     def absolute(path: str) -> str:

@@ -1,7 +1,6 @@
 """The commands that compute or delete: `run` and `gc`."""
 
 import contextlib
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -25,6 +24,7 @@ from kinetree.pipeline.options import (
     print_json,
 )
 from kinetree.pipeline.printable import printable
+from kinetree.pipeline.sizes import bytes_of
 
 if TYPE_CHECKING:
     from kinetree.pipeline.events import Listener
@@ -148,7 +148,7 @@ def gc(
     from kinetree.pipeline import gc as collection
 
     pipeline = pipeline_of(config, store=store)
-    size = None if max_size is None else _bytes(max_size)
+    size = None if max_size is None else _size("--max-size", max_size)
     garbage = collection.collect(pipeline.store, keep=keep or (), last=keep_last, days=keep_days, size=size, dry=dry_run)
     if as_json:
         print_json(garbage.json())
@@ -184,14 +184,11 @@ def verify(
         raise typer.Exit(1)
 
 
-def _bytes(size: str) -> int:
-    """A size such as 20GB or 512MiB in bytes; raises ConfigError."""
-    powers = {letter: power for power, letter in enumerate("kMGT", 1)}
-    written = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?([kMGT]i?)?B?", size.strip())
-    if written is None:
-        raise ConfigError(f"--max-size {size}: expected a size such as 20GB or 512MiB")
-    unit = written.group(2) or ""
-    return int(float(written.group(1)) * (1024 if unit.endswith("i") else 1000) ** powers.get(unit[:1], 0))
+def _size(option: str, size: str) -> int:
+    try:
+        return bytes_of(size)
+    except ValueError as error:
+        raise ConfigError(f"{option} {size}: {error}") from None
 
 
 @contextlib.contextmanager

@@ -144,6 +144,14 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
     origins = Origins(where, frozenset(blocks), {text.partition("=")[0].strip(): f"--set {text}" for text in sets})
     for text in sets:
         override(blocks, text, reading.paths)
+    return resolved(blocks, origins, application, reading, is_left=is_output(target))
+
+
+def resolved(
+    blocks: Mapping[str, Any], origins: Origins, application: Application, reading: Reading, *, is_left: bool = False
+) -> Config:
+    """The checked configuration that blocks with absolute paths make; raises as `load`."""
+    methods = application.methods()
     method = _method(blocks, methods, origins)
     known = {task.name: task.params for task in methods[method].tasks if task.params is not None}
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, application.renamed, origins)
@@ -155,9 +163,9 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
         store = address
     else:
         store = _folder(blocks, "store", origins) or store
-    _refuse_own_input(params, output, where)
+    _refuse_own_input(params, output, origins.file)
     compute = checked(Compute, compute_block(blocks, reading), "compute", origins)
-    return Config(method, params, output, store, compute, is_output(target))
+    return Config(method, params, output, store, compute, is_left)
 
 
 def _method(blocks: Mapping[str, Any], methods: Iterable[str], origins: Origins) -> str:
@@ -181,11 +189,16 @@ def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) ->
 
 def with_compute(config: Config, **changes: Any) -> Config:
     """The configuration with some of its compute settings replaced; None leaves one as it is."""
+    return replace(config, compute=with_changes(config.compute, **changes))
+
+
+def with_changes(compute: Compute, **changes: Any) -> Compute:
+    """Compute settings of which some are replaced; None leaves one as it is; raises ConfigError."""
     given = {k: v for k, v in changes.items() if v is not None}
     if "executor" in given:
         given.update({name: given.get(name) for name in ("scheduler", "scheduler_file", "cluster")})
         # a scheduler that only the file names gives way to what is asked for now
-    return replace(config, compute=checked(Compute, {**config.compute.model_dump(), **given}, "compute"))
+    return checked(Compute, {**compute.model_dump(), **given}, "compute")
 
 
 def checked(

@@ -61,7 +61,7 @@ class Graph:
     @cached_property
     def openers(self) -> dict[Space, AnyTask]:
         """The task whose artifact lists the members of each space's last dimension."""
-        found = {task.over: task for task in self.tasks if task.is_origin and task.over}
+        found = {task.over: task for task in self.tasks if _lists_members(task)}
         found.update({space(path): task for task in self.tasks for path in task.returns.opens})
         return found
 
@@ -194,6 +194,11 @@ class Graph:
         return drawn
 
 
+def _lists_members(task: AnyTask) -> bool:
+    """Whether the members that a task finds outside are the fan-out of its dimension."""
+    return task.is_origin and bool(task.over) and not task.is_linked
+
+
 def _one_writer_each(tasks: Sequence[AnyTask]) -> None:
     writers: dict[type[Artifact], AnyTask] = {}
     names: dict[str, AnyTask] = {}
@@ -228,7 +233,7 @@ def _every_edge_has_a_writer(graph: Graph) -> None:
 def _every_space_is_opened_once(graph: Graph) -> None:
     seen: dict[Space, AnyTask] = {}
     for task in graph.tasks:
-        opened = [space(path) for path in task.returns.opens] + ([task.over] if task.is_origin and task.over else [])
+        opened = [space(path) for path in task.returns.opens] + ([task.over] if _lists_members(task) else [])
         for path in opened:
             if not set(task.over) <= set(path[: None if task.is_origin else -1]):
                 raise GraphError(f"{task.name} ({task.where}) runs over {'/'.join(task.over)} and cannot open {'/'.join(path)}")

@@ -33,11 +33,21 @@ def identity() -> dict[str, Any]:
 
 def lives(run: Mapping[str, Any], store: Store) -> bool:
     """Whether the process that began this run is still there, as far as can be known from here."""
-    if run.get("machine") == _machine():
-        start = _start(int(run["pid"]))
-        return start is not None and start == run.get("process_start")
+    if is_here(run):
+        return lives_here(run)
     beat = max(float(run["epoch"]), store.place.modified(_path(run["name"])))
     return time.time() - beat < LOST_SECONDS
+
+
+def is_here(process: Mapping[str, Any]) -> bool:
+    """Whether a process that told its identity belongs to this boot of this machine, so that the kernel knows it."""
+    return bool(process.get("machine") == _machine())
+
+
+def lives_here(process: Mapping[str, Any]) -> bool:
+    """Whether a process of this machine is still there."""
+    start = _start(int(process["pid"]))
+    return start is not None and start == process.get("process_start")
 
 
 @contextlib.contextmanager

@@ -3,7 +3,7 @@
 import os
 import secrets
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -25,19 +25,37 @@ FAILURE_FIELDS = ("node", "error", "message")
 
 
 @dataclass
+class Heads:
+    """The runs of one store without their nodes, each read once; histories of several output folders may share them."""
+
+    store: Store
+    _known: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def of(self, output: str) -> list[dict[str, Any]]:
+        """The runs into one output folder, oldest first."""
+        if not self._known:
+            self._known = {head["name"]: head for head in self.store.run_records.heads()}
+        for name in self.store.run_records.names():
+            if self._known.get(name, {}).get("status", "running") == "running":
+                self._known[name] = self.store.run_records.head(name) or {}
+        return [self._known[name] for name in sorted(self._known) if self._known[name].get("output") == output]
+
+
+@dataclass
 class History:
     """The runs of one store, seen from one output folder."""
 
     store: Store
     output: str
     """As `output_name` names it."""
+    heads: Heads
     _nodes: dict[str, Any] | None = None
     _runs: list[dict[str, Any]] | None = None
 
     @staticmethod
-    def of(store: Store, config: Config) -> "History":
+    def of(store: Store, config: Config, heads: Heads | None = None) -> "History":
         """The runs of a store as the output folder of a configuration sees them."""
-        return History(store, output_name(config))
+        return History(store, output_name(config), heads or Heads(store))
 
     def recall(self, node: str) -> Recalled:
         """What the node computed in the last run into this folder that computed it."""
@@ -71,7 +89,7 @@ class History:
 
     def _mine(self) -> list[dict[str, Any]]:
         if self._runs is None:
-            self._runs = [run for run in self.store.run_records.heads() if run.get("output") == self.output]
+            self._runs = self.heads.of(self.output)
         return self._runs
 
     def origin(self, task: str, params: Any) -> dict[str, Any]:

@@ -20,18 +20,17 @@ from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
 from kinetree.pipeline.drawn_graph import DrawnGraph
-from kinetree.pipeline.entry import DONE
 from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.heartbeat import beating
-from kinetree.pipeline.history import History, closing, new_name, opening, summary
+from kinetree.pipeline.history import History
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.origins import found
-from kinetree.pipeline.output import as_yaml, claim, pages, write_config, write_pages, write_results, write_run_json
+from kinetree.pipeline.output import as_yaml
 from kinetree.pipeline.plan import Plan, Planned
 from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.session import Session, Status
 from kinetree.pipeline.snapshot import Snapshot
 from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact
@@ -101,8 +100,18 @@ class Pipeline:
     def _snapshot(
         self, files: Files, wanted: tuple[str, ...], force: Iterable[str] = (), made_with: Iterable[str] = ()
     ) -> Snapshot:
+        return self.look(files, History.of(self.store, self.config), wanted, force, made_with)
+
+    def look(
+        self,
+        files: Files,
+        history: History,
+        wanted: tuple[str, ...] = (),
+        force: Iterable[str] = (),
+        made_with: Iterable[str] = (),
+    ) -> Snapshot:
+        """What `inspect` gives, with a memory of files and a history that several pipelines on one store share."""
         graph = self.tasks.until(wanted) if wanted else self.tasks
-        history = History.of(self.store, self.config)
         given, notes = found(graph, self.config, files, history)
         schedule = Schedule(
             graph,
@@ -132,35 +141,21 @@ class Pipeline:
         started = time.perf_counter()
         files = Files.of(self.store)
         there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
-        schedule = there.schedule
-        owned = claim(self.config, schedule)
-        self.store.create()
+        session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
         files.save()
-        write_config(self.config)
-        opened = opening(new_name(), self.config, schedule)
-        self.store.write_run(opened["name"], opened)
-        account = Account()
-        watch = Watch((account, *listeners))
-        watch.begin(opened["name"], schedule.entries.values())
-        status, left = "interrupted", list[str]()
+        status: Status = "interrupted"
         try:
-            with beating(self.store, opened["name"]):
-                self._go(schedule, watch, client)
-            left += write_results(owned, schedule) + pages(schedule)
-            status = "failed" if account.failures else "done"
+            self._go(there.schedule, session.watch, client)
+            status = session.leave()
         except Exception:
             status = "stopped"
             raise
         finally:
-            seconds = time.perf_counter() - started
-            watch.end(status, seconds)
-            notes = {"notes": list(there.notes)} if there.notes else {}
-            summed = {**summary(account, status, seconds), "files": left, **notes}
-            self._close(opened, schedule, account, summed)
-        write_pages(self.config.output, schedule, {"run": opened["name"], **summed, **self._described()})
-        return RunSummary({"run": opened["name"], **summed})
+            summed = session.close(status)
+        session.write_pages(summed)
+        return summed
 
-    def _described(self) -> dict[str, Any]:
+    def described(self) -> dict[str, Any]:
         """The graph and the configuration, for a page about a run."""
         graph = {t.name: {"over": "/".join(t.over), "reads": [r.name for r in self.tasks.reads(t)]} for t in self.tasks.tasks}
         return {"graph": graph, "config": as_yaml(self.config.saved())}
@@ -231,10 +226,3 @@ class Pipeline:
 
         with launcher(self.config.compute, client) as launch:
             run(schedule, launch, watch)
-
-    def _close(self, opened: dict[str, Any], schedule: Schedule, account: Account, summed: dict[str, Any]) -> None:
-        before = History.of(self.store, self.config).last_nodes()
-        self.store.create()  # which somebody may have removed meanwhile
-        write_run_json(self.config, summed)
-        self.store.write_run(opened["name"], closing(opened, schedule, before, account, summed))
-        self.store.records.pack(opened["name"], [e.key for e in schedule.entries.values() if e.key and e.state in DONE])

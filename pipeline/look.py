@@ -42,6 +42,20 @@ class Difference(dict[str, Any]):
         return "\n".join(lines)
 
 
+class Table(list[dict[str, Any]]):
+    """Rows with the same columns; shown as a table."""
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        return [tuple("" if value is None else str(value) for value in row.values()) for row in self]
+
+    def __repr__(self) -> str:
+        head = tuple(self[0]) if self else ()
+        return "\n".join("  ".join(row) for row in [head, *self._cells()])
+
+    def _repr_html_(self) -> str:
+        return html_table(tuple(self[0]) if self else (), self._cells())
+
+
 def html_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table for a notebook, every cell escaped."""
     top = "".join(f"<th>{html.escape(cell)}</th>" for cell in head)

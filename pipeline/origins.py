@@ -23,7 +23,7 @@ def found(graph: Graph, config: Config, files: Files, history: History) -> tuple
     given: dict[str, Mapping[Index, Artifact]] = {}
     notes: list[str] = []
     for task in graph.tasks:
-        if not task.is_origin:
+        if not task.is_origin or task.is_linked:
             continue
         try:
             listed = task(params=config.params[task.name], files=files)

@@ -37,12 +37,15 @@ def write_run_json(config: Config, summed: dict[str, Any]) -> None:
     _write(config.output, RUN_JSON, json.dumps(summed, indent=2, ensure_ascii=False) + "\n")
 
 
-def claim(config: Config, schedule: Schedule) -> Owned:
-    """The output folder, if nothing is in the way of what a run leaves whatever it computes; raises StoreError."""
+def claim(config: Config, schedule: Schedule, always: Collection[str]) -> Owned:
+    """The output folder, if nothing is in the way of what a run leaves whatever it computes; raises StoreError.
+
+    always : what it leaves beside groups and pages
+    """
     owned = Owned.of(config.output)
     classes = [entry.task.returns for entry in schedule.entries.values()]
     names = [name for cls in dict.fromkeys(classes) for name in (views.group_name(cls), views.page_name(cls)) if name]
-    owned.claim((SAVED, RUN_JSON, *names))
+    owned.claim((*always, *names))
     return owned
 
 

@@ -32,6 +32,6 @@ def _ref(schedule: Schedule, place: dict[Node, int], node: Node) -> Ref:
     entry = schedule.entries[node]
     if node in place:
         return Ref(entry.label, step=place[node])
-    if entry.task.is_origin:
+    if entry.task.is_origin and not entry.task.is_linked:
         return Ref(entry.label, given=schedule.given[node.task][node.at])
     return Ref(entry.label, artifact=entry.artifact)

@@ -83,6 +83,10 @@ class Records:
         records = {key: _checked(data, key) for key, data in found.items()}
         return {key: record for key, record in records.items() if record is not None}
 
+    def look_again(self) -> None:
+        """What other processes wrote or packed meanwhile is seen from now on."""
+        self._listed = float("-inf")
+
     def put(self, record: Record) -> None:
         """Writes or replaces one record."""
         self.place.put(_single(record.key), sealed(asdict(record)))

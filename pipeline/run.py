@@ -63,7 +63,6 @@ class _Loop:
     sight: Sight
     out: dict[int, Future] = field(default_factory=dict)
     _open: list[Job] = field(default_factory=list)
-    _all_begun: bool = False
     _parcels: dict[int, tuple[Job, list[Entry]]] = field(default_factory=dict)
     _done: "queue.SimpleQueue[tuple[int, Future | None]]" = field(default_factory=queue.SimpleQueue)
     _twins: dict[str, list[tuple[Job, Node]]] = field(default_factory=dict)
@@ -116,14 +115,13 @@ class _Loop:
         return bool(lost)
 
     def _begin_jobs(self) -> None:
-        """Begins schedules until enough are open and some node is ready, or all are begun."""
-        while not self._all_begun and (len(self._open) < OPEN_AT_LEAST or fairest(self._open) is None):
+        """Begins schedules until enough are open and some node is ready, or there is none to begin."""
+        while len(self._open) < OPEN_AT_LEAST or fairest(self._open) is None:
             begun = self.jobs.begin()
             if begun is None:
-                self._all_begun = True
-            else:
-                self._open.append(begun)
-                self._end_jobs()
+                return
+            self._open.append(begun)
+            self._end_jobs()
 
     def interrupt(self, *_: object) -> None:
         """Makes the loop stop at what it receives next; safe to call from a signal's handler."""

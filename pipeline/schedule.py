@@ -8,6 +8,7 @@ schedule nobody completes; it computes nothing.
 import heapq
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.entry import DONE, Entry, Loss, State
@@ -22,6 +23,8 @@ from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Index, Params
 
+Links = Mapping[str, Mapping[Index, str]]
+"""Digests of artifacts that another graph made, by task name and index."""
 MENDS = 3
 """How often a node is computed again because its artifact is damaged, before the disk is to blame."""
 
@@ -43,11 +46,13 @@ class Schedule:
         force: Iterable[str] = (),
         recall: Recall = lambda _: "nothing",
         distrusted: MadeWith = EVERY_VERSION_TRUSTED,
+        links: Links = MappingProxyType({}),
     ) -> None:
         self.graph = graph
         self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
         self.store = store
         self.given = given
+        self.links = links
         self.force = frozenset(force)
         self.recall = recall
         self.distrusted = distrusted
@@ -164,11 +169,14 @@ class Schedule:
         """A node could not read an input: whoever made it makes it again, and the node waits for that.
 
         artifact : digest of the input; what : what is wrong with it
-        returns  : the nodes that are to run again, and what each was; None where one of them did too often
+        returns  : the nodes that are to run again, and what each was; None where that cannot be or was too often
         raises   : StoreError where no node makes it
         """
         entry = self.entries[node]
         makers = [n for n, other in self.entries.items() if other.artifact == artifact and not other.task.is_origin]
+        if not makers and any(other.artifact == artifact and other.task.is_linked for other in self.entries.values()):
+            self.store.discard(artifact)  # the graph that made it makes it again
+            return None
         if not makers:
             raise StoreError(f"{entry.label}: artifact {artifact[:12]} {what} and nothing here makes it")
         if entry.state == "skipped":
@@ -204,7 +212,7 @@ class Schedule:
     def value(self, node: Node) -> Artifact:
         """The artifact of a node that has one, arrays read lazily."""
         entry = self.entries[node]
-        if entry.task.is_origin:
+        if entry.task.is_origin and not entry.task.is_linked:
             return self.given[node.task][node.at]
         if entry.artifact is None:
             raise KeyError(node)
@@ -247,6 +255,10 @@ class Schedule:
         return tuple(self._dependents[node])
 
     def _accept(self, task: AnyTask) -> None:
+        for index, digest in self.links.get(task.name, {}).items():
+            node = Node(task.name, index)
+            made = Entry(node, task, label(node, task.over), state="fresh", inputs=(), artifact=digest)
+            self.entries.setdefault(node, made)
         for index, artifact in self.given.get(task.name, {}).items():
             node = Node(task.name, index)
             if node not in self.entries:

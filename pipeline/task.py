@@ -88,6 +88,8 @@ class Task(Generic[P, R]):
     """How many threads its libraries use."""
     retries: int = 1
     """How often a node is tried again, alone, after dask gave it up because its workers died."""
+    is_linked: bool = False
+    """Whether its artifacts were made by another graph and are read from the store by digest."""
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """The function itself."""
@@ -166,6 +168,15 @@ def origin(*, over: str = "") -> Callable[[Callable[P, R]], Task[P, R]]:
         return _declared(function, over, None, is_origin=True)
 
     return declare
+
+
+def linked(made_by: Task[P, R], *, over: str) -> Task[P, R]:
+    """A task of another graph as one that stands at the beginning of this one: its artifacts are there already.
+
+    over : the dimension of the members whose artifacts they are; another origin's artifact opens it
+    """
+    beginning = replace(made_by, over=space(over), arguments=(), params=None, along=None, asks_index=False)
+    return replace(beginning, is_origin=True, is_linked=True, on_request=False)
 
 
 def load(reference: str) -> "Task[..., Any]":

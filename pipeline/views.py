@@ -9,7 +9,7 @@ when somebody asks for a view.
 """
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -48,6 +48,7 @@ _TEXT: _Register[Callable[[Any], Words]] = _Register("text")
 _FILES: "_Register[Callable[[Any, Index], Mapping[str, bytes]]]" = _Register("files")
 _GROUPS: _Register[str] = _Register("group")
 _PAGES: _Register[tuple[str, Callable[[Any, Run], bytes]]] = _Register("page")
+_ROWS: "_Register[Callable[[Any], Sequence[Mapping[str, Any]]]]" = _Register("rows")
 _PROVIDED: dict[str, bool] = {}
 """Modules of views, and whether they are imported."""
 
@@ -100,6 +101,18 @@ def page_of(cls: type[A], name: str) -> Callable[[Callable[[A, Run], bytes]], Ca
     return register
 
 
+def rows_of(
+    cls: type[A],
+) -> "Callable[[Callable[[A], Sequence[Mapping[str, Any]]]], Callable[[A], Sequence[Mapping[str, Any]]]]":
+    """Registers the result as the rows of a table, with the same columns in each."""
+
+    def register(view: "Callable[[A], Sequence[Mapping[str, Any]]]") -> "Callable[[A], Sequence[Mapping[str, Any]]]":
+        _ROWS.add(cls, view)
+        return view
+
+    return register
+
+
 def leave_group(cls: "type[Artifact]", name: str) -> None:
     """Registers that a run leaves the artifact in the output folder as the zarr group it is, under that name."""
     _GROUPS.add(cls, name)
@@ -115,6 +128,12 @@ def text(artifact: "Artifact") -> Words:
     """The result itself as lines of text; empty where nobody registered any."""
     view = _TEXT.of(type(artifact))
     return view(artifact) if view else ()
+
+
+def rows(artifact: "Artifact") -> list[dict[str, Any]]:
+    """The result as the rows of a table; empty where nobody registered any."""
+    view = _ROWS.of(type(artifact))
+    return [dict(row) for row in view(artifact)] if view else []
 
 
 def files(artifact: "Artifact", index: "Index") -> Mapping[str, bytes]:

@@ -23,14 +23,20 @@ from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.key import forget_code
 
 HERE = Path(__file__).parent
-MAIN = """from kinetree.pipeline.application import Application, Section, built_in
+MAIN = """from kinetree.pipeline.application import Application, Section, Shortcut, built_in
 from kinetree.pipeline.cli import main
-COMMANDS = tuple(map(built_in, ("run", "plan", "show", "why", "graph", "tasks", "runs", "diff", "config", "gc", "verify")))
+NAMES = "run plan dataset show why graph tasks runs diff config gc verify"
+COMMANDS = tuple(map(built_in, NAMES.split()))
+INPUT = Shortcut(("--input",), "source.input", "Where the numbers are.", is_input=True)
 def methods():
     from .toys import GRAPH
     return {"toy": GRAPH}
+def data_sets():
+    from .toy_datasets import GRAPH
+    return GRAPH
+TOY = Application("toy", "Adds numbers.", methods, None, (Section("All", COMMANDS),), (INPUT,), data_sets)
 if __name__ == "__main__":
-    main(Application("toy", "Adds numbers.", methods, sections=(Section("All", COMMANDS),)))
+    main(TOY)
 """
 """Another product on the loom: it has nothing of kinetree's."""
 
@@ -206,7 +212,7 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "__main__.py").write_text(MAIN)
-    for file in ("toys.py", "toy_sums.py", "toy_passes.py"):
+    for file in ("toys.py", "toy_sums.py", "toy_passes.py", "toy_datasets.py"):
         shutil.copy(HERE / file, package / file)
     found = Toys(package.parent, name, tmp_path / "frames", tmp_path / "flags", tmp_path / "log", tmp_path / "out")
     found.frames.mkdir()

@@ -1,0 +1,239 @@
+"""A data set: many sequences with one configuration, run side by side and summed up; toy sequences of text files."""
+
+import importlib
+import json
+import os
+import shutil
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from pipeline.conftest import Toys
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.application import Application, Shortcut
+from kinetree.pipeline.dataset import Dataset
+
+
+@dataclass
+class Lab:
+    """Takes in a folder, and the file that describes them."""
+
+    toys: Toys
+    takes: Path
+    file: Path
+
+    @property
+    def results(self):
+        return self.file.parent / "results"
+
+    def take(self, name, *numbers):
+        folder = self.takes / name
+        folder.mkdir(parents=True, exist_ok=True)
+        for frame, number in enumerate(numbers):
+            (folder / f"{frame:05d}.txt").write_text(f"{number}")
+        for file in folder.iterdir():
+            os.utime(file, (time.time() - 100,) * 2)  # so that digests are remembered
+        return folder
+
+    def write(self, **keys):
+        told = {"sequences": "takes/*", "output": "results/{name}", "compute": {"executor": "sync"}, **keys}
+        self.file.write_text(json.dumps({key: value for key, value in told.items() if value is not None}))
+        return self
+
+    def dataset(self, sets=()):
+        return Dataset.of(self.file, sets=sets, application=self.application())
+
+    def application(self):
+        return Application(
+            "toy",
+            "Adds numbers.",
+            lambda: {"toy": self.toys.module.GRAPH},
+            shortcuts=(Shortcut(("--input",), "source.input", "", is_input=True),),
+            data_sets=lambda: importlib.import_module(f"{self.toys.name}.toy_datasets").GRAPH,
+        )
+
+    def run(self, **options):
+        self.toys.clear()
+        return self.dataset().run(**options)
+
+    def states(self, told):
+        return {name: row["state"] for name, row in told["sequences"].items()}
+
+    def summary(self):
+        return json.loads((self.results / "summary.json").read_text())
+
+
+@pytest.fixture
+def lab(toys):
+    made = Lab(toys, toys.folder.parent / "lab" / "takes", toys.folder.parent / "lab" / "lab.yaml")
+    made.take("a", 10, 20)
+    made.take("b", 30, 40, 50)
+    made.take("c", 60, 70)
+    return made.write()
+
+
+def test_all_sequences_run_and_are_summed_up(lab):
+    told = lab.run()
+    assert told["status"] == "done"
+    assert lab.states(told) == {"a": "ran", "b": "ran", "c": "ran"}
+    for name in "abc":
+        report = lab.dataset()[name].artifact("report")
+        assert lab.summary()[name] == report.value
+    assert json.loads((lab.results / "dataset.json").read_text())["counts"]["ran"] == 3
+
+
+def test_a_second_run_computes_nothing_and_writes_no_run(lab):
+    lab.run()
+    store = lab.results / "store"
+    before = {file: file.stat().st_mtime_ns for file in store.rglob("*") if file.is_file()}
+    told = lab.run()
+    assert lab.states(told) == {"a": "fresh", "b": "fresh", "c": "fresh"}
+    assert lab.toys.executions() == []
+    assert {f: f.stat().st_mtime_ns for f in store.rglob("*") if f.is_file() and f.name != "files.json"} == {
+        f: when for f, when in before.items() if f.name != "files.json"
+    }
+
+
+def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):
+    lab.run()
+    lab.take("b", 30, 40, 500)
+    told = lab.run()
+    assert lab.states(told) == {"a": "fresh", "b": "ran", "c": "fresh"}
+    ran = lab.toys.executions()
+    assert sum(line.startswith("figure-") for line in ran) == 1
+    assert sum(line.startswith("summed-") for line in ran) == 1
+    assert "points-30" not in ran
+    assert "points-10" not in ran
+
+
+def test_a_removed_sequence_leaves_the_summary_and_nothing_else_runs(lab):
+    lab.run()
+    shutil.rmtree(lab.takes / "a")
+    told = lab.run()
+    assert list(lab.summary()) == ["b", "c"]
+    assert lab.states(told) == {"b": "fresh", "c": "fresh"}
+    assert lab.toys.executions() == ["summed-2"]
+
+
+def test_a_new_sequence_runs_alone(lab):
+    lab.run()
+    lab.take("d", 80, 90)
+    told = lab.run()
+    assert lab.states(told) == {"a": "fresh", "b": "fresh", "c": "fresh", "d": "ran"}
+    assert set(lab.summary()) == set("abcd")
+
+
+def test_what_is_wrong_with_one_leaves_the_others_alone(lab):
+    lab.toys.flag("fail-points-30")
+    (lab.takes / "empty").mkdir()
+    told = lab.run()
+    assert told["status"] == "failed"
+    assert lab.states(told) == {"a": "ran", "b": "failed", "c": "ran", "empty": "failed"}
+    assert told["sequences"]["b"]["failures"][0]["message"] == "points-30 was told to fail"
+    assert "no frames in" in told["sequences"]["empty"]["failures"][0]["message"]
+    assert lab.summary()["b"] is None
+    assert lab.summary()["a"] is not None
+
+
+def test_only_what_failed_is_tried_again_where_that_is_asked_for(lab):
+    flag = lab.toys.flag("fail-points-30")
+    lab.run()
+    flag.unlink()
+    assert lab.dataset().plan()["b"].state == "failed"
+    told = lab.run(failed=True)
+    assert lab.states(told) == {"b": "ran"}
+    assert lab.summary()["b"] is not None
+    assert lab.run(failed=True)["sequences"] == {}
+
+
+def test_a_plan_says_of_each_sequence_what_it_is_and_what_it_would_take(lab):
+    assert {row.state for row in lab.dataset().plan().sequences} == {"new"}
+    lab.run()
+    lab.take("b", 30, 40, 500)
+    lab.take("d", 1, 2)
+    (lab.takes / "empty").mkdir()
+    lab.toys.clear()
+    plan = lab.dataset().plan()
+    assert {row.name: row.state for row in plan.sequences} == {
+        "a": "fresh", "b": "changed", "c": "fresh", "d": "new", "empty": "refused",
+    }  # fmt: skip
+    assert plan["b"].nodes > 0
+    assert plan["b"].seconds is not None
+    assert plan["d"].seconds is not None
+    assert "source" in plan["b"].why
+    assert lab.toys.executions() == []
+
+
+def test_status_and_table_read_what_runs_left(lab):
+    assert [row["status"] for row in lab.dataset().status()] == ["new"] * 3
+    lab.run()
+    assert [row["status"] for row in lab.dataset().status()] == ["done"] * 3
+    rows = lab.dataset().table()
+    assert [row["name"] for row in rows] == ["a", "b", "c"]
+    assert all(row["value"] is not None for row in rows)
+
+
+def test_overrides_reach_the_sequences_they_name(lab):
+    lab.write(points={"scale": 2.0}, overrides={"b": {"points": {"scale": 3.0}}, "[ab]": {"smooth": {"grain": 5.0}}})
+    found = lab.dataset()
+    scales = {name: found[name].config.params["points"].scale for name in found}
+    grains = {name: found[name].config.params["smooth"].grain for name in found}
+    assert scales == {"a": 2.0, "b": 3.0, "c": 2.0}
+    assert grains == {"a": 5.0, "b": 5.0, "c": 10.0}
+
+
+def test_a_file_that_somebody_deleted_or_altered_is_back_after_a_run(lab):
+    lab.run()
+    (lab.results / "summary.json").unlink()
+    lab.run()
+    assert set(lab.summary()) == set("abc")
+    (lab.results / "summary.json").write_text("{}")
+    lab.run()
+    assert set(lab.summary()) == set("abc")
+
+
+def test_the_time_that_is_given_ends_a_run_and_the_next_goes_on(lab):
+    told = lab.run(max_hours=0)
+    assert lab.states(told) == {"a": "left", "b": "left", "c": "left"}
+    assert lab.toys.executions() == ["summed-0"]
+    assert lab.states(lab.run()) == {"a": "ran", "b": "ran", "c": "ran"}
+
+
+def test_sequences_are_chosen_by_name_and_by_when_they_changed(lab):
+    assert lab.states(lab.run(only=["a", "[c]"])) == {"a": "ran", "c": "ran"}
+    assert lab.states(lab.run(since="2999-01-01")) == {}
+    assert lab.states(lab.run(since="1h")) == {"a": "fresh", "b": "ran", "c": "fresh"}
+    with pytest.raises(ConfigError, match="no sequence has such a name; there are: a, b, c"):
+        lab.run(only=["walk*"])
+
+
+def test_a_program_hears_of_failures_with_the_path_of_the_summary(lab):
+    heard = lab.file.parent / "heard"
+    script = lab.file.parent / "hook.py"
+    script.write_text(f"import sys\nopen({str(heard)!r}, 'w').write('|'.join(sys.argv[1:]))")
+    lab.write(on_failure=[shutil.which("python3") or "python3", str(script), "$(id) ; a b"])
+    lab.run()
+    assert not heard.exists()
+    lab.toys.flag("fail-points-31")
+    lab.take("b", 31, 40)
+    lab.run()
+    assert heard.read_text() == f"$(id) ; a b|{lab.results / 'dataset.json'}"
+
+
+def test_a_program_that_is_not_there_is_told_of(lab):
+    lab.write(on_failure=["/no/such/program"])
+    lab.toys.flag("fail-points-30")
+    assert "No such file" in lab.run()["on_failure"]
+
+
+def test_what_no_run_needs_goes_where_that_is_asked_for(lab):
+    lab.write(retention={"keep_last": 1})
+    lab.run()
+    before = len(list((lab.results / "store" / "artifacts").rglob("*.zip")))
+    lab.take("b", 300, 400, 500)
+    told = lab.run()
+    assert told["deleted"]["artifacts"] > 0
+    assert len(list((lab.results / "store" / "artifacts").rglob("*.zip"))) <= before
+    assert lab.states(lab.run()) == {"a": "fresh", "b": "fresh", "c": "fresh"}
