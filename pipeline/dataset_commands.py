@@ -177,7 +177,7 @@ class Progress:
 
     def hear(self, event: dict[str, Any]) -> None:
         """Counts an event and prints what is worth a line."""
-        name = event["sequence"]
+        name = event["name"]
         if event["event"] == "finish":
             self._ran[name] = self._ran.get(name, 0) + 1
         elif event["event"] == "end" and (event["status"] != "done" or name in self._ran):

@@ -10,7 +10,7 @@ from kinetree.pipeline.outcome import Outcome
 from kinetree.pipeline.snapshot import Snapshot
 
 PlannedState = Literal["new", "changed", "fresh", "failed", "unfinished", "refused"]
-COLUMNS = ("sequence", "state", "nodes", "seconds", "why")
+COLUMNS = ("name", "state", "nodes", "seconds", "why")
 
 
 @dataclass(frozen=True)

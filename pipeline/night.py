@@ -44,7 +44,7 @@ class Named:
 
     def hear(self, event: dict[str, Any]) -> None:
         """Passes the event on with the sequence's name."""
-        self.listener.hear({"sequence": self.name, **event})
+        self.listener.hear({"name": self.name, **event})
 
 
 @dataclass
