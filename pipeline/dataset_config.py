@@ -1,6 +1,6 @@
 """The configuration of a data set: which sequences, what all of them share, what some have of their own.
 
-sequences: scans/*          one folder or file each; or a list, or names with paths
+sequences: takes/*          one folder or file each; or a list, or names with paths
 name: "{stem}"              how a name is made of a path
 output: results/{name}
 store: results/store        shared
@@ -93,7 +93,7 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
         if key not in {*known, *RUN_KEYS, *KEYS}:
             raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), {*known, *RUN_KEYS, *KEYS})}")
     if "sequences" not in given:
-        raise ConfigError(f"{where}: sequences is missing: say which there are, e.g. sequences: scans/*")
+        raise ConfigError(f"{where}: sequences is missing: say which there are, e.g. sequences: takes/*")
     inputs, notes = sequences(given["sequences"], given.get("name", "{stem}"), base, where)
     template = _output(given.get("output", OUTPUT), where)
     shared = {key: value for key, value in given.items() if key not in KEYS}

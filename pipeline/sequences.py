@@ -34,7 +34,7 @@ def sequences(given: Any, template: Any, base: Path, where: str) -> tuple[dict[s
     patterns = [given] if isinstance(given, str) else given
     if not isinstance(patterns, Sequence) or isinstance(patterns, bytes) or not patterns:
         raise ConfigError(
-            f"{where}: sequences: expected a pattern such as scans/*, a list of patterns and paths, or names with paths, got"
+            f"{where}: sequences: expected a pattern such as takes/*, a list of patterns and paths, or names with paths, got"
             f" {given!r}"
         )
     found, empty = _matched([_absolute(_text(p, f"{where}: sequences"), base) for p in patterns])
