@@ -28,6 +28,7 @@ from kinetree.pipeline.sizes import bytes_of
 
 if TYPE_CHECKING:
     from kinetree.pipeline.events import Listener
+    from kinetree.pipeline.files import Settling
     from kinetree.pipeline.inspect import Pipeline
 
 REMARKS_PRINTED = 12
@@ -73,6 +74,13 @@ def run(
         Path | None,
         typer.Option("--log-json", metavar="FILE", help="Append every event of the run to this file, one JSON a line."),
     ] = None,
+    follow: Annotated[
+        bool, typer.Option("--follow", help="Go on as the input grows: compute each file as soon as it is complete.")
+    ] = False,
+    follow_idle: Annotated[
+        float | None,
+        typer.Option("--follow-idle", min=0, metavar="SECONDS", help="Follow until nothing new came for so long."),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Run the steps that are out of date and say where the results are.
@@ -93,7 +101,30 @@ def run(
         **{name: str(file.absolute()) for name, file in files.items() if file is not None},
     )
     chosen = {"until": until, "force": force, "made_with": made_with}
-    compute_and_report(Pipeline.of(compute), **chosen, quiet=quiet, log_json=log_json, as_json=as_json)
+    told: dict[str, Any] = {**chosen, "quiet": quiet, "log_json": log_json, "as_json": as_json}
+    if follow or follow_idle is not None:
+        _follow(Pipeline.of(compute), follow_idle, told)
+    else:
+        compute_and_report(Pipeline.of(compute), **told)
+
+
+def _follow(pipeline: "Pipeline", idle: float | None, told: dict[str, Any]) -> None:
+    """Computes again and again as the input grows; raises typer.Exit with code 1 where nodes of the last run failed."""
+    from kinetree.pipeline.follow import follow
+
+    failed = False
+
+    def compute(settling: "Settling") -> None:
+        nonlocal failed
+        try:
+            compute_and_report(pipeline, **told, settling=settling)
+            failed = False
+        except typer.Exit:
+            failed = True
+
+    follow(pipeline, compute, lambda text: err.print(printable(text), markup=False), idle=idle)
+    if failed:
+        raise typer.Exit(1)
 
 
 def compute_and_report(
@@ -105,13 +136,16 @@ def compute_and_report(
     quiet: bool = False,
     log_json: Path | None = None,
     as_json: bool = False,
+    settling: "Settling | None" = None,
 ) -> None:
     """Runs a pipeline with its progress and prints the summary, as `run` does.
 
     raises : typer.Exit with code 1 where nodes failed; what `Pipeline.run` raises; ConfigError where the log cannot be written
     """
     with _progress(pipeline, quiet or as_json, log_json) as listeners:
-        summary = pipeline.run(until=until or (), force=force or (), made_with=made_with or (), listeners=listeners)
+        summary = pipeline.run(
+            until=until or (), force=force or (), made_with=made_with or (), listeners=listeners, settling=settling
+        )
     if as_json:
         print_json(summary)
     elif not quiet:

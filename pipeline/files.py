@@ -26,20 +26,47 @@ UNREADABLE = "unreadable: "
 
 
 @dataclass
+class Settling:
+    """Which files are complete: those that stood still from one look to the next."""
+
+    _before: dict[Path, tuple[int, ...]] = field(default_factory=dict)
+    _now: dict[Path, tuple[int, ...]] = field(default_factory=dict)
+
+    def look(self) -> None:
+        """Another look begins: what is asked from now on is compared with the look before."""
+        self._before, self._now = self._now, {}
+
+    def is_complete(self, path: Path) -> bool:
+        """Whether a file is as it was in the look before; not the first time that it is seen."""
+        try:
+            stat = path.stat()
+        except OSError:
+            return False
+        self._now[path] = (stat.st_size, stat.st_mtime_ns, stat.st_ino)
+        return self._before.get(path) == self._now[path]
+
+
+@dataclass
 class Files:
     """Gives digests of files and of the parts of files; `save` keeps what was learnt in the store."""
 
     store: Store
+    settling: Settling | None = None
+    """Which files are complete while the input grows; None takes all as they are."""
     _known: dict[str, Any] = field(default_factory=dict)
     _learnt: bool = False
     _listed: dict[str, Listed] = field(default_factory=dict)
     """What was found in buckets, by address."""
 
     @staticmethod
-    def of(store: Store) -> "Files":
+    def of(store: Store, settling: Settling | None = None) -> "Files":
         """The memory that this store keeps, empty where there is none or it is unreadable."""
         known = unsealed(store.place.get(MEMORY))
-        return Files(store, known if isinstance(known, dict) else {})
+        return Files(store, settling, known if isinstance(known, dict) else {})
+
+    def complete(self, paths: Sequence[Path]) -> list[Path]:
+        """Those of the paths whose file is complete: all of them, unless the input is followed as it grows."""
+        return [path for path in paths if self.settling is None or self.settling.is_complete(path)]
 
     @staticmethod
     def is_remote(where: str) -> bool:

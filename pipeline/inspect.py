@@ -21,7 +21,7 @@ from kinetree.pipeline.config import Config
 from kinetree.pipeline.diff import difference
 from kinetree.pipeline.drawn_graph import DrawnGraph
 from kinetree.pipeline.events import Account, Listener, Watch
-from kinetree.pipeline.files import Files
+from kinetree.pipeline.files import Files, Settling
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
@@ -132,14 +132,16 @@ class Pipeline:
         force: Iterable[str] = (),
         made_with: Iterable[str] = (),
         listeners: Iterable[Listener] = (),
+        settling: Settling | None = None,
     ) -> RunSummary:
         """Runs what is out of date; returns the content of run.json and the run's name, in which failed nodes are listed.
 
-        client : a `distributed.Client` to run on; None runs where the configuration says
-        raises : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
+        client   : a `distributed.Client` to run on; None runs where the configuration says
+        settling : which files of an input that grows are complete; None takes all
+        raises   : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
         """
         started = time.perf_counter()
-        files = Files.of(self.store)
+        files = Files.of(self.store, settling)
         there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
         session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
         files.save()

@@ -129,10 +129,11 @@ def _found(where: str, files: Files) -> dict[int, Source]:
     if kind == "silhouettes":
         return _silhouettes(path, files)
     if kind == "packed silhouettes":
-        return _numbered(_packed_silhouettes([written(p) for p in found], files), found)
+        found = _complete([written(p) for p in found], where, files)
+        return _numbered(_packed_silhouettes(found, files), found)
     if kind == "packed volumes" or (kind == "meshes" and path.suffix == ".npz"):
         return dict(enumerate(_packed_volumes(path, files) if kind == "packed volumes" else _packed(path, "npz", files)))
-    paths = [written(p) for p in (found if kind == "volumes" else mesh_files(where))]
+    paths = _complete([written(p) for p in (found if kind == "volumes" else mesh_files(where))], where, files)
     form: Kind = "volume" if kind == "volumes" else "file"
     contents = files.digests(paths)
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
@@ -154,6 +155,14 @@ def _in_bucket(where: str, files: Files) -> dict[int, Source]:
     told = files.parts_of_each([named[path] for path in paths], REMOTE, _content_and_measures)
     sources = [Source(content=content, path=named[path]) for path, (content, _) in zip(paths, told, strict=True)]
     return _numbered(sources, paths)
+
+
+def _complete(paths: Sequence[Path], where: str, files: Files) -> list[Path]:
+    """The files that are complete, of an input that may grow; raises SourceError where none is."""
+    complete = files.complete(paths)
+    if not complete:
+        raise SourceError(f"{where}: no file is complete yet")
+    return complete
 
 
 def _numbered(sources: Sequence[Source], paths: Sequence[PurePath]) -> dict[int, Source]:
@@ -248,7 +257,9 @@ def name(frame_source: Source) -> str:
 def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
     """Every frame of a folder with a folder of images for every camera."""
     calibrated, calibration, contents = _calibrated(folder, files)
-    frames = mask_files(folder, calibration)
+    frames = [(number, masks) for number, masks in mask_files(folder, calibration) if _are_complete(masks, files)]
+    if not frames:
+        raise SourceError(f"{folder}: no frame is complete yet")
     digests = dict(zip(paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths), strict=True))
     made = [
         Source(
@@ -265,6 +276,12 @@ def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
     ]
     numbers = [number for number, _ in frames]
     return dict(zip(numbers if are_frame_numbers(numbers) else range(len(made)), made, strict=True))
+
+
+def _are_complete(masks: Sequence[Path | None], files: Files) -> bool:
+    """Whether a frame has all masks that it will have; while its input is followed every camera must have one."""
+    there = [path for path in masks if path is not None]
+    return len(files.complete(there)) == len(there) and (files.settling is None or len(there) == len(masks))
 
 
 def _packed_silhouettes(found: Sequence[Path], files: Files) -> list[Source]:

@@ -193,7 +193,7 @@ def executed(name: str, number: float) -> None:
 @origin(over="frame")
 def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     """Lists the files."""
-    paths = sorted(Path(params.input).glob("*.txt"))
+    paths = files.complete(sorted(Path(params.input).glob("*.txt")))
     if not paths:
         raise SourceError(f"no frames in {params.input}")
     found = [Source(content=c, path=str(p)) for c, p in zip(files.digests(paths), paths, strict=True)]
