@@ -3,14 +3,14 @@
 mesoscopic: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
 what was measured to be better in place of some of its steps. mesoscopic-2014: the same to the paper's letter.
 reeb: Finding kinematic structure in time series volume data (Mukasa, Nobuhara, Maki, Matsuyama 2009): graphs inside the body
-instead of aligned surfaces.
+instead of aligned surfaces; the surface is aligned from there. reeb-2009: the same to the paper's letter.
 """
 
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.input import INPUT
-from kinetree.tasks.paper_2009 import PAPER_2009
+from kinetree.tasks.paper_2009 import LETTER_2009, PAPER_2009, SURFACE_2009
 from kinetree.tasks.paper_2014 import PAPER_2014
-from kinetree.tasks.registration import REGISTRATION
+from kinetree.tasks.registration import ALIGNED, REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, RESULTS
 from kinetree.tasks.structure import STRUCTURE
@@ -19,11 +19,13 @@ from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.skeleton import skeleton
 from kinetree.tasks.topology import TOPOLOGY
 
+POSES = (pose_refinement, further_pose, skeleton)
+"""What turns a kinematic tree into the skeleton, in every method that has one."""
+
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
     "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, frame_confidence, *FIGURES_2014, *RESULTS)),
-    "reeb": Graph.of(
-        (*INPUT, *TOPOLOGY, *PAPER_2009, pose_refinement, further_pose, skeleton, frame_confidence, *FIGURES_2009, *RESULTS)
-    ),
+    "reeb": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *SURFACE_2009, *ALIGNED, *POSES, *FIGURES_2009, *RESULTS)),
+    "reeb-2009": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *LETTER_2009, frame_confidence, *POSES, *FIGURES_2009, *RESULTS)),
 }
 """The graph of each method, checked when this module is imported."""

@@ -17,6 +17,7 @@ from kinetree.schemas.paper_2009.contact_kinds import ContactKinds
 from kinetree.schemas.paper_2009.graph_deformation import GraphDeformation, GraphDeformationParams
 from kinetree.schemas.paper_2009.graph_motion import GraphMotion, GraphMotionParams
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
+from kinetree.schemas.paper_2009.graph_tracking import GraphTrackingParams
 from kinetree.schemas.paper_2009.initial_frames import InitialFrames, InitialFramesParams
 from kinetree.schemas.paper_2009.initial_model import InitialModel, InitialModelParams
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
@@ -25,6 +26,10 @@ from kinetree.schemas.paper_2009.perg import Perg, PergParams
 from kinetree.schemas.paper_2009.reeb_graph import ReebGraph, ReebGraphParams
 from kinetree.schemas.paper_2009.similarity import Similarity, SimilarityParams
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
+from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.registration.refit import Refit
+from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.topology.extrema import Extrema, ExtremaParams
 from kinetree.schemas.topology.geodesics import GeodesicsParams
@@ -35,7 +40,9 @@ from kinetree.tasks.paper_2009.contact_kinds import contact_kinds
 from kinetree.tasks.paper_2009.graph_alignment import graph_alignment
 from kinetree.tasks.paper_2009.graph_deformation import graph_deformation
 from kinetree.tasks.paper_2009.graph_motion import graph_motion
+from kinetree.tasks.paper_2009.graph_reference import graph_reference
 from kinetree.tasks.paper_2009.graph_skeleton import graph_skeleton
+from kinetree.tasks.paper_2009.graph_tracking import graph_tracking
 from kinetree.tasks.paper_2009.initial_frames import initial_frames
 from kinetree.tasks.paper_2009.initial_model import initial_model
 from kinetree.tasks.paper_2009.integrated_structure import integrated_structure
@@ -43,6 +50,10 @@ from kinetree.tasks.paper_2009.node_clusters import node_clusters
 from kinetree.tasks.paper_2009.perg import perg
 from kinetree.tasks.paper_2009.reeb_graph import reeb_graph
 from kinetree.tasks.paper_2009.similarity import similarity
+from kinetree.tasks.registration.alignment import alignment
+from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.recovery import recovery
+from kinetree.tasks.registration.tracking_order import tracking_order
 from kinetree.tasks.topology.extrema import extrema
 from kinetree.tasks.topology.geodesics import geodesics
 from kinetree.tasks.topology.leaves import leaves
@@ -71,6 +82,10 @@ class Volumetric:
     integrated_structure: IntegratedStructure
     graph_motion: dict[int, GraphMotion]
     graph_alignment: dict[int, Alignment]
+    graph_reference: Reference
+    deformation_graph: DeformationGraph
+    graph_tracking: dict[int, Tracking]
+    alignment: dict[int, Alignment]
     contact_kinds: ContactKinds
     tree: KinematicTree
 
@@ -103,12 +118,39 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     one = integrated_structure(start, models, of, alike)
     motion = motions(one, start, moved, inner, mesh, tracks, GraphMotionParams(**forces))
     place = GraphSkeletonParams(joints="edges" if letter else "centres")
-    tree = graph_skeleton(one, motion, mesh, place)
-    aligned = {t: graph_alignment(m) for t, m in motion.items()}
+    carried = {t: graph_alignment(m) for t, m in motion.items()}
+    reference = graph_reference(one, runs)
+    nodes, tracked = followed(reference, one, motion, mesh)
+    aligned = carried if letter else aligned_by(reference, nodes, tracked, mesh)
+    tree = graph_skeleton(one, motion, aligned, mesh, place)
     touching = contact_kinds(one, motion, runs)
     return Volumetric(
-        body, mesh, ends, tracks, graphs, inner, alike, runs, start, models, moved, of, one, motion, aligned, touching, tree
-    )
+        body, mesh, ends, tracks, graphs, inner, alike, runs, start, models, moved, of, one, motion, carried,
+        reference, nodes, tracked, aligned, touching, tree,
+    )  # fmt: skip
+
+
+def followed(
+    reference: Reference, one: IntegratedStructure, motion: dict[int, GraphMotion], mesh: dict[int, Mesh]
+) -> tuple[DeformationGraph, dict[int, Tracking]]:
+    """The deformation graph of the default, and the surface bent onto every frame, in the order of the traversal."""
+    nodes = deformation_graph(reference, DeformationGraphParams(nodes=150))
+    order = tracking_order(reference, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"))
+    done: dict[int, Tracking] = {}
+    for frame in sorted(one.frames, key=lambda t: abs(t - one.frame)):
+        last = order.previous(frame)
+        before = None if last is None else done[last]
+        done[frame] = graph_tracking(mesh[frame], nodes, one, motion[frame], before, GraphTrackingParams())
+    return nodes, {t: done[t] for t in sorted(done)}
+
+
+def aligned_by(
+    reference: Reference, nodes: DeformationGraph, tracked: dict[int, Tracking], mesh: dict[int, Mesh]
+) -> dict[int, Alignment]:
+    """The surface as it was tracked, without the passes of the shelf registration."""
+    usual = recovery(nodes, tracked, mesh)
+    poses = {t: Refit(rotation=at.rotation, translation=at.translation) for t, at in tracked.items()}
+    return {t: alignment(mesh[t], reference, nodes, usual, (at,)) for t, at in poses.items()}
 
 
 def meshed(body: Known, t: int) -> Mesh:

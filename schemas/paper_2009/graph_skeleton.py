@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+from pydantic import Field
+
 from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
 
 
@@ -10,3 +12,6 @@ class GraphSkeletonParams(KinematicTreeParams):
 
     joints: Literal["centres", "edges"] = "centres"
     """centres: where two clusters turn about each other; edges: amid the edge at which they meet, as in the paper's figures."""
+    removal_cost: float = Field(default=0.0025, gt=0)
+    """Motion of the aligned surface left unexplained without a cluster, where joints are rotation centres; share of the root of
+    the area."""

@@ -25,8 +25,6 @@ class IntegratedStructure(InitialModel):
     """Cluster of every node."""
     part: Annotated[Longs, Array("int64", VERTEX)]
     """Cluster of every vertex."""
-    removal_cost: float
-    """The removal cost of its clusters, share of the root of the area."""
     correlation: Annotated[Floats, Array("float64", NODE)]
     """r(i, j) of every node with its parent in its own structure; 1 for the root."""
     before: Annotated[Ints, Array("int32", FRAME)]

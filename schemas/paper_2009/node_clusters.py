@@ -32,8 +32,6 @@ class NodeClusters(Artifact):
 
     structure: int
     """The structure."""
-    removal_cost: float
-    """The removal cost that it was made with, share of the root of the area."""
     cluster: Annotated[Longs, Array("int64", NODE)]
     """Cluster of every node."""
     part: Annotated[Longs, Array("int64", VERTEX)]

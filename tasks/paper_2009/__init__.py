@@ -6,7 +6,9 @@ from kinetree.tasks.paper_2009.graph_alignment import graph_alignment
 from kinetree.tasks.paper_2009.graph_deformation import graph_deformation
 from kinetree.tasks.paper_2009.graph_motion import graph_motion
 from kinetree.tasks.paper_2009.graph_projection import graph_projection
+from kinetree.tasks.paper_2009.graph_reference import graph_reference
 from kinetree.tasks.paper_2009.graph_skeleton import graph_skeleton
+from kinetree.tasks.paper_2009.graph_tracking import graph_tracking
 from kinetree.tasks.paper_2009.initial_frames import initial_frames
 from kinetree.tasks.paper_2009.initial_model import initial_model
 from kinetree.tasks.paper_2009.integrated_structure import integrated_structure
@@ -26,8 +28,11 @@ PAPER_2009 = (
     node_clusters,
     integrated_structure,
     graph_motion,
-    graph_alignment,
-    graph_projection,
     contact_kinds,
     graph_skeleton,
 )
+"""What both methods of 2009 have in common."""
+LETTER_2009 = (graph_alignment, graph_projection)
+"""The surface goes with the nodes, as the paper leaves it."""
+SURFACE_2009 = (graph_reference, graph_tracking)
+"""The surface is bent onto every frame by tasks of the shelf registration, from where the nodes carry it."""

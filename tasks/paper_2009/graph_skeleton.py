@@ -9,10 +9,11 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.paper_2009.graph_motion import GraphMotion
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
+from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.paper_2009.edge_joints import NodeMotion, edge_joints
-from kinetree.tasks.numerics.paper_2009.node_clusters import part_motions
+from kinetree.tasks.numerics.paper_2009.node_clusters import part_motions, rigid_clusters
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
@@ -23,13 +24,14 @@ from kinetree.tasks.structure.kinematic_tree import evidence_settings, tree_sett
 def graph_skeleton(
     integrated_structure: IntegratedStructure,
     motions: Mapping[int, GraphMotion],
+    alignment: Mapping[int, Alignment],
     meshes: Mapping[int, Mesh],
     params: GraphSkeletonParams,
 ) -> KinematicTree:
     """Places joints between clusters and gives the skeleton its skin, its lengths and its poses (2009, Sec. 2.4, 2.5)."""
     s = integrated_structure
     by_centres = params.joints == "centres"
-    tree, derivation = _centres(s, motions, meshes, params) if by_centres else (_edges(s, motions), None)
+    tree, derivation = _centres(s, alignment, meshes, params) if by_centres else (_edges(s, motions), None)
     count, parts = len(tree.parents), int(s.part.max()) + 1
     derived = derivation._asdict() if derivation else numerics.Derivation(
         np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.full(parts, -1), (),
@@ -46,19 +48,20 @@ def graph_skeleton(
 
 
 def _centres(
-    s: IntegratedStructure, motions: Mapping[int, GraphMotion], meshes: Mapping[int, Mesh], params: GraphSkeletonParams
+    s: IntegratedStructure, alignment: Mapping[int, Alignment], meshes: Mapping[int, Mesh], params: GraphSkeletonParams
 ) -> tuple[numerics.KinematicTree, numerics.Derivation]:
-    """Joints where two clusters turn about each other, as for the default method (ours)."""
-    V, F, moved, frames = np.array(s.vertices), np.array(s.faces), list(motions.values()), tuple(motions)
-    x, confidence = np.stack([m.vertices for m in moved]), np.stack([m.confidence for m in moved])
+    """Joints where clusters turn about each other: the nodes' pieces of the aligned surface that move as one (ours)."""
+    V, F, aligned, frames = np.array(s.vertices), np.array(s.faces), list(alignment.values()), tuple(alignment)
+    x, confidence = np.stack([a.vertices for a in aligned]), np.stack([a.confidence for a in aligned])
     area = Surface.of(V, F).area
     evidence = FrameEvidence(
         confidence,
-        np.stack([m.residual for m in moved]),
+        np.stack([a.residual for a in aligned]),
         lambda t: (np.array(meshes[frames[t]].vertices), np.array(meshes[frames[t]].faces, np.int64)),
         evidence_settings(params),
     )
-    part = part_motions(V, x, confidence, area, np.array(s.part), s.removal_cost)
+    label = rigid_clusters(V, F, x, confidence, area, np.array(s.label), params.removal_cost)
+    part = part_motions(V, x, confidence, area, label, params.removal_cost)
     leaves = np.array(s.leaf_vertex)
     return numerics.kinematic_tree(
         V, F, x, area, part.label, part.R, part.t, part.residual, leaves, confidence, evidence,

@@ -43,7 +43,6 @@ def integrated_structure(
         source=one.source,
         cluster=own.cluster if whole else one.cluster,
         part=own.part if whole else one.cluster[base.label],
-        removal_cost=own.removal_cost,
         correlation=own.correlation,
         before=np.where(in_base, initial_frames.before, reached),
     )

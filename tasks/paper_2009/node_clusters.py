@@ -33,7 +33,6 @@ def node_clusters(
         cluster = _of_nodes(part, label, len(parents))
     return NodeClusters(
         structure=index[0],
-        removal_cost=params.removal_cost,
         cluster=cluster,
         part=part,
         correlation=np.concatenate([[1.0], r]),

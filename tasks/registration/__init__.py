@@ -27,3 +27,5 @@ REGISTRATION = (
     projection,
     frame_confidence,
 )
+ALIGNED = tuple(task for task in REGISTRATION if task not in (reference, tracking))
+"""From any reference and its tracked frames to the alignment."""

@@ -5,17 +5,20 @@ import pytest
 from volumetric import volumetric
 
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
-from kinetree.schemas.paper_2009.node_clusters import NodeClustersParams
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.tasks.paper_2009.graph_skeleton import graph_skeleton
-from kinetree.tasks.paper_2009.integrated_structure import integrated_structure
-from kinetree.tasks.paper_2009.node_clusters import node_clusters
 
 
 def errors(letter: bool) -> np.ndarray:
     """(arm,) mean distance of the nearest joint from each true one."""
-    here = volumetric(letter=letter)
-    true = np.einsum("tpxy,py->tpx", here.body.R, here.body.joints) + here.body.t
-    return np.linalg.norm(here.tree.positions[:, :, None] - true[:, None, 1:], axis=3).mean(axis=0).min(axis=0)
+    return away(volumetric(letter=letter).tree)
+
+
+def away(tree: KinematicTree) -> np.ndarray:
+    """(arm,) the same of any tree of the body."""
+    body = volumetric().body
+    true = np.einsum("tpxy,py->tpx", body.R, body.joints) + body.t
+    return np.linalg.norm(tree.positions[:, :, None] - true[:, None, 1:], axis=3).mean(axis=0).min(axis=0)
 
 
 def test_joints_are_where_arms_turn() -> None:
@@ -35,15 +38,15 @@ def test_bones_have_one_length_in_all_frames(letter: bool) -> None:
     assert np.allclose(length, tree.lengths[child])
 
 
-def test_removal_cost_of_the_clusters_holds_for_their_motions_too() -> None:
+def test_clusters_that_cost_less_than_asked_for_are_one_part() -> None:
     here = volumetric()
-    dear = NodeClustersParams(removal_cost=10.0)
-    clusters = {0: node_clusters((0,), here.initial_model[0], here.graph_deformation, dear)}
-    one = integrated_structure(here.initial_frames, here.initial_model, clusters, here.similarity)
-    assert one.removal_cost == 10.0
-    costs: tuple[dict[str, float], ...] = ({}, {"removal_cost": 10.0})
-    same, other = (
-        graph_skeleton(here.integrated_structure.model_copy(update=cost), here.graph_motion, here.mesh, GraphSkeletonParams())
-        for cost in costs
-    )
-    assert same == here.tree != other
+    given = (here.integrated_structure, here.graph_motion, here.alignment, here.mesh)
+    kinds = [graph_skeleton(*given, GraphSkeletonParams(removal_cost=cost)).kinds for cost in (0.0025, 10.0)]
+    assert [k.count("joint") for k in kinds] == [3, 0]
+
+
+def test_joints_follow_the_aligned_surface_and_not_the_nodes() -> None:
+    here = volumetric()
+    true = {t: a.model_copy(update={"vertices": here.body.x[t]}) for t, a in here.alignment.items()}
+    tree = graph_skeleton(here.integrated_structure, here.graph_motion, true, here.mesh, GraphSkeletonParams())
+    assert away(tree).max() < 0.5 * errors(letter=False).max()

@@ -50,6 +50,7 @@ PLOTS_OF_METHOD: Mapping[str, Plots] = {
     "mesoscopic": PLOTS,
     "mesoscopic-2014": {**_BODY, **_PARTS_2014, **_MOTION},
     "reeb": {**_BODY, **_MOTION, **_GRAPHS_2009},
+    "reeb-2009": {**_BODY, **_MOTION, **_GRAPHS_2009},
 }
 """The pictures of each method."""
 

@@ -1,0 +1,1 @@
+"""The mesh of the integrated structure as the reference of Step II; no parameters."""
