@@ -19,15 +19,15 @@ import tempfile
 import time
 import unittest.mock
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
 from kinetree.pipeline import execute
+from kinetree.pipeline.history import History
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.node import Node, project
-from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.node import Node, parse, project
 from kinetree.pipeline.task import Space
 
 WORKERS = (1, 2, 4, 8, 16, 64)
@@ -61,7 +61,7 @@ def main() -> None:
     chosen = options.parse_args()
     with tempfile.TemporaryDirectory() as beside:
         pipeline = Pipeline.of(chosen.folder) if chosen.folder else computed(Path(beside), chosen.frames, chosen.vertices)
-        jobs = recorded(pipeline.schedule(until=chosen.until or pipeline.tasks.unasked))
+        jobs = recorded(pipeline, chosen.until or pipeline.tasks.unasked)
     jobs = stretched(jobs, chosen.times)
     print(f"{len(jobs)} nodes, {sum(job.seconds for job in jobs.values()):.1f} s of computing")
     alone = makespan(jobs, 1)
@@ -84,24 +84,26 @@ def computed(folder: Path, frames: int, vertices: int) -> Pipeline:
     return pipeline
 
 
-def recorded(schedule: Schedule) -> Jobs:
-    """The nodes of a schedule with the seconds on record; raises ValueError where a node has no record."""
-    graph = schedule.graph
-    nodes: defaultdict[str, list[Node]] = defaultdict(list)
-    for node in schedule.entries:
-        nodes[node.task].append(node)
+def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
+    """The nodes that the last runs into a folder computed, of the named tasks and what they need, with the seconds on record.
+
+    raises : ValueError where nothing is on record
+    """
+    graph = pipeline.tasks.until(names)
+    records = History.of(pipeline.store, pipeline.config).records().items()
+    found = {parse(label, graph): record for label, record in records if record.task in graph.by_name}
+    if not found:
+        raise ValueError(f"{pipeline.config.output} holds no record; run it first")
+    depth = {task.name: number for number, task in enumerate(graph.tasks)}
     jobs: Jobs = {}
-    for depth, task in enumerate(graph.tasks):
-        tellers = {graph.openers[space] for space in graph.needed_spaces(task)}
-        tellers |= {graph.writers[task.along]} if task.along else set()
-        for node in () if task.is_origin else nodes[task.name]:
-            entry = schedule.entries[node]
-            if entry.record is None or entry.inputs is None:
-                raise ValueError(f"{entry.label} has no record; run the folder to its end first")
-            read = {n for _, found in entry.inputs for n in found}
-            read |= {n for teller in tellers for n in nodes[teller.name] if _agree(task.over, node, teller.over, n)}
-            before = frozenset(n for n in read if n != node and not graph.by_name[n.task].is_origin)
-            jobs[node] = Job(node, task.over, depth, entry.record.seconds, before)
+    for node, record in found.items():
+        task = graph.by_name[node.task]
+        tellers = {graph.openers[space].name for space in graph.needed_spaces(task)}
+        tellers |= {graph.writers[task.along].name} if task.along else set()
+        read = {parse(label, graph) for argument in record.inputs for label in argument["nodes"]}
+        read |= {n for n in found if n.task in tellers and _agree(task.over, node, graph.by_name[n.task].over, n)}
+        before = frozenset(n for n in read if n in found and n != node)
+        jobs[node] = Job(node, task.over, depth[node.task], record.seconds, before)
     return jobs
 
 
