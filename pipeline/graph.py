@@ -21,6 +21,10 @@ from kinetree.schemas.array import Artifact
 AnyTask = Task[..., Any]
 
 
+ASIDE = 2
+"""A task is aside where the longest way through it is shorter by more tasks than this than the longest of all."""
+
+
 @dataclass(frozen=True)
 class Graph:
     """Tasks in an order in which each comes after what it reads."""
@@ -69,6 +73,19 @@ class Graph:
     def unasked(self) -> tuple[str, ...]:
         """Names of the tasks that run without being named."""
         return tuple(task.name for task in self.tasks if not task.on_request)
+
+    @cached_property
+    def aside(self) -> frozenset[str]:
+        """Names of the tasks that little waits for, so that they can go last."""
+        until: dict[str, int] = {}
+        beyond = dict.fromkeys(self.by_name, 0)
+        for task in self.tasks:
+            until[task.name] = max((until[read.name] + 1 for read in self.before(task)), default=0)
+        for task in reversed(self.tasks):
+            for read in self.before(task):
+                beyond[read.name] = max(beyond[read.name], beyond[task.name] + 1)
+        ways = {name: until[name] + beyond[name] for name in until}
+        return frozenset(name for name, way in ways.items() if way + ASIDE < max(ways.values()))
 
     def task(self, name: str) -> AnyTask:
         """The task of that name; raises UnknownNodeError with its new name or the nearest one."""

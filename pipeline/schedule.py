@@ -60,6 +60,7 @@ class Schedule:
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
         self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
+        self._depth = {name: n - len(graph.tasks) * (name in graph.aside) for name, n in self._rank.items()}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
         self._unlisted: dict[Node, None] = {}
         self._ready: list[tuple[int, Index, Node]] = []
@@ -96,7 +97,10 @@ class Schedule:
                 self._unlisted[node] = None
 
     def ready(self) -> Iterator[Entry]:
-        """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next."""
+        """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next.
+
+        What little waits for goes last: it fills the time in which nothing else is ready.
+        """
         while self._ready:
             entry = self.entries[heapq.heappop(self._ready)[2]]
             if entry.state == "stale":
@@ -107,11 +111,12 @@ class Schedule:
         """How deep in the graph the next ready node stands, 0 to 1; None where no node is ready."""
         while self._ready and self.entries[self._ready[0][2]].state != "stale":
             heapq.heappop(self._ready)
-        return -self._ready[0][0] / len(self._rank) if self._ready else None
+        return self._rank[self._ready[0][2].task] / len(self._rank) if self._ready else None
 
     def send(self, entry: Entry) -> list[Entry]:
         """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
 
+        What little waits for does not travel with what much waits for.
         An artifact of it that was found damaged is removed first, so that it is made again.
         returns : these nodes, each after those of them that it reads
         """
@@ -124,7 +129,7 @@ class Schedule:
             for node in self._dependents[member.node]:
                 other = self.entries[node]
                 here = node.at == entry.node.at and other.task.over == entry.task.over
-                if here and other.state == "waits" and node not in inside:
+                if here and other.state == "waits" and node not in inside and self._goes_along(other, entry):
                     if node not in self._unlisted and other.waits <= inside:
                         inside.add(node)
                         parcel.append(other)
@@ -132,6 +137,9 @@ class Schedule:
         for member in parcel:
             member.state = "running"
         return parcel
+
+    def _goes_along(self, other: Entry, first: Entry) -> bool:
+        return other.task.name not in self.graph.aside or first.task.name in self.graph.aside
 
     def complete(self, node: Node, key: str, artifact: str, record: Record | None, *, ran: bool) -> list[Entry]:
         """A node has its artifact: its dependents settle, what it opens is laid out; returns what turned out fresh."""
@@ -207,7 +215,7 @@ class Schedule:
         entry.redone += 1
         self._values.pop(node, None)
         entry.state, entry.reasons, entry.damaged = "stale", (Reason("artifact", what),), entry.artifact
-        heapq.heappush(self._ready, (-self._rank[node.task], node.at, node))
+        heapq.heappush(self._ready, (-self._depth[node.task], node.at, node))
 
     def value(self, node: Node) -> Artifact:
         """The artifact of a node that has one, arrays read lazily."""
@@ -356,7 +364,7 @@ class Schedule:
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
             return True
         entry.state, entry.reasons = "stale", self._reasons(entry, work, record)
-        heapq.heappush(self._ready, (-self._rank[entry.node.task], entry.node.at, entry.node))
+        heapq.heappush(self._ready, (-self._depth[entry.node.task], entry.node.at, entry.node))
         return False
 
     def _asked_again(self, entry: Entry, record: Record) -> bool:
