@@ -56,6 +56,17 @@ class Bone(_FileObject):
     """Length in the file's unit, the same in every frame."""
 
 
+class InterpolatedFrame(_FileObject):
+    """A frame that was not measured; its pose lies between those of the measured frames around it."""
+
+    frame: Annotated[int, Field(ge=0)]
+    """Source frame number."""
+    cause: Literal["dropped", "missing"]
+    """dropped: its file cannot be used; missing: no file has its number."""
+    reason: str
+    """Why its file cannot be used, in words; empty where there is none."""
+
+
 class Document(_FileObject):
     """What skeleton.json holds: the joint tree and every joint's position in every frame."""
 
@@ -83,6 +94,8 @@ class Document(_FileObject):
     """The bones, one for every joint but the root."""
     confidence: list[list[Share]]
     """Confidence of every joint's position in every frame, 0 to 1, [frame][joint]."""
+    interpolated: list[InterpolatedFrame] = []
+    """The frames that were not measured, which have little confidence."""
 
 
 class SkeletonJson(Exported):

@@ -5,6 +5,7 @@ from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
+from kinetree.tasks.results.complete_skeleton import complete_skeleton
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.excerpt import excerpt
 from kinetree.tasks.results.glb import glb
@@ -27,6 +28,7 @@ from kinetree.tasks.results.usd import usd
 RESULTS = (
     truth,
     evaluation,
+    complete_skeleton,
     glb,
     bvh,
     skeleton_json,

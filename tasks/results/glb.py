@@ -1,8 +1,8 @@
 """Exports the animated body as GLB, for animators."""
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.glb import Glb, GlbParams
-from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import upright_rotation
 from kinetree.tasks.results.formats.gltf import gltf
@@ -10,7 +10,7 @@ from kinetree.tasks.results.formats.placement import placed, placement
 
 
 @task()
-def glb(skeleton: Skeleton, up_direction: UpDirection, params: GlbParams) -> Glb:
+def glb(skeleton: CompleteSkeleton, up_direction: UpDirection, params: GlbParams) -> Glb:
     """Writes skeleton.glb, the reference mesh skinned to the animated skeleton, upright and in metres (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
     body = placed(skeleton, upright_rotation(known.up), known.metres)

@@ -1,13 +1,13 @@
 """Exports the skeleton as JSON, for programs."""
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.skeleton_json import SkeletonJson
-from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import skeleton_file
 
 
 @task()
-def skeleton_json(skeleton: Skeleton, up_direction: UpDirection) -> SkeletonJson:
+def skeleton_json(skeleton: CompleteSkeleton, up_direction: UpDirection) -> SkeletonJson:
     """Writes skeleton.json, the joint tree with every joint's position and rotation in every frame (ours)."""
-    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton, up_direction)})
+    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton, up_direction, skeleton.interpolated)})

@@ -1,14 +1,14 @@
 """Exports motion, positions, confidence, angles and lengths as tables."""
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.tables import Tables, TablesParams
-from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.formats.tables import motion_derivatives, table_files
 from kinetree.tasks.results.formats.tables import tables as all_tables
 
 
 @task(on_request=True)
-def tables(skeleton: Skeleton, params: TablesParams) -> Tables:
+def tables(skeleton: CompleteSkeleton, params: TablesParams) -> Tables:
     """Writes tables of motion, of angles between bones and of bone lengths, as CSV or Parquet (ours)."""
     found = motion_derivatives(skeleton, params.window, params.degree)
     files = table_files(all_tables(skeleton, found), params.form)

@@ -1,8 +1,8 @@
 """Exports the animated body as USD, for film and simulation."""
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.usd import Usd, UsdParams
-from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import upright_rotation
 from kinetree.tasks.results.formats.placement import placed, placement
@@ -10,7 +10,7 @@ from kinetree.tasks.results.formats.usd import usd as usd_text
 
 
 @task(on_request=True)
-def usd(skeleton: Skeleton, up_direction: UpDirection, params: UsdParams) -> Usd:
+def usd(skeleton: CompleteSkeleton, up_direction: UpDirection, params: UsdParams) -> Usd:
     """Writes skeleton.usda, the reference mesh skinned to the animated skeleton (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
     up = "z" if known.up == "z" else "y"

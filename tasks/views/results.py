@@ -11,6 +11,7 @@ from kinetree.schemas.array import Floats, Index
 from kinetree.schemas.results.bvh import Bvh
 from kinetree.schemas.results.c3d import C3d
 from kinetree.schemas.results.comparison import Comparison, UnpairedJoint
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.exports import Exported, PlacedFile
 from kinetree.schemas.results.glb import Glb
@@ -24,6 +25,8 @@ from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.views.topology import UNSURE
 
 leave_group(Segmentation, "segmentation.zarr")
+NAMED_FRAMES = 8
+"""Most interpolated frames that are named one by one."""
 
 
 @files_of(Exported)
@@ -203,3 +206,11 @@ def _rounded(values: Floats) -> Any:
     if values.ndim > 1:
         return [_rounded(row) for row in values]
     return [float(f"{x:.6g}") if np.isfinite(x) else None for x in values]
+
+
+@remarks_of(CompleteSkeleton)
+def complete_skeleton_remarks(skeleton: CompleteSkeleton) -> tuple[str, ...]:
+    """Names the frames that were interpolated, with the reasons."""
+    told = [f"frame {each.frame}: interpolated, {each.reason or 'no file has its number'}" for each in skeleton.interpolated]
+    more = len(told) - NAMED_FRAMES
+    return (*told[:NAMED_FRAMES], *([f"{more} more frames were interpolated"] if more > 0 else []))

@@ -9,7 +9,9 @@ from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline import views
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.skeleton_json import Document
+from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import schema
 from kinetree.tasks.results.skeleton_json import skeleton_json
@@ -24,14 +26,16 @@ Z_UP = UpDirection(up="z", confidence=0.9)
 
 
 def text(skeleton):
-    return views.files(skeleton_json(skeleton, Z_UP), ())["skeleton.json"].decode()
+    fields = {name: getattr(skeleton, name) for name in Skeleton.model_fields}
+    complete = CompleteSkeleton(**fields, interpolated=())
+    return views.files(skeleton_json(complete, Z_UP), ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
     content = json.loads(text(body))
     assert list(content) == [
         "format", "unit", "fps", "up", "up_confidence", "frames", "seconds", "joints", "positions", "rotations", "bones",
-        "confidence",
+        "confidence", "interpolated",
     ]  # fmt: skip
     assert content["format"] == "kinetree.skeleton/2"
     assert (content["unit"], content["fps"], content["up"], content["frames"]) == ("mm", 10.0, "z", list(range(12)))

@@ -1,12 +1,14 @@
 """A skeleton as JSON, and the JSON Schema of that file (ours)."""
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from kinetree.schemas.array import Floats
-from kinetree.schemas.results.skeleton_json import FORMAT, Bone, Document, Joint, Rest
+from kinetree.schemas.results.complete_skeleton import Interpolated
+from kinetree.schemas.results.skeleton_json import FORMAT, Bone, Document, InterpolatedFrame, Joint, Rest
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames, seconds
@@ -16,8 +18,11 @@ DIGITS = 9
 """Decimals of quaternions and seconds."""
 
 
-def document(skeleton: Skeleton, up: UpDirection) -> Document:
-    """The content of skeleton.json: joints, rest pose, positions, rotations and confidence in every frame."""
+def document(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> Document:
+    """The content of skeleton.json: joints, rest pose, positions, rotations and confidence in every frame.
+
+    interpolated : the frames that were not measured
+    """
     parents = [None if p < 0 else p for p in skeleton.parents]
     lengths = skeleton.lengths.tolist()
     B = rest_frames(skeleton.rest, skeleton.parents)
@@ -35,6 +40,7 @@ def document(skeleton: Skeleton, up: UpDirection) -> Document:
         rotations=np.round(rotations, DIGITS).tolist(),
         bones=[Bone(parent=p, child=j, length=lengths[j]) for j, p in enumerate(parents) if p is not None],
         confidence=skeleton.confidence.tolist(),
+        interpolated=[InterpolatedFrame(**each.model_dump()) for each in interpolated],
     )
 
 
@@ -55,9 +61,9 @@ def _joints(skeleton: Skeleton, B: Floats) -> list[Joint]:
     ]
 
 
-def skeleton_file(skeleton: Skeleton, up: UpDirection) -> bytes:
+def skeleton_file(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> bytes:
     """The file skeleton.json, with one line a frame, so that people and `diff` can read it."""
-    fields = document(skeleton, up).model_dump(mode="json")
+    fields = document(skeleton, up, interpolated).model_dump(mode="json")
     entries = [f"  {json.dumps(name)}: {_lines(name, value)}" for name, value in fields.items()]
     return ("{\n" + ",\n".join(entries) + "\n}\n").encode()
 

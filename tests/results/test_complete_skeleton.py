@@ -1,0 +1,69 @@
+"""Contract of complete_skeleton: dropped and missing frames have poses in files, and are named."""
+
+import json
+
+import numpy as np
+from results.rigged_bodies import spider
+
+from kinetree.pipeline import views
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.input.source import BadFrame
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton, CompleteSkeletonParams
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.complete_skeleton import complete_skeleton
+from kinetree.tasks.results.skeleton_json import skeleton_json
+
+WHOLE = spider()
+POSES = ("positions", "rotation", "confidence")
+
+
+def without(*rows: int, **told: object) -> tuple[Skeleton, Sequence]:
+    """The spider without some frames."""
+    left = [t for t in range(len(WHOLE.frames)) if t not in rows]
+    frames = tuple(WHOLE.frames[t] for t in left)
+    kept = {name: np.array(getattr(WHOLE, name))[left] for name in POSES}
+    fields = {**{name: getattr(WHOLE, name) for name in Skeleton.model_fields}, **kept, "frames": frames}
+    return Skeleton(**fields), Sequence(frames=frames, fps=None, unit=None, **told)
+
+
+def completed(*rows: int, longest: int = 10, **told: object) -> CompleteSkeleton:
+    skeleton, sequence = without(*rows, **told)
+    return complete_skeleton(skeleton, sequence, CompleteSkeletonParams(longest=longest))
+
+
+def test_a_skeleton_of_all_frames_stays_as_it_is() -> None:
+    found = completed()
+    assert found.interpolated == ()
+    assert all(getattr(found, name).tobytes() == getattr(WHOLE, name).tobytes() for name in Skeleton.array_fields())
+    assert views.remarks(found) == ()
+
+
+def test_missing_frames_are_interpolated_and_measured_ones_stay() -> None:
+    first = WHOLE.frames[0]
+    found = completed(3, 6, 7, dropped=(BadFrame(frame=first + 3, reason="the file cannot be read"),))
+    assert found.frames == WHOLE.frames
+    rows = [t for t in range(len(WHOLE.frames)) if t not in (3, 6, 7)]
+    assert all(getattr(found, name)[rows].tobytes() == np.array(getattr(WHOLE, name))[rows].tobytes() for name in POSES)
+    near = np.linalg.norm(found.positions - WHOLE.positions, axis=2)[[3, 6, 7]].max()
+    apart = np.linalg.norm(np.diff(WHOLE.positions, axis=0), axis=2).max()
+    assert 0 < near < apart
+    assert found.confidence[[3, 6, 7]].max() <= 0.25
+    assert views.remarks(found) == (
+        f"frame {first + 3}: interpolated, the file cannot be read",
+        f"frame {first + 6}: interpolated, no file has its number",
+        f"frame {first + 7}: interpolated, no file has its number",
+    )
+
+
+def test_a_long_gap_stays_open() -> None:
+    found = completed(2, 5, 6, 7, longest=2)
+    assert [each.frame for each in found.interpolated] == [WHOLE.frames[2]]
+    assert len(found.frames) == len(WHOLE.frames) - 3
+
+
+def test_the_file_names_them() -> None:
+    found = completed(4)
+    told = json.loads(bytes(skeleton_json(found, UpDirection(up="y", confidence=1.0)).content))
+    assert told["interpolated"] == [{"frame": WHOLE.frames[4], "cause": "missing", "reason": ""}]
+    assert told["frames"] == list(WHOLE.frames)
