@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from kinetree.errors import StoreError
 from kinetree.pipeline.key import file_digest
 from kinetree.pipeline.place import Listed
 from kinetree.pipeline.remote import ASKED_AT_ONCE, copied, found, is_remote, look
@@ -99,9 +100,10 @@ class Files:
             return list(pool.map(lambda path: self._remembered(path, kind, read), paths))
 
     def save(self) -> None:
-        """Keeps what was learnt, where the store exists."""
+        """Keeps what was learnt, where the store exists and can be written; what is forgotten is read again."""
         if self._learnt and self.store.exists:
-            self.store.place.put(MEMORY, sealed(self._known))
+            with contextlib.suppress(StoreError):
+                self.store.place.put(MEMORY, sealed(self._known))
 
     def _remembered(self, path: Path | str, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
         listed = self._listed.get(str(path)) or (look(str(path)) if is_remote(path) else None)

@@ -221,7 +221,7 @@ class Pipeline:
 
     def _go(self, schedule: Schedule, watch: Watch, client: Any) -> None:
         """Starts workers only where there is something to run."""
-        if all(entry.state == "fresh" for entry in schedule.entries.values()) and not any(schedule.blocked.values()):
+        if schedule.is_idle:
             return
         from kinetree.pipeline.launch import launcher
         from kinetree.pipeline.run import run

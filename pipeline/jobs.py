@@ -33,8 +33,7 @@ class Job:
     @property
     def is_idle(self) -> bool:
         """Whether it needs no worker: everything is up to date."""
-        schedule = self.schedule
-        return all(entry.state == "fresh" for entry in schedule.entries.values()) and not any(schedule.blocked.values())
+        return self.schedule.is_idle
 
 
 class Jobs(Protocol):

@@ -96,6 +96,11 @@ class Schedule:
                 self.entries[node] = Entry(node, task, label(node, task.over))
                 self._unlisted[node] = None
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether everything is up to date, so that nothing has to be computed or stored."""
+        return all(entry.state == "fresh" for entry in self.entries.values()) and not any(self.blocked.values())
+
     def ready(self) -> Iterator[Entry]:
         """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.blocks import SAVED
 from kinetree.pipeline.config import Config
 from kinetree.pipeline.entry import DONE
@@ -18,6 +19,7 @@ from kinetree.pipeline.ownership import Owned
 from kinetree.pipeline.snapshot import Snapshot
 
 Status = Literal["done", "failed", "interrupted", "stopped"]
+UNRECORDED = "the store cannot be written, so this run, which had nothing to compute, is not on record"
 
 
 @dataclass
@@ -36,6 +38,8 @@ class Session:
     started: float
     owned: Owned
     """The output folder, in which nothing of somebody else's is replaced."""
+    is_on_record: bool = True
+    """Whether the store has a record of it: one that cannot be written serves a run that has nothing to compute."""
     left: list[str] = field(default_factory=list)
     _stack: contextlib.ExitStack = field(default_factory=contextlib.ExitStack)
 
@@ -56,16 +60,16 @@ class Session:
         """
         store = there.schedule.store
         owned = claim(config, there.schedule, (SAVED, RUN_JSON) if is_own else ())
-        store.create()
+        opened = opening(new_name(), config, there.schedule)
+        is_on_record = _recorded(there, opened)
         if is_own:
             write_config(config)
-        opened = opening(new_name(), config, there.schedule)
-        store.write_run(opened["name"], opened)
         account = Account()
         watch = Watch((account, *listeners))
         begun = time.perf_counter() if started is None else started
-        session = Session(config, there, watch, told_of or {}, is_own, opened, account, begun, owned)
-        session._stack.enter_context(beating(store, opened["name"]))
+        session = Session(config, there, watch, told_of or {}, is_own, opened, account, begun, owned, is_on_record)
+        if is_on_record:
+            session._stack.enter_context(beating(store, opened["name"]))
         watch.begin(opened["name"], there.schedule.entries.values())
         return session
 
@@ -85,12 +89,15 @@ class Session:
         store, seconds = schedule.store, time.perf_counter() - self.started
         self._stack.close()
         self.watch.end(status, seconds)
-        notes = {"notes": list(self.there.notes)} if self.there.notes else {}
+        said = [*self.there.notes, *([] if self.is_on_record else [UNRECORDED])]
+        notes = {"notes": said} if said else {}
         summed = {**summary(self.account, status, seconds), "files": self.left, **notes}
-        before = History.of(store, self.config).last_nodes()
-        store.create()  # which somebody may have removed meanwhile
         if self.is_own:
             write_run_json(self.config, summed)
+        if not self.is_on_record:
+            return RunSummary({"run": self.name, **summed})
+        before = History.of(store, self.config).last_nodes()
+        store.create()  # which somebody may have removed meanwhile
         store.write_run(self.name, closing(self.opened, schedule, before, self.account, summed))
         store.records.pack(self.name, [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
         return RunSummary({"run": self.name, **summed})
@@ -98,3 +105,18 @@ class Session:
     def write_pages(self, summed: Mapping[str, Any]) -> None:
         """Leaves the pages that also tell of the run, as `close` summed it up."""
         write_pages(self.config.output, self.there.schedule, {**summed, **self.told_of})
+
+
+def _recorded(there: Snapshot, opened: Mapping[str, Any]) -> bool:
+    """Whether the run could be put on record; raises StoreError where it could not and something is to be computed."""
+    store = there.schedule.store
+    try:
+        store.create()
+        store.write_run(opened["name"], opened)
+    except StoreFullError:
+        raise
+    except StoreError:
+        if not there.schedule.is_idle:
+            raise
+        return False
+    return True

@@ -7,6 +7,8 @@ import pytest
 from kinetree.errors import StoreError
 from kinetree.pipeline.output import RUN_JSON
 from kinetree.pipeline.ownership import MARKER, Owned
+from kinetree.pipeline.place import Folder
+from kinetree.pipeline.session import UNRECORDED
 
 
 def test_a_folder_that_is_not_there_is_all_ours(tmp_path):
@@ -54,3 +56,26 @@ def test_run_into_a_folder_of_somebody_else_replaces_nothing(toys, name):
         there.run()
     assert [path.name for path in toys.output.iterdir()] == [name]
     assert (toys.output / name).read_text() == "{}"
+
+
+def test_store_that_cannot_be_written_serves_a_run_that_has_nothing_to_compute(toys, tmp_path, monkeypatch):
+    toys.write(1, 2)
+    toys.run(store=str(tmp_path / "store"))
+    put = Folder.put
+
+    def refuse(place, path, data):
+        if place.url == str(tmp_path / "store"):
+            raise StoreError(f"store {place.url}: cannot write {path}: Read-only file system")
+        put(place, path, data)
+
+    monkeypatch.setattr(Folder, "put", refuse)
+    toys.output = tmp_path / "another"
+    before = sorted((tmp_path / "store").rglob("*"))
+    told = toys.run(store=str(tmp_path / "store")).told
+    assert told["status"] == "done"
+    assert told["notes"] == [UNRECORDED]
+    assert (toys.output / RUN_JSON).is_file()
+    assert sorted((tmp_path / "store").rglob("*")) == before
+    toys.write(3, start=2)
+    with pytest.raises(StoreError, match="Read-only"):
+        toys.run(store=str(tmp_path / "store"))
