@@ -34,6 +34,8 @@ class CoherentIntervals(Artifact):
     """Share of the range of μ that the longest of them spans; 0 without one."""
     spread: Annotated[Floats, Array("float64", FRAME)]
     """Mean distance between the ends of each frame's graph, share of the root of the body's area."""
+    length: Annotated[Floats, Array("float64", FRAME)]
+    """Geometric mean of the lengths of each graph's branches, share of the root of the body's area."""
     degrees: tuple[tuple[int, ...], ...]
     """Branch degrees of each frame's graph."""
     begin: Annotated[Ints, Array("int32", INTERVAL)]

@@ -11,6 +11,7 @@ from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals, Co
 from kinetree.schemas.paper_2009.perg import Perg
 from kinetree.tasks.input.sequence import refuse_further
 from kinetree.tasks.numerics.paper_2009 import coherent_intervals as numerics
+from kinetree.tasks.numerics.paper_2009.graph_loops import branch_length
 
 
 @task()
@@ -27,6 +28,7 @@ def coherent_intervals(pergs: Mapping[int, Perg], sequence: Sequence, params: Co
         loops=loops,
         reach=np.array([p.reach.max(initial=0.0) for p in pergs.values()]),
         spread=np.array([_spread(p) for p in pergs.values()]),
+        length=np.array([_length(p) for p in pergs.values()]),
         degrees=degrees,
         begin=runs.begin,
         end=runs.end,
@@ -39,3 +41,9 @@ def _spread(graph: Perg) -> float:
     """Mean distance between the ends of a graph, share of the root of its body's area; 0 for fewer than two ends."""
     between = pdist(graph.node[graph.end])
     return float(between.mean() / np.sqrt(graph.area.sum())) if len(between) else 0.0
+
+
+def _length(graph: Perg) -> float:
+    """Geometric mean of the lengths of a graph's branches, share of the root of its body's area."""
+    node, branch, end = np.array(graph.node), np.array(graph.branch, np.int64), np.array(graph.end, np.int64)
+    return branch_length(node, np.array(graph.edge, np.int64), branch, end) / float(np.sqrt(graph.area.sum()))

@@ -7,7 +7,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals
 from kinetree.schemas.paper_2009.initial_frames import InitialFrames, InitialFramesParams
 from kinetree.schemas.paper_2009.similarity import Similarity
-from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2009 import initial_frames as numerics
 
 
@@ -29,7 +29,7 @@ def initial_frames(intervals: CoherentIntervals, similarity: Similarity, params:
     S = np.array(similarity.similarity)
     structure, before, initial = np.full(count, -1), np.full(count, -1), []
     for number, span in enumerate(spans):
-        start = _start(S[np.ix_(span, span)], candidate[span], np.array(intervals.spread)[span], params)
+        start = _start(S[np.ix_(span, span)], candidate[span], intervals, span, params)
         reached = numerics.reached_from(S[np.ix_(span, span)], start, by_correlation=params.start == "correlation")
         structure[span] = number
         before[span] = np.where(reached >= 0, span[reached], -1)
@@ -37,11 +37,11 @@ def initial_frames(intervals: CoherentIntervals, similarity: Similarity, params:
     return InitialFrames(frames=intervals.frames, initial=np.array(initial), structure=structure, before=before, coherent=found)
 
 
-def _start(similarity: Floats, candidate: Flags, spread: Floats, params: InitialFramesParams) -> int:
+def _start(similarity: Floats, candidate: Flags, intervals: CoherentIntervals, span: Ints, params: InitialFramesParams) -> int:
     """Position of the initial frame within its structure."""
     if params.initial == "similar":
         return numerics.initial_frame(similarity, candidate)
-    return numerics.extended_frame(candidate, spread)
+    return numerics.extended_frame(candidate, np.array(intervals.spread)[span], np.array(intervals.length)[span])
 
 
 def _candidates(intervals: CoherentIntervals, spans: list[np.ndarray]) -> Flags:

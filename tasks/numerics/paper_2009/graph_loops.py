@@ -93,3 +93,14 @@ def end_branches(count: int, edge: Ints, ends: Ints) -> Ints:
                 break
             before, here = here, onward[0]
     return branch
+
+
+def branch_length(node: Floats, edge: Ints, branch: Ints, ends: Ints) -> float:
+    """Geometric mean of the lengths of the branches, each from its end to the branch point, mesh unit; 0 without ends.
+
+    node : (node, xyz) mesh unit · edge : (edge, 2) · branch : (node,) see `end_branches` · ends : (leaf,) nodes
+    """
+    long = np.linalg.norm(node[edge[:, 0]] - node[edge[:, 1]], axis=1)
+    on = np.maximum(branch[edge[:, 0]], branch[edge[:, 1]])
+    own = np.bincount(on[on >= 0], long[on >= 0], len(ends))
+    return float(np.exp(np.log(np.maximum(own, np.finfo(float).tiny)).mean())) if len(ends) else 0.0

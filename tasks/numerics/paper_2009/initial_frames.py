@@ -4,6 +4,10 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 
+FREE = 0.9
+"""Branches so long, against the longest of any candidate, are those of free limbs. Chosen on a recorded wolf, whose legs touch in
+most frames (0.5 to 0.8), where free frames have 0.9 and more."""
+
 
 def initial_frame(similarity: Floats, candidate: Flags) -> int:
     """Position of the candidate most similar to all candidates together.
@@ -14,16 +18,19 @@ def initial_frame(similarity: Floats, candidate: Flags) -> int:
     return int(own[np.argmax(similarity[np.ix_(own, own)].sum(axis=1))])
 
 
-def extended_frame(candidate: Flags, spread: Floats) -> int:
-    """Position of the candidate whose ends are farthest apart (ours).
+def extended_frame(candidate: Flags, spread: Floats, length: Floats) -> int:
+    """Position of the candidate whose ends are farthest apart, of those whose limbs are free (ours).
 
     Limbs that are stretched are drawn in full, where bent ones are drawn with their corners cut, and the surface of a bent
-    hip or knee does not follow its nodes when they straighten.
+    hip or knee does not follow its nodes when they straighten. Legs that touch along their length are one branch that forks at
+    the paws, without a loop and with all its ends: only the branches' lengths tell.
 
-    candidate : (frame,) at least one · spread : (frame,) mean distance between the ends of a frame's graph
+    candidate : (frame,) at least one
+    spread    : (frame,) mean distance between the ends of a frame's graph
+    length    : (frame,) of its branches, their geometric mean
     """
-    own = np.flatnonzero(candidate)
-    return int(own[np.argmax(spread[own])])
+    free = np.flatnonzero(candidate & (length >= FREE * length[candidate].max()))
+    return int(free[np.argmax(spread[free])])
 
 
 def most_open_frames(count: Ints, loops: Ints) -> Flags:

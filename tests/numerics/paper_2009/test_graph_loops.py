@@ -1,8 +1,16 @@
 """Laws of loops and branches on graphs drawn by hand."""
 
 import numpy as np
+import pytest
 
-from kinetree.tasks.numerics.paper_2009.graph_loops import branch_degrees, closing_edges, end_branches, path, pruned
+from kinetree.tasks.numerics.paper_2009.graph_loops import (
+    branch_degrees,
+    branch_length,
+    closing_edges,
+    end_branches,
+    path,
+    pruned,
+)
 
 RING = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 STAR = np.array([[0, 1], [0, 2], [0, 3], [3, 4]])
@@ -34,3 +42,15 @@ def test_loops_are_not_pruned() -> None:
 def test_degrees_and_branches_of_a_star() -> None:
     assert branch_degrees(5, STAR) == (3,)
     assert end_branches(5, STAR, np.array([4, 1, 2])).tolist() == [-1, 1, 2, 0, 0]
+
+
+def test_legs_that_touch_along_their_length_have_short_branches() -> None:
+    body, fork = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]
+    fused = np.array([*body, *fork, [0.0, 0.0, 2.0], [0.0, 0.1, 3.0]])
+    free = np.array([*body, *fork, [0.0, 0.0, 2.0], [0.0, 3.0, 0.0]])
+    ends = np.array([1, 3, 5])
+    one, other = np.array([[0, 1], [0, 4], [4, 3], [4, 5]]), np.array([[0, 1], [0, 4], [4, 3], [0, 5]])
+    short, long = (branch_length(x, e, end_branches(6, e, ends), ends) for x, e in ((fused, one), (free, other)))
+    assert long == pytest.approx((4.0 * 3.0 * 3.0) ** (1 / 3))
+    assert short < 0.6 * long
+    assert branch_length(free, other, end_branches(6, other, ends[:0]), ends[:0]) == 0.0

@@ -26,6 +26,12 @@ def test_most_open_frames_have_most_ends_and_then_fewest_loops() -> None:
 
 
 def test_extended_frame_is_the_candidate_whose_ends_are_farthest_apart() -> None:
-    spread = np.array([1.0, 2.0, 9.0, 3.0])
-    assert extended_frame(np.ones(4, bool), spread) == 2
-    assert extended_frame(np.array([True, True, False, True]), spread) == 3
+    spread, length = np.array([1.0, 2.0, 9.0, 3.0]), np.ones(4)
+    assert extended_frame(np.ones(4, bool), spread, length) == 2
+    assert extended_frame(np.array([True, True, False, True]), spread, length) == 3
+
+
+def test_extended_frame_is_none_in_which_limbs_are_fused() -> None:
+    spread, length = np.array([1.0, 2.0, 9.0, 3.0]), np.array([1.0, 0.95, 0.6, 0.5])
+    assert extended_frame(np.ones(4, bool), spread, length) == 1
+    assert extended_frame(np.array([False, False, True, True]), spread, length) == 2
