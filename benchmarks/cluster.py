@@ -87,7 +87,7 @@ def _killed(folder: Path, frames: int, kills: int) -> str:
     expected = {node.node: node.artifact for node in calm.plan().nodes}
     equal = 0
     rng = random.Random(0)
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0") as cluster:
         for number in range(kills):
             pipeline = _pipeline(folder / f"killed{number}", frames, {})
             with Client(cluster) as client:

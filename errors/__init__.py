@@ -19,6 +19,7 @@ KinetreeError
 ├── ArtifactError             a value breaks its schema
 ├── DamagedArtifactError      a stored artifact lost or changed bytes; it is computed again
 ├── LostWorkerError           the workers that computed a node died under it, several times
+├── LateNodeError             a node took longer than its task allows, every time it was tried
 ├── StaleWorkerError          a worker runs other code than the one that planned
 └── NodesFailedError          the run ended and some nodes failed; exit code 1
 """
@@ -106,6 +107,10 @@ class DamagedArtifactError(KinetreeError):
 
 class LostWorkerError(KinetreeError):
     """The workers that computed a node died under it, several times."""
+
+
+class LateNodeError(KinetreeError):
+    """A node took longer than its task allows, every time it was tried."""
 
 
 class StaleWorkerError(KinetreeError):

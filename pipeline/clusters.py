@@ -5,47 +5,54 @@ import concurrent.futures
 import contextlib
 import importlib
 import logging
+import math
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, performance_report
+from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, get_worker, performance_report
 
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.config import Compute
+from kinetree.pipeline.execute import Result, execute
+from kinetree.pipeline.living_workers import FOLLOW_SECONDS, LivingWorkers
+from kinetree.pipeline.parcels import Demand
 
 CONNECT_SECONDS = 10
 SCHEDULER_FILE_BYTES = 2**20
 ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
-FOLLOW_SECONDS = 0.25
-"""How often the scheduler is asked for its workers."""
 REPLACE_SECONDS = 30.0
 """Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
+MEMORY = "memory"
+"""The resource of dask that says how many bytes a worker has for nodes."""
 
 
 @contextlib.contextmanager
-def local(workers: int, memory: str | None) -> Iterator[Client]:
+def local(compute: Compute) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends."""
+    workers, memory = compute.worker_count, compute.memory_bytes
     with contextlib.ExitStack() as stack:
         cluster = stack.enter_context(
             LocalCluster(
-                n_workers=workers,
+                n_workers=0,
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=memory or 0,
+                resources={MEMORY: memory} if memory else {},
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
                 scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
             )
         )
         client = stack.enter_context(Client(cluster))
-        client.register_plugin(_Deaf())
+        client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
+        cluster.scale(workers)
         stack.enter_context(_kept_up(cluster, workers))
         try:
             yield client
@@ -86,7 +93,7 @@ def connected(compute: Compute, client: Client | None = None) -> Iterator[Client
         elif client is None and compute.cluster:
             client = stack.enter_context(started(compute))
         elif client is None:
-            client = stack.enter_context(local(compute.worker_count, compute.memory))
+            client = stack.enter_context(local(compute))
         if compute.performance_report is not None:
             if find_spec("bokeh") is None:
                 raise ConfigError("--performance-report: bokeh is not installed; pip install 'kinetree[cluster]'")
@@ -146,61 +153,73 @@ def cluster_of(compute: Compute) -> Any:
         raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
 
 
-@dataclass
-class Workers:
-    """How many workers and threads there are, asked for in the background."""
-
-    patience: float
-    """Seconds without any worker after which a run gives up."""
-    count: int = 0
-    threads: int = 0
-    _seen: float = field(default_factory=time.monotonic)
-
-    def hear(self, threads: Mapping[str, int]) -> None:
-        """Threads by worker, as the scheduler knows them now."""
-        self.count, self.threads = len(threads), sum(threads.values())
-        if self.count:
-            self._seen = time.monotonic()
-
-    def check(self) -> None:
-        """Raises ClusterError where there was no worker for too long."""
-        if time.monotonic() - self._seen > max(self.patience, 2 * FOLLOW_SECONDS):
-            raise ClusterError(
-                f"no worker for {self.patience:g} s; start some (dask worker ADDRESS), or give a queue more time"
-                " (--wait-workers N,SECONDS)"
-            )
-
-
 @contextlib.contextmanager
-def followed(client: Client, compute: Compute) -> Iterator[Workers]:
-    """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not."""
+def followed(client: Client, compute: Compute, *, is_ours: bool = False) -> Iterator[LivingWorkers]:
+    """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not.
+
+    is_ours : whether they are started with the memory that the configuration names
+    """
     wanted, seconds = compute.wanted_workers
-    workers = Workers(seconds)
+    workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0)
+    client.subscribe_topic(_topic(client), workers.hear_begun)
     following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
     try:
         until = time.monotonic() + seconds
-        while workers.count < wanted:
-            if time.monotonic() > until:
+        while workers.count < wanted or not workers.is_known:
+            if time.monotonic() > until and workers.is_known:
                 raise ClusterError(
                     f"--wait-workers {wanted}: {workers.count} workers are there after {seconds:g} s; start more, or wait"
                     " longer (--wait-workers N,SECONDS)"
                 )
-            time.sleep(0.05)
+            if not workers.is_known:
+                workers.check()
+            time.sleep(0.02)
         yield workers
     finally:
         following.cancel()
 
 
-async def _follow(client: Client, workers: Workers) -> None:
+async def _follow(client: Client, workers: LivingWorkers) -> None:
+    memory: dict[str, int] = {}
+    known: set[str] = set()
     while True:
         with contextlib.suppress(OSError, TimeoutError):  # a scheduler that does not answer is the client's to notice
-            workers.hear(await client.scheduler.ncores())
+            threads = await client.scheduler.ncores()
+            if set(threads) != known:  # all that is known of many workers is much to send four times a second
+                told = (await client.scheduler.identity(n_workers=-1))["workers"]
+                memory = {a: int(w["resources"][MEMORY]) for a, w in told.items() if MEMORY in w["resources"]}
+                known = set(threads)
+            workers.hear(threads, memory)
         await asyncio.sleep(FOLLOW_SECONDS)
 
 
 def dashboard(client: Client) -> str:
     """Address of the dashboard; empty where its scheduler has none."""
     return str(client.dashboard_link or "") if find_spec("bokeh") is not None else ""
+
+
+def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work: tuple[Any, ...]) -> "Remote":
+    """Sends a parcel; raises ClusterError where the client has lost its scheduler for good."""
+    topic = "" if demand.seconds is None else _topic(client)
+    memory = workers.ask(key, demand.memory)
+    options: dict[str, Any] = {"resources": {MEMORY: memory}} if memory else {}
+    try:
+        future = client.submit(computed, topic, *work, key=key, pure=False, **options)
+    except (OSError, RuntimeError) as error:
+        raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from error
+    return Remote.of(client, workers, future)
+
+
+def computed(topic: str, *work: Any) -> list[Result]:
+    """In a worker: computes a parcel; where it has a limit of time, whoever follows the topic hears that it has begun."""
+    if topic:
+        worker = get_worker()
+        worker.log_event(topic, {"key": worker.get_current_task(), "worker": worker.address})
+    return execute(*work)
+
+
+def _topic(client: Client) -> str:
+    return f"begun-{client.id}"
 
 
 @dataclass(frozen=True)
@@ -210,11 +229,13 @@ class Remote:
     A result that dies with its worker before it is fetched is computed again, which the caller's thread must not wait for.
     """
 
+    client: Client
+    workers: LivingWorkers
     future: Any
     outcome: "concurrent.futures.Future[Any]"
 
     @staticmethod
-    def of(client: Client, future: Any) -> "Remote":
+    def of(client: Client, workers: LivingWorkers, future: Any) -> "Remote":
         """For a future of a client."""
 
         async def fetched() -> Any:
@@ -223,7 +244,9 @@ class Remote:
             except KilledWorker as error:
                 raise LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory") from None
 
-        return Remote(future, asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop))
+        outcome = asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop)
+        outcome.add_done_callback(lambda _: workers.forget(future.key))
+        return Remote(client, workers, future, outcome)
 
     def add_done_callback(self, call: Callable[["Remote"], None], /) -> None:
         """Calls when the result was fetched."""
@@ -236,6 +259,24 @@ class Remote:
     def cancel(self) -> None:
         """Takes it back where it has not begun."""
         self.future.cancel()
+
+    def seconds(self) -> float:
+        """How long a worker has been computing it; 0 where it has not begun, or has no limit of time."""
+        began, _ = self.workers.began.get(self.future.key, (math.inf, ""))
+        return max(0.0, time.monotonic() - began)
+
+    def give_up(self) -> str:
+        """Nobody waits for it any longer; the process of its worker is ended and started anew, if a nanny looks after it."""
+        _, worker = self.workers.began[self.future.key]
+        self.future.cancel()
+        asyncio.run_coroutine_threadsafe(_restart(self.client, worker), self.client.loop.asyncio_loop)
+        return f"worker {worker} is started anew, or goes on with it where no nanny looks after it"
+
+
+async def _restart(client: Client, worker: str) -> None:
+    """Ends the process of a worker, even one that does not answer; its other parcels are computed again elsewhere."""
+    with contextlib.suppress(OSError, TimeoutError, ValueError, RuntimeError):
+        await client.restart_workers([worker], raise_for_error=False)
 
 
 class _Deaf(WorkerPlugin):  # type: ignore[misc]

@@ -41,7 +41,8 @@ class Compute(BaseModel):
     workers: int | None = Field(default=None, ge=1, le=4096)
     """How many at the same time; None takes one per core."""
     memory: str | None = None
-    """Memory limit of one worker process, e.g. 4GB; None sets none."""
+    """Memory limit of one worker process, e.g. 4GB; None sets none. With `cluster`: what its workers declare as dask's resource
+    `memory`."""
     scheduler: str | None = Field(default=None, min_length=1)
     """Address of a running dask scheduler, e.g. tcp://host:8786; takes precedence over executor."""
     scheduler_file: str | None = Field(default=None, min_length=1)
@@ -64,6 +65,15 @@ class Compute(BaseModel):
         if size is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", size):
             raise ValueError("expected a size such as 4GB or 512MiB")
         return size
+
+    @property
+    def memory_bytes(self) -> int | None:
+        """The memory limit of one worker process in bytes."""
+        if self.memory is None:
+            return None
+        unit = self.memory.lstrip("0123456789. ").removesuffix("B")
+        step = 1024 if unit.endswith("i") else 1000
+        return int(float(self.memory[: -len(unit) - 1]) * step ** " kMGT".index((unit or " ")[0]))
 
     @property
     def is_cluster(self) -> bool:

@@ -17,7 +17,7 @@ from typing import Any, Literal
 from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
 from kinetree.pipeline.key import artifact_digest, code_digest, code_parts, node_key
 from kinetree.pipeline.made_with import MadeWith
-from kinetree.pipeline.memory import peak_bytes, reset_peak
+from kinetree.pipeline.memory import measured
 from kinetree.pipeline.remote import brought
 from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Record, Store
@@ -146,17 +146,17 @@ def _compute(bench: _Bench, number: int, step: Step) -> Result:
 
 def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str, inputs: list[dict[str, Any]]) -> Result:
     started = time.perf_counter()
-    reset_peak()
-    values = {i.argument: _value(bench, task, i) for i in step.inputs}
-    if task.params is not None:
-        values["params"] = task.params.model_validate(step.params)
-    if task.asks_index:
-        values["index"] = _asked_index(task, step)
-    with brought(values) as here, limited(task.threads):
-        artifact = task(**here)
-    if type(artifact) is not task.returns:
-        raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
-    digest, size = bench.store.publish(artifact)
+    with measured() as peak:
+        values = {i.argument: _value(bench, task, i) for i in step.inputs}
+        if task.params is not None:
+            values["params"] = task.params.model_validate(step.params)
+        if task.asks_index:
+            values["index"] = _asked_index(task, step)
+        with brought(values) as here, limited(task.threads):
+            artifact = task(**here)
+        if type(artifact) is not task.returns:
+            raise TypeError(f"{task.name} returned {type(artifact).__name__}, its signature promises {task.returns.__name__}")
+        digest, size = bench.store.publish(artifact)
     bench.made[number] = artifact
     seconds = time.perf_counter() - started
     record = Record(
@@ -169,7 +169,8 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         code=dict(code_parts(task.module, task.name)),
         inputs=inputs,
         seconds=seconds,
-        peak_bytes=peak_bytes(),
+        peak_bytes=peak.process,
+        own_bytes=peak.own,
         host=socket.gethostname(),
         created=datetime.now(UTC).isoformat(timespec="milliseconds"),
         versions={**versions(), "blas": blas()},

@@ -26,6 +26,7 @@ from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.made_with import MadeWith
+from kinetree.pipeline.memory import Needs
 from kinetree.pipeline.origins import found
 from kinetree.pipeline.output import as_yaml
 from kinetree.pipeline.plan import Plan, Planned
@@ -147,7 +148,7 @@ class Pipeline:
         files.save()
         status: Status = "interrupted"
         try:
-            self._go(there.schedule, session.watch, client)
+            self._go(there, session.watch, client)
             status = session.leave()
         except Exception:
             status = "stopped"
@@ -170,7 +171,7 @@ class Pipeline:
         there = self.inspect(until=[name])
         self._refuse_missing(there, name)
         account = Account()
-        self._go(there.schedule, Watch((account,)), None)
+        self._go(there, Watch((account,)), None)
         if account.failures:
             failure = account.failures[0]
             raise NodesFailedError(f"{failure['node']}: {failure['error']}: {failure['message']}")
@@ -219,12 +220,13 @@ class Pipeline:
         """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
         return Difference(difference(self.store, self.store.run(run_a), self.store.run(run_b)))
 
-    def _go(self, schedule: Schedule, watch: Watch, client: Any) -> None:
+    def _go(self, there: Snapshot, watch: Watch, client: Any) -> None:
         """Starts workers only where there is something to run."""
+        schedule = there.schedule
         if schedule.is_idle:
             return
         from kinetree.pipeline.launch import launcher
         from kinetree.pipeline.run import run
 
         with launcher(self.config.compute, client) as launch:
-            run(schedule, launch, watch)
+            run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))

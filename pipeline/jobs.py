@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from kinetree.pipeline.events import Watch
+from kinetree.pipeline.memory import Needs
 from kinetree.pipeline.schedule import Schedule
 
 OPEN_AT_LEAST = 2
@@ -22,6 +23,8 @@ class Job:
 
     schedule: Schedule
     watch: Watch
+    needs: Needs = field(default_factory=Needs)
+    """How much memory its nodes need."""
     out: int = 0
     """Parcels under way, and nodes that wait for a parcel of any schedule or to be tried again."""
 

@@ -5,7 +5,6 @@ threads; on workers, distributed does. Everything is a future.
 import contextlib
 import secrets
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -14,11 +13,13 @@ from dask.local import SynchronousExecutor
 from kinetree.errors import ConfigError
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.execute import Step, execute
+from kinetree.pipeline.parcels import Demand
+from kinetree.pipeline.pool import Pool
 from kinetree.pipeline.sight import Sight
 
 
 class Future(Protocol):
-    """What futures of the standard library and of distributed have in common."""
+    """What the loop asks of a parcel under way."""
 
     def add_done_callback(self, call: Callable[[Any], None], /) -> None:
         """Calls when done."""
@@ -29,6 +30,12 @@ class Future(Protocol):
     def cancel(self) -> Any:
         """Takes it back where it has not begun."""
 
+    def seconds(self) -> float:
+        """How long it has been computed; 0 where it has not begun, or nobody knows."""
+
+    def give_up(self) -> str:
+        """Nobody waits for it any longer; what computes it is ended where that can be. Says in words what becomes of it."""
+
 
 def _nothing() -> None:
     """Nothing is to be looked after in this process."""
@@ -36,9 +43,9 @@ def _nothing() -> None:
 
 @dataclass(frozen=True)
 class Launcher:
-    """Where parcels go: `submit(name, store_url, steps, sight)` gives a future of their results."""
+    """Where parcels go: `submit(name, demand, store_url, steps, sight)` gives a future of their results."""
 
-    submit: Callable[[str, str, tuple[Step, ...], Sight], Future]
+    submit: Callable[[str, Demand, str, tuple[Step, ...], Sight], Future]
     window: Callable[[], int]
     """How many parcels may be out now: enough that no worker waits, few enough that the deepest go first."""
     is_apart: bool = True
@@ -57,20 +64,21 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
     if client is not None or compute.is_cluster:
         from kinetree.pipeline import clusters
 
-        with clusters.connected(compute, client) as found, clusters.followed(found, compute) as workers:
+        is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
+        with clusters.connected(compute, client) as found, clusters.followed(found, compute, is_ours=is_ours) as workers:
             yield _on_client(found, workers, compute)
         return
     if compute.performance_report is not None:
         raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")
     with contextlib.ExitStack() as stack:
         if compute.executor == "threads":
-            pool = ThreadPoolExecutor(compute.worker_count)
+            pool = Pool(compute.worker_count)
             # an interrupted run does not wait for nodes that may take minutes: what they publish is whole or nothing
-            stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-            yield Launcher(lambda _, *work: pool.submit(execute, *work), lambda: 2 * compute.worker_count)
+            stack.callback(pool.close)
+            yield Launcher(lambda _, __, *work: pool.submit(execute, *work), lambda: 2 * compute.worker_count)
         else:
             here = SynchronousExecutor()
-            yield Launcher(lambda _, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
+            yield Launcher(lambda _, __, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
 
 
 def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:
@@ -79,8 +87,8 @@ def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:
     run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
     expected = compute.workers or 1
 
-    def submit(name: str, url: str, steps: tuple[Step, ...], sight: Sight) -> Future:
-        return clusters.Remote.of(client, client.submit(execute, url, steps, sight, key=f"{name}-{run}", pure=False))
+    def submit(name: str, demand: Demand, url: str, steps: tuple[Step, ...], sight: Sight) -> Future:
+        return clusters.sent(client, workers, f"{name}-{run}", demand, (url, steps, sight))
 
     def window() -> int:
         return 3 * max(expected, int(workers.threads))

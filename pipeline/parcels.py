@@ -1,9 +1,27 @@
-"""Parcels as they travel: what a worker is told of each node, and no more."""
+"""Parcels as they travel: what a worker is told of each node, and no more; what whoever launches one is told."""
+
+from dataclasses import dataclass
 
 from kinetree.pipeline.entry import Entry
 from kinetree.pipeline.execute import Input, Ref, Step
+from kinetree.pipeline.memory import Needs
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.schedule import Schedule
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What a parcel asks of whoever computes it."""
+
+    memory: int
+    """Bytes; 0 where nobody knows."""
+    seconds: float | None
+    """How long it may take; None where there is no limit."""
+
+    @staticmethod
+    def of(parcel: list[Entry], needs: Needs) -> "Demand":
+        """Of a parcel; one that has a limit of time is a single node."""
+        return Demand(needs.bytes(entry.task for entry in parcel), parcel[0].task.timeout)
 
 
 def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:

@@ -47,6 +47,8 @@ class Record:
     versions: dict[str, str] = field(default_factory=dict)
     asks_index: bool = False
     """Whether the index is part of the key."""
+    own_bytes: int = 0
+    """Bytes by which the process grew at most while it computed the node; 0 where it computed others beside it."""
 
 
 @dataclass

@@ -10,7 +10,15 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from functools import partial
 
-from kinetree.errors import ClusterError, GraphError, KinetreeError, LostWorkerError, StoreError, StoreFullError
+from kinetree.errors import (
+    ClusterError,
+    GraphError,
+    KinetreeError,
+    LateNodeError,
+    LostWorkerError,
+    StoreError,
+    StoreFullError,
+)
 from kinetree.pipeline import sight as seeing
 from kinetree.pipeline.entry import DONE, Entry
 from kinetree.pipeline.events import Watch
@@ -18,8 +26,9 @@ from kinetree.pipeline.execute import Result, forget_reads
 from kinetree.pipeline.interrupts import interruptible
 from kinetree.pipeline.jobs import OPEN_AT_LEAST, Job, Jobs, Single, fairest
 from kinetree.pipeline.launch import Future, Launcher
+from kinetree.pipeline.memory import Needs
 from kinetree.pipeline.node import Node
-from kinetree.pipeline.parcels import steps_of
+from kinetree.pipeline.parcels import Demand, steps_of
 from kinetree.pipeline.schedule import Schedule
 from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Store
@@ -28,11 +37,11 @@ LOOK_AGAIN = 0.1
 """Seconds after which the run looks for new workers, and again for a record that was not there."""
 
 
-def run(schedule: Schedule, launch: Launcher, watch: Watch) -> None:
+def run(schedule: Schedule, launch: Launcher, watch: Watch, needs: Needs | None = None) -> None:
     """Runs one schedule until every node is done, failed or skipped; raises as `run_all`."""
     if launch.dashboard:
         watch.dashboard(launch.dashboard)
-    run_all(Single(Job(schedule, watch)), schedule.store, launch)
+    run_all(Single(Job(schedule, watch, needs or Needs())), schedule.store, launch)
 
 
 def run_all(jobs: Jobs, store: Store, launch: Launcher) -> None:
@@ -68,8 +77,10 @@ class _Loop:
     _twins: dict[str, list[tuple[Job, Node]]] = field(default_factory=dict)
     """Nodes that wait for a parcel under way which computes the same key."""
     _numbers: Iterator[int] = field(default_factory=itertools.count)
+    _limits: dict[int, float] = field(default_factory=dict)
+    """Seconds that a parcel may take."""
     _suspects: "deque[tuple[Job, Entry]]" = field(default_factory=deque)
-    """Nodes whose workers died; each is tried again when nothing else is out."""
+    """Nodes whose workers died or whose time was over; each is tried again when nothing else is out."""
     _lost: "Counter[tuple[Job, Node]]" = field(default_factory=Counter)
     _look_at: float = 0.0
     _unseen: dict[int, float] = field(default_factory=dict)
@@ -99,7 +110,9 @@ class _Loop:
 
     def _end_jobs(self) -> None:
         for job in [job for job in self._open if job.is_over]:
-            if not self._take_back_lost(job):
+            while self._take_back_lost(job) and job.is_over:
+                pass  # what was lost too often has failed by now
+            if job.is_over:
                 self._open.remove(job)
                 _refuse_rings(job.schedule)
                 self.jobs.end(job)
@@ -133,12 +146,16 @@ class _Loop:
             self.sight.confirm(self.store)
             self.launch.look_after()
             self._look_at = time.monotonic() + LOOK_AGAIN
+        if self._give_up_late():
+            return
         try:
-            number, future = self._done.get(timeout=LOOK_AGAIN if self.launch.is_elsewhere else None)
+            number, future = self._done.get(timeout=LOOK_AGAIN if self.launch.is_elsewhere or self._limits else None)
         except queue.Empty:
             return
         if future is None:
             raise KeyboardInterrupt
+        if number not in self._parcels:  # given up meanwhile
+            return
         job, parcel = self._parcels[number]
         try:
             results: list[Result] = future.result()
@@ -152,13 +169,28 @@ class _Loop:
             self._forget(number)
             self._tell_all(job, parcel, results)
 
+    def _give_up_late(self) -> bool:
+        """Nobody waits any longer for nodes that take longer than their task allows; True if there was any."""
+        late = [(number, limit) for number, limit in self._limits.items() if self.out[number].seconds() > limit]
+        for number, limit in late:
+            future = self.out[number]
+            job, parcel = self._parcels[number]
+            _refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
+            what = future.give_up()
+            self._forget(number)
+            tries = self._lost[job, parcel[0].node] + 1
+            times = f", each of {tries} times that it was tried" if tries > 1 else ""
+            told = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
+            self._lose(job, parcel, LateNodeError(told))
+        return bool(late)
+
     def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:
         """Nothing came back of a parcel. Its first node is tried again, alone, since another may have killed its workers."""
         first, *rest = parcel
         for entry in rest:
             job.schedule.put_back(entry.node)
         self._lost[job, first.node] += 1
-        if isinstance(error, LostWorkerError) and self._lost[job, first.node] <= first.task.retries:
+        if isinstance(error, LostWorkerError | LateNodeError) and self._lost[job, first.node] <= first.task.retries:
             self._suspects.append((job, first))
         else:
             self._tell_all(job, [first], [Result("failed", error=type(error).__name__, message=str(error) or repr(error))])
@@ -192,6 +224,7 @@ class _Loop:
     def _forget(self, number: int) -> None:
         del self.out[number], self._parcels[number]
         self._unseen.pop(number, None)
+        self._limits.pop(number, None)
 
     def _send(self, job: Job, entry: Entry) -> None:
         parcel = job.schedule.send(entry)
@@ -204,9 +237,12 @@ class _Loop:
         number, first = next(self._numbers), parcel[0]
         tasks = "+".join(dict.fromkeys(entry.node.task for entry in parcel))
         name = f"{tasks}-{'-'.join(map(str, first.node.at))}-{(first.key or '')[:8]}-{number}"
-        future = self.launch.submit(name, self.store.url, steps_of(job.schedule, parcel), self.sight)
+        demand = Demand.of(parcel, job.needs)
+        future = self.launch.submit(name, demand, self.store.url, steps_of(job.schedule, parcel), self.sight)
         self._parcels[number] = job, parcel
         self.out[number] = future
+        if demand.seconds is not None and self.launch.is_apart:
+            self._limits[number] = demand.seconds
         future.add_done_callback(partial(self._note, number))
 
     def _note(self, number: int, future: Future) -> None:
@@ -222,6 +258,8 @@ class _Loop:
             fresh = schedule.complete(entry.node, result.key, result.artifact, result.record, ran=result.status == "ran")
             if len(schedule.entries) != before:
                 job.watch.layout(schedule.entries.values())
+            if result.record is not None:
+                job.needs.learn(result.record)
             job.watch.finish(entry, result)
             job.watch.fresh(fresh)
             _tell_losses(job)
@@ -252,6 +290,15 @@ def _tell_losses(job: Job) -> None:
         if loss.skipped is not None:
             failed = _beyond_repair(loss.entry.artifact or "", loss.what)
             job.watch.fail(loss.entry, failed, [job.schedule.entries[n] for n in loss.skipped])
+
+
+def _refuse_to_wait_for(entry: Entry, limit: float, *, is_elsewhere: bool) -> None:
+    """A node that has this process to itself and does not come back would keep all others waiting."""
+    if entry.task.threads > 1 and not is_elsewhere:
+        raise ClusterError(
+            f"{entry.label} takes longer than the {limit:g} s that its task allows, and has this process to itself (@task("
+            f"threads={entry.task.threads})), where it cannot be ended; run again on workers (--executor processes)"
+        )
 
 
 def _refuse_rings(schedule: Schedule) -> None:

@@ -121,7 +121,8 @@ class Schedule:
     def send(self, entry: Entry) -> list[Entry]:
         """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
 
-        What little waits for does not travel with what much waits for.
+        What little waits for does not travel with what much waits for, and a node whose task has a limit of time travels alone,
+        since time is taken of the whole piece.
         An artifact of it that was found damaged is removed first, so that it is made again.
         returns : these nodes, each after those of them that it reads
         """
@@ -129,11 +130,11 @@ class Schedule:
         parcel = [entry]
         inside = {entry.node}
         for member in parcel:
-            if not entry.node.at:
+            if not entry.node.at or entry.task.timeout is not None:
                 break
             for node in self._dependents[member.node]:
                 other = self.entries[node]
-                here = node.at == entry.node.at and other.task.over == entry.task.over
+                here = node.at == entry.node.at and other.task.over == entry.task.over and other.task.timeout is None
                 if here and other.state == "waits" and node not in inside and self._goes_along(other, entry):
                     if node not in self._unlisted and other.waits <= inside:
                         inside.add(node)

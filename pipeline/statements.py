@@ -16,6 +16,9 @@ _UNCHANGEABLE = (
 )
 FIXED_CALLS = frozenset(_UNCHANGEABLE.split())
 """What makes a value that nothing can change in place."""
+TASK = ("kinetree.pipeline.task", "task")
+LIMITS = ("retries", "timeout", "memory")
+"""What the declaration of a task says of where and how often it runs, which changes nothing that it computes."""
 
 
 @dataclass(eq=False)
@@ -91,6 +94,15 @@ class Module:
         for statement in self.statements:
             for bound in statement.names:
                 self.bindings.setdefault(bound, []).append(statement)
+        for statement in self.statements:
+            self._drop_limits(statement.nodes[-1])
+
+    def _drop_limits(self, node: ast.AST) -> None:
+        """Takes out of a task's declaration what cannot change a result, so that nobody reads it."""
+        for call in getattr(node, "decorator_list", ()):
+            if isinstance(call, ast.Call) and isinstance(call.func, ast.Name):
+                if [s.target for s in self.bindings.get(call.func.id, ())] == [TASK]:
+                    call.keywords = [keyword for keyword in call.keywords if keyword.arg not in LIMITS]
 
     def _statements(self, body: Sequence[ast.stmt], above: tuple[ast.AST, ...]) -> Iterator[Statement]:
         for node in body:

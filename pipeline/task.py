@@ -87,7 +87,11 @@ class Task(Generic[P, R]):
     threads: int = 1
     """How many threads its libraries use."""
     retries: int = 1
-    """How often a node is tried again, alone, after dask gave it up because its workers died."""
+    """How often a node is tried again, alone, after dask gave it up because its workers died, or after its time was over."""
+    timeout: float | None = None
+    """Seconds that one node may take on a worker; None sets no limit."""
+    memory: int | None = None
+    """Bytes that one node needs while it is computed; None takes what earlier nodes of the task needed."""
     is_linked: bool = False
     """Whether its artifacts were made by another graph and are read from the store by digest."""
 
@@ -132,6 +136,8 @@ def task(
     on_request: bool = False,
     threads: int = 1,
     retries: int = 1,
+    timeout: float | None = None,
+    memory: int | None = None,
 ) -> Callable[[Callable[P, R]], Task[P, R]]:
     """Declares a function as a task; see the module's docstring for what its signature says.
 
@@ -140,19 +146,26 @@ def task(
     among      : the artifact class whose `selected` says which members of its dimension are gathered; None gathers all
     on_request : whether a run leaves it out unless it is named, or something that reads it
     threads    : how many threads its libraries (BLAS, OpenMP, numba) use; more than one has a process to itself
-    retries    : how often a node is tried again, alone, after dask gave it up because its workers died; an error of the task
-                 is never tried again
+    retries    : how often a node is tried again, alone, after dask gave it up because its workers died, or after `timeout`;
+                 an error of the task is never tried again
+    timeout    : seconds that one node may take; its worker process is then ended and started anew. A thread of the run's own
+                 process cannot be ended: it is given up and goes on. The executor `sync` has no limit
+    memory     : bytes that one node needs; workers that declare a resource `memory` compute no more at a time than fits.
+                 None takes the most that a node of the task was measured to need
     raises     : GraphError, at import, where the signature does not say enough
     """
 
     def declare(function: Callable[P, R]) -> Task[P, R]:
         declared = _declared(function, over, along, is_origin=False)
+        place = f"{declared.name} ({declared.where})"
         if threads < 1 or retries < 0:
-            what = f"threads is {threads} and retries is {retries}"
-            raise GraphError(f"{declared.name} ({declared.where}): {what}; expected at least 1 and 0")
+            raise GraphError(f"{place}: threads is {threads} and retries is {retries}; expected at least 1 and 0")
+        if (timeout is not None and not timeout > 0) or (memory is not None and memory < 1):
+            raise GraphError(f"{place}: timeout is {timeout} and memory is {memory}; expected more than 0 seconds and bytes")
         if among is not None and not among.selects:
-            raise GraphError(f"{declared.name} ({declared.where}): is among {among.__name__}, which selects nothing")
-        return replace(declared, among=among, on_request=on_request, threads=threads, retries=retries)
+            raise GraphError(f"{place}: is among {among.__name__}, which selects nothing")
+        limited = replace(declared, threads=threads, retries=retries, timeout=timeout, memory=memory)
+        return replace(limited, among=among, on_request=on_request)
 
     return declare
 

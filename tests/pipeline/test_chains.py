@@ -178,7 +178,7 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
     schedule = toys.pipeline().schedule(until=["smooth"])
     schedule.store.create()
 
-    def submit(name, url, steps, sight):
+    def submit(name, demand, url, steps, sight):
         from dask.local import SynchronousExecutor
 
         from kinetree.pipeline.execute import execute

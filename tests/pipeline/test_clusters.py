@@ -8,11 +8,12 @@ from distributed import Client, LocalCluster
 
 from kinetree.errors import ClusterError, ConfigError
 from kinetree.pipeline import clusters
-from kinetree.pipeline.clusters import Workers, cluster_of
+from kinetree.pipeline.clusters import cluster_of
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.living_workers import LivingWorkers
 
-NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
 
 
 @pytest.fixture
@@ -43,13 +44,33 @@ def test_without_workers_a_run_gives_up_with_3_and_says_so(toys, empty):
 
 
 def test_workers_that_all_go_away_end_the_run_in_words():
-    workers = Workers(patience=0.0)
+    workers = LivingWorkers(patience=0.0)
     workers.hear({"a": 1, "b": 2})
     assert (workers.count, workers.threads) == (2, 3)
     workers.check()
     workers._seen = time.monotonic() - 60
     with pytest.raises(ClusterError, match="no worker for 0 s"):
         workers.check()
+
+
+def test_scheduler_that_stopped_answering_ends_the_run_in_words():
+    workers = LivingWorkers(patience=0.0)
+    workers.hear({"a": 1})
+    workers._answered = workers._seen = time.monotonic() - 60
+    with pytest.raises(ClusterError, match="the scheduler has not answered for 0 s"):
+        workers.check()
+
+
+def test_workers_with_less_memory_than_was_asked_for_end_the_run_in_words():
+    workers = LivingWorkers(patience=0.0, memory=10**9)
+    assert workers.ask("key", 2 * 10**9) == 10**9, "no more than one of them has"
+    workers.hear({"small": 1}, {"small": 10**8})
+    workers._fitting = time.monotonic() - 60
+    with pytest.raises(ClusterError, match=r"no worker for 0 s that declares 1\.0 GB of memory"):
+        workers.check()
+    workers.forget("key")
+    workers.hear({"small": 1}, {"small": 10**8})
+    workers.check()
 
 
 def test_the_window_follows_the_threads_that_live(toys, empty):
@@ -75,7 +96,8 @@ def test_a_cluster_is_named_by_class_and_options(toys, tmp_path):
 def test_the_preset_for_slurm_asks_the_queue_for_what_it_says():
     jobqueue = pytest.importorskip("dask_jobqueue")
     compute = Pipeline.of({"compute": "slurm"}).config.compute
-    cluster = cluster_of(compute)
+    quiet = {**compute.options, "scheduler_options": {"dashboard_address": "127.0.0.1:0"}}
+    cluster = cluster_of(compute.model_copy(update={"options": quiet}))
     try:
         assert isinstance(cluster, jobqueue.SLURMCluster)
         script = cluster.job_script()
@@ -100,8 +122,19 @@ def test_a_report_of_dask_needs_workers(toys, tmp_path):
 
 def test_our_own_workers_are_replaced_where_none_is_left(monkeypatch):
     monkeypatch.setattr(clusters, "REPLACE_SECONDS", 1.0)
-    with clusters.local(1, None) as client:
+    with clusters.local(Compute(workers=1)) as client:
         assert client.submit(abs, -1).result(timeout=60) == 1
         (nanny,) = client.cluster.workers.values()
         client.cluster.sync(nanny.close)
         assert client.submit(abs, -2).result(timeout=60) == 2
+
+
+def test_our_own_workers_are_told_before_they_start(monkeypatch):
+    """A worker that dies while it is told would take the run with it."""
+    there = []
+    tell = Client.register_plugin
+    monkeypatch.setattr(
+        Client, "register_plugin", lambda self, *given: (there.append(len(self.cluster.workers)), tell(self, *given))[1]
+    )
+    with clusters.local(Compute(workers=1)):
+        assert there == [0]

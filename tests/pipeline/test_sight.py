@@ -42,7 +42,7 @@ store.Store.write = lambda self, record: None
 @pytest.fixture
 def client(toys):
     """A worker of somebody else's cluster, in a process of its own."""
-    options = {"n_workers": 1, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+    options = {"n_workers": 1, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
     with LocalCluster(**options) as cluster, Client(cluster) as found:
         yield found
 

@@ -184,6 +184,10 @@ def executed(name: str, number: float) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
     if (flags / f"slay-{told}").exists():
         os.kill(os.getpid(), signal.SIGKILL)
+    if (flags / f"stall-{told}").exists():
+        (flags / f"stall-{told}").rename(flags / f"stalled-{told}")
+        while (flags / f"stalled-{told}").exists():
+            threading.Event().wait(0.01)
     if (flags / f"wait-{told}").exists():
         (flags / f"waiting-{told}").write_text(str(os.getpid()))
         while (flags / f"wait-{told}").exists():

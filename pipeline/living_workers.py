@@ -1,0 +1,76 @@
+"""What is known of a cluster's workers: how many there are, what they declare, and what they have begun."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from kinetree.errors import ClusterError
+
+FOLLOW_SECONDS = 0.25
+"""How often the scheduler is asked for its workers."""
+
+
+@dataclass
+class LivingWorkers:
+    """How many workers and threads there are, asked for in the background, and what they tell of themselves."""
+
+    patience: float
+    """Seconds without any worker after which a run gives up."""
+    count: int = 0
+    threads: int = 0
+    memory: int = 0
+    """The most bytes that one of them declares to have for nodes, or will declare; 0 where none does."""
+    began: dict[str, tuple[float, str]] = field(default_factory=dict)
+    """By dask's key, when a parcel was begun that has a limit of time, and the address of the worker."""
+    is_known: bool = False
+    """Whether the scheduler has answered once."""
+    _answered: float = field(default_factory=time.monotonic)
+    _seen: float = field(default_factory=time.monotonic)
+    _asked: dict[str, int] = field(default_factory=dict)
+    _fitting: float = field(default_factory=time.monotonic)
+
+    def hear(self, threads: Mapping[str, int], memory: Mapping[str, int] = MappingProxyType({})) -> None:
+        """Threads and declared bytes by worker, as the scheduler knows them now."""
+        self.count, self.threads = len(threads), sum(threads.values())
+        self.is_known, self._answered = True, time.monotonic()
+        if self.count:
+            self._seen = self._answered
+            self.memory = max(memory.values(), default=0)
+        if self.memory >= self._most_asked:
+            self._fitting = self._answered
+
+    def hear_begun(self, event: tuple[float, Mapping[str, str]]) -> None:
+        """A worker has begun a parcel."""
+        _, told = event
+        self.began[told["key"]] = (time.monotonic(), told["worker"])
+
+    def ask(self, key: str, memory: int) -> int:
+        """The bytes to ask for a parcel: no more than one of the workers has."""
+        self._asked[key] = min(memory, self.memory)
+        return self._asked[key]
+
+    def forget(self, key: str) -> None:
+        """A parcel is over."""
+        self._asked.pop(key, None)
+        self.began.pop(key, None)
+
+    @property
+    def _most_asked(self) -> int:
+        return max([*self._asked.values()], default=0)
+
+    def check(self) -> None:
+        """Raises ClusterError where nobody answered, or there was no worker, for too long."""
+        long_ago = time.monotonic() - max(self.patience, 2 * FOLLOW_SECONDS)
+        if self._answered < long_ago:
+            raise ClusterError(f"the scheduler has not answered for {self.patience:g} s; check that it runs, then run again")
+        if self._seen < long_ago:
+            raise ClusterError(
+                f"no worker for {self.patience:g} s; start some (dask worker ADDRESS), or give a queue more time"
+                " (--wait-workers N,SECONDS)"
+            )
+        if self._fitting < long_ago:
+            raise ClusterError(
+                f"no worker for {self.patience:g} s that declares {self._most_asked / 1e9:.1f} GB of memory (dask worker"
+                " --resources memory=BYTES); start one, or run again to go on with those that are there"
+            )
