@@ -211,10 +211,11 @@ def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work:
 
 
 def computed(topic: str, *work: Any) -> list[Result]:
-    """In a worker: computes a parcel; where it has a limit of time, whoever follows the topic hears that it has begun."""
+    """In a worker: computes a parcel; where it has a limit of time, the scheduler has heard before that it begins."""
     if topic:
         worker = get_worker()
-        worker.log_event(topic, {"key": worker.get_current_task(), "worker": worker.address})
+        told = {"key": worker.get_current_task(), "worker": worker.address}
+        asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=told), worker.loop.asyncio_loop).result()
     return execute(*work)
 
 

@@ -96,7 +96,7 @@ def test_a_worker_process_that_does_not_answer_is_ended_when_its_time_is_over(to
     toys.until((toys.flags / "waiting-total-210").read_text, "the worker is known", process)
     os.kill(int((toys.flags / "waiting-total-210").read_text()), signal.SIGSTOP)
     (toys.flags / "wait-total-210").unlink()
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=200)
     assert (process.returncode, err) == (0, "")
     assert toys.executions().count("total-210") == 2
     assert toys.artifacts() == calm
