@@ -70,8 +70,14 @@ def artifact_digest(artifact: Artifact) -> str:
 
 def combined_digest(cls: type[Artifact], plain: Mapping[str, Any], arrays: Mapping[str, str]) -> str:
     """The artifact digest from its parts: JSON fields and the digest of each array."""
-    identity = {name: value for name, value in plain.items() if name not in cls.location_fields()}
+    locations = _location_fields(cls)
+    identity = {name: value for name, value in plain.items() if name not in locations}
     return digest(["kinetree.artifact/1", cls.__name__, cls.version, identity, dict(arrays)])
+
+
+@cache
+def _location_fields(cls: type[Artifact]) -> frozenset[str]:
+    return cls.location_fields()
 
 
 def node_key(task: str, code: str, params: Mapping[str, Any], inputs: Sequence[Any], index: Sequence[int] | None = None) -> str:

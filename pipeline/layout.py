@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Protocol, TypeVar
 
 from kinetree.errors import GraphError
@@ -11,6 +12,7 @@ from kinetree.pipeline.task import Argument, Space
 from kinetree.schemas.array import Artifact, Index
 
 T = TypeVar("T")
+EVERYWHERE: Mapping[str, int] = MappingProxyType({})
 Given = Mapping[str, Mapping[Index, Artifact]]
 """What the origins found, by task name and index."""
 
@@ -31,14 +33,17 @@ class Layout:
     ask: Ask
     exists: Callable[[Node], bool]
 
-    def indices(self, space: Space) -> tuple[list[Index], tuple[Node, ...]]:
-        """The known indices of a space, and the nodes that must be computed before the rest is known."""
+    def indices(self, space: Space, within: Mapping[str, int] = EVERYWHERE) -> tuple[list[Index], tuple[Node, ...]]:
+        """The known indices of a space, and the nodes that must be computed before the rest is known.
+
+        within : by dimension, the one member that is asked for; of other dimensions all are
+        """
         known: list[Index] = [()]
         blocking: list[Node] = []
         for depth in range(1, len(space) + 1):
             longer: list[Index] = []
             for prefix in known:
-                members = self._members(space[:depth], prefix)
+                members = self._members(space[:depth], prefix, within.get(space[depth - 1]))
                 if isinstance(members, Node):
                     blocking.append(members)
                 else:
@@ -60,9 +65,8 @@ class Layout:
         space = self.graph.gathered_space(task, argument)
         shared = tuple(d for d in space if d in task.over)
         here = project(index, task.over, shared)
-        found, blocking = self.indices(space)
-        mine = [i for i in found if project(i, space, shared) == here]
-        chosen = self._selected(task, index, mine, space)
+        found, blocking = self.indices(space, dict(zip(shared, here, strict=True)))
+        chosen = self._selected(task, index, found, space)
         if isinstance(chosen, Node):
             return (), (*blocking, chosen)
         return tuple(Node(writer.name, project(i, space, writer.over)) for i in chosen), blocking
@@ -77,14 +81,17 @@ class Layout:
         place = space.index(task.among.selects)
         return node if members is None else [i for i in found if i[place] in members]
 
-    def _members(self, space: Space, prefix: Index) -> Sequence[int] | Node:
-        """Members of a space's last dimension below a prefix, or the node that has to tell them."""
+    def _members(self, space: Space, prefix: Index, only: int | None) -> Sequence[int] | Node:
+        """Members of a space's last dimension below a prefix, or the node that has to tell them; `only` this one, if any."""
         opener = self.graph.openers[space]
         if opener.is_origin and opener.over == space:
-            return sorted(i[-1] for i in self.given[opener.name] if i[:-1] == prefix)
+            there = self.given[opener.name]
+            if only is not None:  # asked for every node: among a thousand frames nobody looks for one
+                return [only] if (*prefix, only) in there else []
+            return sorted(i[-1] for i in there if i[:-1] == prefix)
         node = Node(opener.name, project(prefix, space[:-1], opener.over))
         members = self.ask(node, lambda value: value.members("/".join(space), prefix))
-        return node if members is None else members
+        return node if members is None else [m for m in members if only is None or m == only]
 
     def _previous(self, task: AnyTask, index: Index) -> tuple[Index | None, tuple[Node, ...]]:
         """The index with the previous member of the traversal, None where that starts; and the nodes that block saying so."""

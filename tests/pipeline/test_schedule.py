@@ -9,7 +9,7 @@ import pytest
 from kinetree.errors import StoreError
 from kinetree.pipeline import schedule as module
 from kinetree.pipeline.entry import Entry
-from kinetree.pipeline.schedule import MENDS
+from kinetree.pipeline.schedule import MENDS, Schedule
 
 HOME = Path(str(module.__file__))
 
@@ -89,3 +89,20 @@ def test_a_node_that_was_not_computed_waits_again_unless_it_is_skipped(toys):
     assert schedule.fail(points.node, "broken") == [smooth.node]
     schedule.put_back(smooth.node)
     assert (smooth.state, smooth.cause) == ("skipped", "points[frame=0]")
+
+
+def test_twice_the_members_are_laid_out_with_twice_the_questions(toys, monkeypatch):
+    """What a node gathers below its own index is looked for there, and not among all."""
+
+    def questions(frames):
+        toys.write(*range(10, 10 * frames + 10, 10))
+        assert toys.run(intervals={"length": 1}).told["status"] == "done"
+        asked = []
+        ask = Schedule._ask
+        with monkeypatch.context() as patch:
+            patch.setattr(Schedule, "_ask", lambda self, *question: asked.append(question) or ask(self, *question))
+            toys.pipeline(intervals={"length": 1}).schedule()
+        return len(asked)
+
+    few = questions(8)
+    assert questions(16) <= 2.2 * few
