@@ -112,7 +112,7 @@ def portable(blocks: Mapping[str, Any], folder: Path, paths: Paths) -> dict[str,
         is_near = Path(path).is_relative_to(folder.parent) and _is_same(folder / way, Path(path))
         return path if not is_near else f"./{way}" if way.startswith("~") else way
 
-    return _with_paths(blocks, paths, relative)
+    return with_paths(blocks, paths, relative)
 
 
 def block(blocks: Mapping[str, Any], name: str) -> Any:
@@ -199,7 +199,7 @@ def absolute(blocks: Mapping[str, Any], base: Path, paths: Paths) -> dict[str, A
         plain = Path(os.path.normpath(way))
         return str(plain if _is_same(plain, way) else way)
 
-    return _with_paths(blocks, paths, absolute)
+    return with_paths(blocks, paths, absolute)
 
 
 def _is_same(a: Path, b: Path) -> bool:
@@ -210,7 +210,7 @@ def _is_same(a: Path, b: Path) -> bool:
         return False
 
 
-def _with_paths(blocks: Mapping[str, Any], paths: Paths, change: Callable[[str], str]) -> dict[str, Any]:
+def with_paths(blocks: Mapping[str, Any], paths: Paths, change: Callable[[str], str]) -> dict[str, Any]:
     """The blocks with every path in them changed; the address of a service is none."""
     changed = dict(blocks)
     for keys in [("output",), ("store",), *((task, *keys) for task, fields in paths.items() for keys in fields)]:

@@ -5,7 +5,8 @@ name: "{stem}"              how a name is made of a path
 output: results/{name}
 store: results/store        shared
 overrides: {walk_07: {task: {parameter: value}}, "dance_*": …}
-compute, on_failure, retention, and the blocks of tasks, which all sequences share
+compute, on_failure, retention, and the blocks of tasks, which all sequences share; in their paths {name} and {input} stand
+for each sequence's name and path
 """
 
 import os
@@ -19,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
-from kinetree.pipeline.blocks import Reading, absolute, extended, merged, override, read_yaml
+from kinetree.pipeline.blocks import Reading, absolute, extended, merged, override, read_yaml, with_paths
 from kinetree.pipeline.config import RUN_KEYS, Compute, Config, Origins, checked, resolved
 from kinetree.pipeline.sequences import NAME, WILD, matches, sequences
 from kinetree.pipeline.sizes import bytes_of
@@ -29,6 +30,8 @@ KEYS = ("sequences", "name", "overrides", "on_failure", "retention")
 """The keys that a data set has beside those of a single run."""
 OUTPUT = f"results/{NAME}"
 STORE = "store"
+INPUT = "{input}"
+"""Stands in paths of parameters for the sequence's own path."""
 
 
 class Retention(BaseModel):
@@ -108,18 +111,20 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     parameter = _input_parameter(application, blocks, where)
     own = _overrides(given.get("overrides"), where)
     configs: dict[str, Config] = {}
+    missing: dict[str, list[str]] = {}
     for name, path in inputs.items():
         mine, origins = dict(blocks), dict(options)
         for pattern, above in own.items():
             if fnmatchcase(name, pattern):
                 mine = merged(mine, absolute(above, base, reading.paths))
                 origins |= dict.fromkeys(_leaves(above), f"{where}: overrides.{pattern}")
-        mine = merged(mine, {**_nested(parameter, path), "output": template.replace(NAME, name)})
+        mine = merged(_filled(mine, name, path, reading, missing), _nested(parameter, path))
         configs[name] = resolved(mine, Origins(where, frozenset(given), origins), application, reading)
     first = next(iter(configs.values()))
     _refuse_overlap(configs, inputs, given["sequences"], base, where)
     lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
     notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
+    notes += [f"{path}: not there for {len(names)} sequences, {names[0]} among them" for path, names in missing.items()]
     retention = checked(Retention, given.get("retention") or {}, "retention", Origins(where, frozenset(given), {}))
     hook = _hook(given.get("on_failure"), where)
     return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, retention, tuple(notes))
@@ -216,6 +221,24 @@ def _refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], gi
             raise ConfigError(
                 f"{where}: the output of {name}, {config.output}, lies in the store; name the store otherwise with store:"
             )
+
+
+def _filled(blocks: dict[str, Any], name: str, path: str, reading: Reading, missing: dict[str, list[str]]) -> dict[str, Any]:
+    """The blocks with {name} and {input} in paths replaced; a parameter whose file is not there is left out and noted."""
+
+    def filled(written: str) -> str:
+        if INPUT in written:
+            place = path + written.partition(INPUT)[2].replace(NAME, name)
+        elif NAME in written:
+            place = written.replace(NAME, name)
+        else:
+            return written
+        if written != blocks.get("output") and not Path(place).exists():
+            missing.setdefault(written[written.find("{") :], []).append(name)
+            return ""
+        return place
+
+    return with_paths(blocks, reading.paths, filled)
 
 
 def _leaves(blocks: Mapping[str, Any]) -> Iterable[str]:

@@ -11,6 +11,7 @@ class Dim:
     size: int | None = None
 
 
+SEQUENCE = Dim("sequence")
 INTERVAL = Dim("interval")
 CONE = Dim("cone")
 LEAF = Dim("leaf")
@@ -54,6 +55,9 @@ NODE = Dim("node")
 SAMPLE = Dim("sample")
 BYTE = Dim("byte")
 PICTURE = Dim("picture")
+PIXEL_ROW = Dim("pixel_row")
+PIXEL_COLUMN = Dim("pixel_column")
+RGB = Dim("rgb", 3)
 EDGE = Dim("edge")
 BLOCK = Dim("block")
 END = Dim("end", 2)

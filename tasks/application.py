@@ -16,6 +16,12 @@ def _methods() -> "Mapping[str, Graph]":
     return METHODS
 
 
+def _data_sets() -> "Graph":
+    from kinetree.tasks.methods import DATA_SETS
+
+    return DATA_SETS
+
+
 def _command(name: str, summary: str, *examples: str) -> Command:
     """A command of our own, in the file of its name."""
     return Command(name, summary, f"kinetree.tasks.commands.{name}:{name}", examples)
@@ -27,6 +33,7 @@ APPLICATION = Application(
     " connectivity change in every frame.",
     methods=_methods,
     presets="kinetree.configs",
+    data_sets=_data_sets,
     sections=(
         Section(
             "Start",
@@ -43,6 +50,18 @@ APPLICATION = Application(
                     "Open the report of a run in a browser.",
                     "kinetree view walk/",
                     "kinetree view walk/ --print",
+                ),
+            ),
+        ),
+        Section(
+            "Many sequences",
+            (
+                built_in(
+                    "dataset",
+                    "kinetree dataset plan lab.yaml",
+                    "kinetree dataset run lab.yaml --max-hours 6",
+                    "kinetree dataset run lab.yaml --only 'walk_*' --failed",
+                    "kinetree dataset status lab.yaml --json",
                 ),
             ),
         ),

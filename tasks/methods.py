@@ -7,17 +7,20 @@ instead of aligned surfaces; the surface is aligned from there. reeb-2009: the s
 """
 
 from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.task import linked
 from kinetree.tasks.input import INPUT
 from kinetree.tasks.paper_2009 import LETTER_2009, PAPER_2009, SURFACE_2009
 from kinetree.tasks.paper_2014 import PAPER_2014
 from kinetree.tasks.registration import ALIGNED, REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
-from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, RESULTS
+from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQUENCES, RESULTS
+from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.structure import STRUCTURE
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.skeleton import skeleton
 from kinetree.tasks.topology import TOPOLOGY
+from kinetree.tasks.topology.up_direction import up_direction
 
 POSES = (pose_refinement, further_pose, skeleton)
 """What turns a kinematic tree into the skeleton, in every method that has one."""
@@ -29,3 +32,8 @@ METHODS = {
     "reeb-2009": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *LETTER_2009, frame_confidence, *POSES, *FIGURES_2009, *RESULTS)),
 }
 """The graph of each method, checked when this module is imported."""
+
+MADE_BY_METHODS = (skeleton, evaluation, frame_confidence, up_direction)
+"""Whose artifacts, of every sequence, the summary of a data set reads; every method writes them."""
+DATA_SETS = Graph.of((*(linked(task, over="sequence") for task in MADE_BY_METHODS), *OVER_SEQUENCES))
+"""The graph that sums up a data set."""

@@ -14,6 +14,7 @@ from kinetree.pipeline import views
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks import METHODS
 from kinetree.tasks.input import INPUT
+from kinetree.tasks.methods import DATA_SETS
 
 ROOT = Path(__file__).resolve().parent.parent
 SHELVES = ("input", "topology", "registration", "structure", "paper_2014", "paper_2009", "results")
@@ -198,6 +199,16 @@ def unread(graph: Graph) -> set[str]:
 @pytest.mark.parametrize("method", METHODS)
 def test_every_artifact_has_a_reader(method: str) -> None:
     assert not unread(METHODS[method])
+
+
+def test_every_artifact_of_the_graph_over_sequences_has_a_reader() -> None:
+    assert not unread(DATA_SETS)
+
+
+def test_every_method_makes_what_the_summary_of_a_data_set_reads() -> None:
+    read = {task.returns for task in DATA_SETS.tasks if task.is_linked}
+    for graph in METHODS.values():
+        assert {task.returns for task in graph.tasks if not task.over} >= read
 
 
 def test_artifact_that_nobody_reads_is_named() -> None:

@@ -10,12 +10,15 @@ from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.excerpt import excerpt
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.motion_figures import motion_figures
+from kinetree.tasks.results.outcomes import outcomes
 from kinetree.tasks.results.paper_figures import paper_figures
 from kinetree.tasks.results.ply import ply
 from kinetree.tasks.results.reeb_figures import reeb_figures
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.rignet import rignet
 from kinetree.tasks.results.segmentation import segmentation
+from kinetree.tasks.results.sequence_figures import sequence_figures
+from kinetree.tasks.results.sequence_table import sequence_table
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.structure_figures import structure_figures
@@ -51,3 +54,5 @@ RESULTS = (
 FIGURES = (structure_figures,)
 FIGURES_2009 = (reeb_figures,)
 FIGURES_2014 = (paper_figures,)
+OVER_SEQUENCES = (outcomes, sequence_figures, sequence_table)
+"""What sums up a data set."""

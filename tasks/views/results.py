@@ -1,12 +1,14 @@
 """Views of the artifacts of the shelf `results`: exported files, the evaluation, the report."""
 
+import csv
+import io
 import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from kinetree.pipeline.views import files_of, leave_group, page_of, remarks_of
+from kinetree.pipeline.views import files_of, leave_group, page_of, remarks_of, rows_of
 from kinetree.schemas.array import Floats, Index
 from kinetree.schemas.results.bvh import Bvh
 from kinetree.schemas.results.c3d import C3d
@@ -18,6 +20,7 @@ from kinetree.schemas.results.glb import Glb
 from kinetree.schemas.results.ply import Ply
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.schemas.results.segmentation import Segmentation
+from kinetree.schemas.results.sequence_table import SequenceRow, SequenceTable
 from kinetree.schemas.results.tables import Tables
 from kinetree.schemas.results.trc import Trc
 from kinetree.schemas.results.usd import Usd
@@ -214,3 +217,44 @@ def complete_skeleton_remarks(skeleton: CompleteSkeleton) -> tuple[str, ...]:
     told = [f"frame {each.frame}: interpolated, {each.reason or 'no file has its number'}" for each in skeleton.interpolated]
     more = len(told) - NAMED_FRAMES
     return (*told[:NAMED_FRAMES], *([f"{more} more frames were interpolated"] if more > 0 else []))
+
+
+@rows_of(SequenceTable)
+def sequence_rows(table: SequenceTable) -> list[dict[str, Any]]:
+    """One row a sequence: what became of it and its figures; numbers of remarks and failures in place of sentences."""
+    return [_sequence_row(row) for row in table.rows]
+
+
+@files_of(SequenceTable)
+def sequence_table_files(table: SequenceTable, index: Index) -> Mapping[str, bytes]:
+    """The table as CSV, with all sentences as JSON, and as a page."""
+    from kinetree.tasks.results.page.index import index_page  # which reads the page's style
+
+    rows = sequence_rows(table)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]) if rows else ["name"], lineterminator="\r\n")
+    writer.writeheader()
+    writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+    full = [
+        {**small, "remarks": list(row.outcome.remarks), "failures": list(row.outcome.failures)}
+        for small, row in zip(rows, table.rows, strict=True)
+    ]
+    content = {"format": "kinetree.summary/1", "sequences": full}
+    return {
+        "summary.csv": text.getvalue().encode(),
+        "summary.json": (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode(),
+        "index.html": index_page(table).encode(),
+    }
+
+
+def _cell(value: Any) -> Any:
+    """A value as a cell that no spreadsheet takes for a formula."""
+    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r") else value
+
+
+def _sequence_row(row: SequenceRow) -> dict[str, Any]:
+    outcome = row.outcome
+    told = {"name": outcome.name, "status": outcome.status, "method": outcome.method, "output": outcome.output}
+    figures = row.model_dump(mode="json", exclude={"outcome", "picture"})
+    counts = {"seconds": outcome.seconds, "remarks": len(outcome.remarks), "failures": len(outcome.failures)}
+    return {**told, **figures, **counts}
