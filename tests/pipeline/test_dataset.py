@@ -1,77 +1,17 @@
 """A data set: many sequences with one configuration, run side by side and summed up; toy sequences of text files."""
 
-import importlib
 import json
-import os
 import shutil
-import time
-from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
-from pipeline.conftest import Toys
+from pipeline.lab import Lab
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.application import Application, Shortcut
-from kinetree.pipeline.dataset import Dataset
-
-
-@dataclass
-class Lab:
-    """Takes in a folder, and the file that describes them."""
-
-    toys: Toys
-    takes: Path
-    file: Path
-
-    @property
-    def results(self):
-        return self.file.parent / "results"
-
-    def take(self, name, *numbers):
-        folder = self.takes / name
-        folder.mkdir(parents=True, exist_ok=True)
-        for frame, number in enumerate(numbers):
-            (folder / f"{frame:05d}.txt").write_text(f"{number}")
-        for file in folder.iterdir():
-            os.utime(file, (time.time() - 100,) * 2)  # so that digests are remembered
-        return folder
-
-    def write(self, **keys):
-        told = {"sequences": "takes/*", "output": "results/{name}", "compute": {"executor": "sync"}, **keys}
-        self.file.write_text(json.dumps({key: value for key, value in told.items() if value is not None}))
-        return self
-
-    def dataset(self, sets=()):
-        return Dataset.of(self.file, sets=sets, application=self.application())
-
-    def application(self):
-        return Application(
-            "toy",
-            "Adds numbers.",
-            lambda: {"toy": self.toys.module.GRAPH},
-            shortcuts=(Shortcut(("--input",), "source.input", "", is_input=True),),
-            data_sets=lambda: importlib.import_module(f"{self.toys.name}.toy_datasets").GRAPH,
-        )
-
-    def run(self, **options):
-        self.toys.clear()
-        return self.dataset().run(**options)
-
-    def states(self, told):
-        return {name: row["state"] for name, row in told["sequences"].items()}
-
-    def summary(self):
-        return json.loads((self.results / "summary.json").read_text())
 
 
 @pytest.fixture
 def lab(toys):
-    made = Lab(toys, toys.folder.parent / "lab" / "takes", toys.folder.parent / "lab" / "lab.yaml")
-    made.take("a", 10, 20)
-    made.take("b", 30, 40, 50)
-    made.take("c", 60, 70)
-    return made.write()
+    return Lab.of(toys)
 
 
 def test_all_sequences_run_and_are_summed_up(lab):
