@@ -124,7 +124,7 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     _refuse_overlap(configs, inputs, given["sequences"], base, where)
     lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
     notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
-    notes += [f"{path}: not there for {len(names)} sequences, {names[0]} among them" for path, names in missing.items()]
+    notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
     retention = checked(Retention, given.get("retention") or {}, "retention", Origins(where, frozenset(given), {}))
     hook = _hook(given.get("on_failure"), where)
     return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, retention, tuple(notes))
@@ -239,6 +239,10 @@ def _filled(blocks: dict[str, Any], name: str, path: str, reading: Reading, miss
         return place
 
     return with_paths(blocks, reading.paths, filled)
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def _leaves(blocks: Mapping[str, Any]) -> Iterable[str]:

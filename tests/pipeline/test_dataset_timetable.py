@@ -213,4 +213,4 @@ def test_the_file_of_the_page_is_a_data_set():
     assert found["dance_1"].config.params["sequence"].fps == 60
     assert found["walk_07"].config.params["source"].frames == "10:80"
     assert found.config.retention.keep_last == 2
-    assert found.config.notes == ("{input}/truth.json: not there for 2 sequences, dance_1 among them",)
+    assert found.config.notes == ("{input}/truth.json: there is none for dance_1, walk_07",)
