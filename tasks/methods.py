@@ -2,6 +2,7 @@
 
 mesoscopic: Tree-structured mesoscopic surface characterization (Mukasa, Nobuhara, Tung, Matsuyama 2014), the default, with
 what was measured to be better in place of some of its steps. mesoscopic-2014: the same to the paper's letter.
+mesoscopic-2014-aligned: the paper's Step III to the letter, on the default's alignment.
 reeb: Finding kinematic structure in time series volume data (Mukasa, Nobuhara, Maki, Matsuyama 2009): graphs inside the body
 instead of aligned surfaces; the surface is aligned from there. reeb-2009: the same to the paper's letter.
 """
@@ -10,7 +11,7 @@ from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import linked
 from kinetree.tasks.input import INPUT
 from kinetree.tasks.paper_2009 import LETTER_2009, PAPER_2009, SURFACE_2009
-from kinetree.tasks.paper_2014 import PAPER_2014
+from kinetree.tasks.paper_2014 import PAPER_2014, PAPER_2014_ALIGNED
 from kinetree.tasks.registration import ALIGNED, REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQUENCES, RESULTS
@@ -28,6 +29,7 @@ POSES = (pose_refinement, further_pose, skeleton)
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
     "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, frame_confidence, *FIGURES_2014, *RESULTS)),
+    "mesoscopic-2014-aligned": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *PAPER_2014_ALIGNED, *FIGURES_2014, *RESULTS)),
     "reeb": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *SURFACE_2009, *ALIGNED, *POSES, *FIGURES_2009, *RESULTS)),
     "reeb-2009": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *LETTER_2009, frame_confidence, *POSES, *FIGURES_2009, *RESULTS)),
 }

@@ -11,12 +11,15 @@ from shapes import flat_grid, folded
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.paper_2014.aligned_reference import AlignedReferenceParams
 from kinetree.schemas.paper_2014.geodesic_coordinates import GeodesicCoordinates
 from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.geodesics import Geodesics
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.paper_2014.aligned_reference import aligned_reference
 from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
 from kinetree.tasks.paper_2014.interval_reference import interval_reference
 
@@ -84,6 +87,26 @@ def reference_of(
         {t: f.coordinates for t, f in own.items()},
         leaves_of(frames, *ends),
         connectivity,
+    )
+
+
+def reference_at(frames: dict[int, Frame], chosen: int) -> Reference:
+    """The default's reference, from the chosen frame."""
+    mesh, each = frames[chosen].mesh, np.ones(len(frames))
+    return Reference(
+        frames=tuple(frames), frame=chosen, fixed=False, leaves=3, free=True, vertices=mesh.vertices, faces=mesh.faces,
+        size=10.0, score=each, before=-each.astype(np.int64),
+    )  # fmt: skip
+
+
+def aligned_reference_of(frames: dict[int, Frame], reference: Reference, threshold: float = 0.2) -> IntervalReference:
+    """The reference of the interval that has these frames, from the default's."""
+    return aligned_reference(
+        (0,),
+        reference,
+        {t: f.geodesics for t, f in frames.items()},
+        {t: f.extrema for t, f in frames.items()},
+        AlignedReferenceParams(threshold=threshold),
     )
 
 

@@ -22,7 +22,11 @@ def test_default_yaml_tells_every_default() -> None:
 
 @pytest.mark.parametrize("name", Reading.of({}, APPLICATION.presets).preset_names)
 def test_every_preset_is_a_configuration(name: str) -> None:
-    methods = {"paper-2014": "mesoscopic-2014", "paper-2009": "reeb-2009"}
+    methods = {
+        "paper-2014": "mesoscopic-2014",
+        "paper-2014-aligned": "mesoscopic-2014-aligned",
+        "paper-2009": "reeb-2009",
+    }
     assert Pipeline.of(name).config.method == methods.get(name, "mesoscopic")
 
 

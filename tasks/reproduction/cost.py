@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.graph import AnyTask
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.tasks.paper_2014 import STEP_2, STEP_2_ALIGNED
 from kinetree.tasks.reproduction.printed import CITATION, TABLE_1
 from kinetree.tasks.reproduction.sequence import PRESETS, Run, Sequence
 from kinetree.tasks.reproduction.table import Table
@@ -21,7 +22,7 @@ STEP_OF_SHELF: Mapping[str, str] = {
     "results": "not counted",
 }
 """The step of the tasks of a shelf; reading meshes and writing results are none."""
-MICROSCOPIC_2014 = frozenset({"geodesic_coordinates", "interval_reference", "geodesic_mapping", "arap"})
+MICROSCOPIC_2014 = frozenset(task.name for task in (*STEP_2, *STEP_2_ALIGNED))
 """Tasks of Step II on the shelf of the 2014 paper, whose other tasks are of Step III."""
 COLUMNS = ("sequence", "method", "frames", "vertices", "edges", *(f"{step} s" for step in STEPS), "total s")
 

@@ -49,6 +49,7 @@ _GRAPHS_2009: Plots = {
 PLOTS_OF_METHOD: Mapping[str, Plots] = {
     "mesoscopic": PLOTS,
     "mesoscopic-2014": {**_BODY, **_PARTS_2014, **_MOTION},
+    "mesoscopic-2014-aligned": {**_BODY, **_PARTS_2014, **_MOTION},
     "reeb": {**_BODY, **_MOTION, **_GRAPHS_2009},
     "reeb-2009": {**_BODY, **_MOTION, **_GRAPHS_2009},
 }
