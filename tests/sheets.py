@@ -18,6 +18,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.geodesics import Geodesics
+from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.paper_2014.aligned_reference import aligned_reference
 from kinetree.tasks.paper_2014.geodesic_coordinates import geodesic_coordinates
@@ -95,17 +96,30 @@ def reference_at(frames: dict[int, Frame], chosen: int) -> Reference:
     mesh, each = frames[chosen].mesh, np.ones(len(frames))
     return Reference(
         frames=tuple(frames), frame=chosen, fixed=False, leaves=3, free=True, vertices=mesh.vertices, faces=mesh.faces,
-        size=10.0, score=each, before=-each.astype(np.int64),
+        size=10.0, score=each,
     )  # fmt: skip
 
 
-def aligned_reference_of(frames: dict[int, Frame], reference: Reference, threshold: float = 0.2) -> IntervalReference:
-    """The reference of the interval that has these frames, from the default's."""
+def aligned_reference_of(
+    frames: dict[int, Frame], reference: Reference, threshold: float = 0.2, ends: tuple[int, ...] = ()
+) -> IntervalReference:
+    """The reference of the interval that has these frames, from the default's; the sequence may be cut behind some frames."""
+    end = np.array([*ends, len(frames) - 1])
+    none = np.zeros(len(frames) - 1)
     return aligned_reference(
-        (0,),
         reference,
         {t: f.geodesics for t, f in frames.items()},
         {t: f.extrema for t, f in frames.items()},
+        Intervals(
+            frames=tuple(frames),
+            begin=np.array([0, *(end[:-1] + 1)]),
+            end=end,
+            z=none,
+            cues=((),) * len(ends),
+            strengths=none[None],
+            cue_names=("correlation",),
+            threshold=0.0,
+        ),
         AlignedReferenceParams(threshold=threshold),
     )
 

@@ -10,8 +10,8 @@ from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 FRAMES = {t: frame(t) for t in (3, 5, 7)}
 
 
-def made(chosen: int, *frames: int, threshold: float = 0.2) -> IntervalReference:
-    return aligned_reference_of({t: FRAMES[t] for t in frames or FRAMES}, reference_at(FRAMES, chosen), threshold)
+def made(chosen: int, *, threshold: float = 0.2, ends: tuple[int, ...] = ()) -> IntervalReference:
+    return aligned_reference_of(FRAMES, reference_at(FRAMES, chosen), threshold, ends)
 
 
 @pytest.mark.parametrize("chosen", [3, 5, 7])
@@ -33,5 +33,5 @@ def test_extrema_below_the_threshold_are_no_leaves() -> None:
 
 
 def test_a_sequence_that_is_cut_is_refused_in_words() -> None:
-    with pytest.raises(ConfigError, match=r"interval 0 has 2 of 3 frames.*intervals\.threshold to -1"):
-        made(5, 5, 7)
+    with pytest.raises(ConfigError, match=r"cut into 2 intervals.*intervals\.threshold to -1"):
+        made(5, ends=(0,))
