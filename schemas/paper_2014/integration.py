@@ -4,6 +4,7 @@ from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Bools, Ints
 from kinetree.schemas.dims import ANNULUS, CONE, RUNG
+from kinetree.schemas.paper_2014.annuli import Joint
 
 
 class Integration(Artifact):
@@ -11,6 +12,8 @@ class Integration(Artifact):
 
     floor: float
     """Errors per vertex below this counted as this much, share of the root of the area."""
+    joint: Joint
+    """How annuli of joints were chosen, see `AnnuliParams.joint`."""
     theta: float
     """θ_r, the threshold of Eq. 12."""
     rigid: Annotated[Bools, Array("bool", CONE, ANNULUS)]

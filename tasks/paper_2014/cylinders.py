@@ -31,7 +31,8 @@ def cylinders(
     intervals = _motions(model, interval_references, alignments, cut_correspondence, integration.floor)
 
     def clustering(annuli: list[Ints]) -> Flags:
-        return numerics.rigid_annuli(annuli, intervals, integration.theta, count)
+        at_least_rigid = integration.joint == "least_rigid"
+        return numerics.rigid_annuli(annuli, intervals, integration.theta, count, at_least_rigid=at_least_rigid)
 
     distance = _leaf_distance(reference, cone_consistency.leaf[model].astype(np.int64))
     extensions = numerics.cylinders(cones, distance, reference.area, F, clustering, cone_consistency.annuli)

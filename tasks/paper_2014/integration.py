@@ -16,14 +16,16 @@ def integration(cone_consistency: ConeConsistency, annuli: tuple[Annuli, ...]) -
     cones, last = len(cone_consistency.annulus), cone_consistency.annulus.max(axis=1, initial=-1)
     length = int(last.max(initial=-1)) + 1
     if not annuli:
-        return Integration(floor=0.0, theta=0.0, rigid=np.ones((0, length), dtype=bool), clusters=np.zeros(0, np.int64))
+        none = np.zeros(0, np.int64)
+        return Integration(floor=0.0, joint="clustered", theta=0.0, rigid=np.ones((0, length), dtype=bool), clusters=none)
     theta = annuli[0].theta
     by_cone = [[a for a in annuli if a.cone == cone] for cone in range(cones)]
     rigid = np.array([[_integrated(own, rung, length) for own in by_cone] for rung in range(len(theta))])
     clusters = np.array([sum(rigid_areas(r[: k + 1]) for r, k in zip(rows, last, strict=True)) for rows in rigid])
     order = np.argsort(theta, kind="stable")
     rung = int(order[most_clusters(clusters[order])])
-    return Integration(floor=annuli[0].floor, theta=float(theta[rung]), rigid=rigid[rung], clusters=clusters)
+    floor, joint = annuli[0].floor, annuli[0].joint
+    return Integration(floor=floor, joint=joint, theta=float(theta[rung]), rigid=rigid[rung], clusters=clusters)
 
 
 def _integrated(intervals: list[Annuli], rung: int, length: int) -> Flags:

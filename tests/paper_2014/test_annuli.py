@@ -9,14 +9,25 @@ from kinetree.schemas.paper_2014.annuli import THRESHOLDS, AnnuliParams
 from kinetree.tasks.paper_2014.annuli import annuli
 
 
-def test_annulus_at_the_joint_is_the_only_one_that_is_not_rigid() -> None:
+def test_annulus_that_the_joint_crosses_is_the_only_one_that_is_not_rigid() -> None:
     here = mesoscopic()
     for (interval, cone), artifact in here.annuli.items():
         of_vertex = here.cone_consistency.annulus[cone, here.cone_consistency.rows(interval)]
+        links = np.array([len(np.unique(here.body.label[of_vertex == k])) for k in artifact.annulus])
         for rigid in artifact.rigid:
-            (joint,) = artifact.annulus[~rigid]
-            radius = np.linalg.norm(here.body.V[of_vertex == joint], axis=1)
-            assert radius.min() < 12.0 < radius.max(), "arms turn at 12"
+            (joint,) = np.flatnonzero(~rigid)
+            assert links[joint] == 2, "some of it follows either link"
+            assert (links[:joint] == 1).all()
+
+
+def test_by_the_ratio_alone_the_joint_is_one_annulus_nearer_to_the_body() -> None:
+    here = mesoscopic()
+    for (interval, cone), artifact in here.annuli.items():
+        reference = here.interval_references[interval]
+        alignments = {t: here.alignments[t] for t in reference.frames}
+        params = AnnuliParams(joint="clustered")
+        plain = annuli((interval, cone), here.cone_consistency, reference, alignments, params)
+        assert np.flatnonzero(~plain.rigid[0]).tolist() == [k + 1 for k in np.flatnonzero(~artifact.rigid[0])]
 
 
 def test_annuli_are_of_the_interval_and_the_cone_of_the_index() -> None:

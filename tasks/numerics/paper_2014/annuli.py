@@ -1,5 +1,6 @@
 """Clusters of annuli that move as one, by self-, cast- and merge-error (2014, Sec. 6.1.2, Eqs. 9 to 12; Figs. 10 and 11)."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,28 +36,68 @@ class AnnulusClusters(NamedTuple):
         return np.asarray(np.bincount(self.cluster)[self.cluster] > 1)
 
 
-def annulus_clusters(annuli: list[Floats], threshold: float, floor: float) -> AnnulusClusters:
-    """Joins annuli, from the leaf on, to the cluster before them where their merge-error is below the threshold (Eq. 12).
+def annulus_clusters(annuli: list[Floats], thresholds: Sequence[float], floor: float) -> list[AnnulusClusters]:
+    """Joins annuli, from the leaf on, to the cluster before them where their merge-error is below a threshold (Eq. 12).
 
     An annulus that does not join stays single, and a new cluster begins with the annulus after it (Sec. 6.1.2.3).
 
-    annuli    : of each, (frame, vertex, xyz) mesh unit
-    threshold : θ_r
-    floor     : see `merge_error`
+    annuli     : of each, (frame, vertex, xyz) mesh unit
+    thresholds : θ_r, several of them
+    floor      : see `merge_error`
+    returns    : the clusters at each threshold
     """
-    cluster, error = np.zeros(len(annuli), np.int64), np.ones(len(annuli))
+    known: dict[tuple[int, int], float] = {}
+
+    def error(first: int, k: int) -> float:
+        if (first, k) not in known:
+            known[first, k] = merge_error(annuli[k], frame_motion(np.concatenate(annuli[first:k], axis=1)), floor)
+        return known[first, k]
+
+    return [_clustered(len(annuli), threshold, error) for threshold in thresholds]
+
+
+def _clustered(count: int, threshold: float, error: Callable[[int, int], float]) -> AnnulusClusters:
+    """Clusters at one threshold; error(first, k) is the merge-error of annulus k against the cluster from `first` to k − 1."""
+    cluster, errors = np.zeros(count, np.int64), np.ones(count)
     first, number = 0, 0
-    for k in range(1, len(annuli)):
+    for k in range(1, count):
         if first == k:
             cluster[k] = number
             continue
-        error[k] = merge_error(annuli[k], frame_motion(np.concatenate(annuli[first:k], axis=1)), floor)
-        if error[k] < threshold:
+        errors[k] = error(first, k)
+        if errors[k] < threshold:
             cluster[k] = number
         else:
             cluster[k] = number + 1
             first, number = k + 1, number + 2
-    return AnnulusClusters(np.unique(cluster, return_inverse=True)[1].astype(np.int64), error)
+    return AnnulusClusters(np.unique(cluster, return_inverse=True)[1].astype(np.int64), errors)
+
+
+def self_errors(annuli: list[Floats]) -> Floats:
+    """(annulus,) self-error a vertex, mean over the transitions: the apparent non-rigidity (Sec. 6.1.2.1), mesh unit.
+
+    annuli : of each, (frame, vertex, xyz) mesh unit
+    """
+    return np.array([residual_sums(x, frame_motion(x)).mean() / x.shape[1] if len(x) > 1 else 0.0 for x in annuli])
+
+
+def least_rigid(rigid: Flags, self_error: Floats) -> Flags:
+    """(annulus,) rigid annuli, each joint moved one annulus towards the leaf where it is less rigid there (ours).
+
+    "Annuli in non-rigid motion are not merged to any others" (Sec. 6.1.2.3), but Eq. 11 merges an annulus that a joint crosses
+    in its middle: where two halves turn by α against each other, the best motion of all leaves as much as the motion of one
+    half, and the ratio is 1. The annulus after it, which is rigid, then does not join. So of the last annulus that joined and
+    the last that did not, the one with the smaller self-error is rigid. The first annulus stays as it is.
+
+    rigid      : (annulus,) after clustering, from the leaf on
+    self_error : (annulus,) see `self_errors`
+    """
+    out = rigid.copy()
+    for first in np.flatnonzero(~rigid[1:] & rigid[:-1]) + 1:
+        last = first + int(np.argmax([*rigid[first:], True])) - 1
+        if first > 1 and last + 1 < len(rigid) and self_error[first - 1] > self_error[last]:
+            out[first - 1], out[last] = False, True
+    return out
 
 
 def merge_error(x: Floats, motion: FrameMotion, floor: float) -> float:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters
+from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters, least_rigid, self_errors
 from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown, neighbours
 from kinetree.tasks.numerics.paper_2014.integration import integrated
 
@@ -135,13 +135,16 @@ def cylinders(
         cone_of[annulus >= 0] = n
 
 
-def rigid_annuli(annuli: list[Ints], intervals: list[IntervalMotion], theta: float, vertices: int) -> Flags:
+def rigid_annuli(
+    annuli: list[Ints], intervals: list[IntervalMotion], theta: float, vertices: int, *, at_least_rigid: bool = False
+) -> Flags:
     """(annulus,) whether each annulus of an extension is rigid in all intervals (Sec. 6.2.3, as Sec. 6.1.2 and 6.1.3).
 
-    annuli    : of each, its vertices on the model mesh
-    intervals : in any order
-    theta     : θ_r, threshold of Eq. 12
-    vertices  : of the model mesh
+    annuli         : of each, its vertices on the model mesh
+    intervals      : in any order
+    theta          : θ_r, threshold of Eq. 12
+    vertices       : of the model mesh
+    at_least_rigid : whether joints are moved as `least_rigid` does
     """
     of_model = np.full(vertices, -1)
     for k, inside in enumerate(annuli):
@@ -150,7 +153,9 @@ def rigid_annuli(annuli: list[Ints], intervals: list[IntervalMotion], theta: flo
     for x, model_vertex, floor, at_rest in intervals:
         own = np.where(model_vertex >= 0, of_model[model_vertex], -1)
         annulus.append(np.unique(own[own >= 0]))
-        rigid.append(annulus_clusters([x[:, own == k] for k in annulus[-1]], theta, floor).rigid | at_rest)
+        moving = [x[:, own == k] for k in annulus[-1]]
+        clustered = annulus_clusters(moving, [theta], floor)[0].rigid
+        rigid.append((least_rigid(clustered, self_errors(moving)) if at_least_rigid else clustered) | at_rest)
     return integrated(annulus, rigid, len(annuli))
 
 
