@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 PAPERS = ("2014",)
 TABLES = (1, 2)
 FIGURES = (11, 19, 20, 21)
-FIGURES_OF_INPUT = (11, 19, 20)
-"""Those that can be made of a given sequence."""
 
 
 def reproduce(
@@ -56,7 +54,7 @@ def reproduce(
         raise ConfigError(f"{paper}: no such paper; tables and figures are made of {', '.join(PAPERS)}")
     tables, figures = _chosen(table, TABLES, "--table"), _chosen(figure, FIGURES, "--figure")
     if not tables + figures:
-        tables, figures = TABLES, FIGURES if source is None else FIGURES_OF_INPUT
+        tables, figures = TABLES, FIGURES
     from kinetree.tasks.reproduction.sequence import Sequence
 
     sequence = Sequence(output, source, truth, tuple(sets or ()), lambda text: err.print(printable(text), markup=False))

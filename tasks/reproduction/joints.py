@@ -11,7 +11,7 @@ from kinetree.tasks.reproduction.table import Cell, Table
 
 WORDS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "elbow": (("joint", "elbow"), ("joint", "forearm"), ("joint", "lowerarm")),
-    "hand": (("tip", "hand"), ("tip", "wrist"), ("joint", "hand"), ("joint", "wrist")),
+    "hand": (("tip", "hand"), ("tip", "wrist"), ("tip", "finger"), ("joint", "hand"), ("joint", "wrist")),
     "knee": (("joint", "knee"), ("joint", "shin"), ("joint", "calf"), ("joint", "lowerleg"), ("joint", "leg")),
     "toe": (("tip", "toe"), ("tip", "foot"), ("joint", "toe"), ("joint", "foot")),
 }

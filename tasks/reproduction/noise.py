@@ -1,8 +1,13 @@
 """Joints that are found, and their error, on surfaces with noise (2014, Fig. 21)."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kinetree.errors import InputError, NodesFailedError
+import numpy as np
+
+from kinetree.errors import NodesFailedError
+from kinetree.schemas.array import Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.reproduction.joints import evaluation
 from kinetree.tasks.reproduction.printed import HEIGHT
 from kinetree.tasks.reproduction.sequence import PRESETS, Sequence
@@ -18,12 +23,7 @@ COLUMNS = ("σ mm", "σ % of height", "method", "true joints", "found", "spuriou
 
 
 def figure_21(sequence: Sequence) -> "tuple[Figure, Table]":
-    """Found joints and their mean error over the noise, a line for each method; raises InputError for a given sequence."""
-    if sequence.input is not None:
-        raise InputError(
-            f"{sequence.input}: Figure 21 adds noise to the generated body; leave out --input, or write a noisy sequence"
-            " with kinetree synth --noise and ask for --table 2"
-        )
+    """Found joints and their mean error over the noise, a line for each method; copies of a given sequence get it."""
     rows = [
         (sigma, 100 * sigma / HEIGHT, preset, *_measured(sequence, preset, sigma)) for preset in PRESETS for sigma in SIGMAS
     ]
@@ -33,14 +33,51 @@ def figure_21(sequence: Sequence) -> "tuple[Figure, Table]":
 
 def _measured(sequence: Sequence, preset: str, sigma: float) -> tuple[Cell, ...]:
     """True joints, found, spurious and the mean error in % of the height; none where the method fails on the noise."""
-    change, beside = (f"source.synth.noise={sigma / HEIGHT:.6f}",), f"-noise-{sigma:g}"
+    beside = f"-noise-{sigma:g}"
     try:
-        run = sequence.run(preset, *change, beside=beside) if sigma else sequence.run(preset)
+        if not sigma:
+            run = sequence.run(preset)
+        elif sequence.input is None:
+            run = sequence.run(preset, f"source.synth.noise={sigma / HEIGHT:.6f}", beside=beside)
+        else:
+            run = _noisy(sequence, sigma / HEIGHT).run(preset, beside=beside)
     except NodesFailedError as error:
         sequence.tell(str(error))
         return None, None, None, None
     summary = evaluation(run).summary
     return (summary.scored, summary.found, summary.spurious, summary.percent) if summary else (None, None, None, None)
+
+
+def _noisy(sequence: Sequence, share: float) -> Sequence:
+    """The given sequence with noise along the normals, a share of the height in standard deviation, written beside the runs.
+
+    Frames keep their numbers, connectivity, rate and unit; what cleaning leaves out of a frame is not written.
+    """
+    clean = sequence.run(PRESETS[0])
+    folder = sequence.output / f"noise-{share * HEIGHT:g}"
+    folder.mkdir(parents=True, exist_ok=True)
+    sigma, told = share * evaluation(clean).height, clean.fetch("sequence")
+    for frame in clean.frames:
+        mesh = clean.fetch("mesh", frame=frame)
+        path = folder / f"frame_{frame:06d}.ply"
+        path.write_bytes(noisy_ply(np.array(mesh.vertices), mesh.faces.astype(np.int64), sigma, frame))
+    known = {"fps": told.fps, "unit": told.unit}
+    sets = [f"sequence.{name}={value}" for name, value in known.items() if value is not None]
+    own = tuple(text for text in sequence.sets if not text.startswith("source."))
+    return replace(sequence, input=folder, sets=(*own, *sets))
+
+
+def noisy_ply(V: Floats, F: Ints, sigma: float, seed: int) -> bytes:
+    """A mesh as PLY, every vertex moved along its normal by Gaussian noise.
+
+    V, F  : (vertex, xyz) mesh unit · (face, corner)
+    sigma : standard deviation, mesh unit
+    """
+    import trimesh
+
+    step = np.random.default_rng(seed).normal(0.0, sigma, len(V))
+    moved = trimesh.Trimesh(V + step[:, None] * vertex_normals(V, F), F, process=False)
+    return bytes(moved.export(file_type="ply", vertex_normal=False))
 
 
 def _drawn(rows: "list[tuple[Cell, ...]]") -> "Figure":

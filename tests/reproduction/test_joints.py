@@ -48,6 +48,14 @@ def test_joints_of_a_recording_are_found_by_its_names() -> None:
     assert {name: row.name for name, row in picked.items()} == names
 
 
+def test_a_fingertip_is_the_end_of_the_hand_and_goes_before_the_wrist() -> None:
+    names = named({"elbow": "{Side}ForeArm", "hand": "{Side}Fingertip", "knee": "{Side}Leg", "toe": "{Side}ToeTip"})
+    joints = ["LeftHand", "RightHand", "LeftHandFinger1", "RightHandFinger1", "LeftFoot", "RightFoot"]
+    joints += [n for name, n in names.items() if name.endswith(("elbow", "knee"))]
+    picked, _ = eight_joints(judged(joints, [n for name, n in names.items() if name.endswith(("hand", "toe"))]))
+    assert {name: row.name for name, row in picked.items()} == names
+
+
 def test_wrist_and_foot_stand_in_where_no_end_is_named() -> None:
     names = {"elbow": "{Side}Elbow", "hand": "{Side}Wrist", "knee": "{Side}Knee", "toe": "{Side}Foot"}
     picked, _ = eight_joints(judged(list(named(names).values()), []))
