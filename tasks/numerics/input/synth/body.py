@@ -129,15 +129,15 @@ class Body:
         `turns_deg` is the largest angle between two frames of the joint's rotation against its parent; `part` the
         index, in `parts`, of the rigid part that the joint carries (null at a tip).
         """
-        joints, parts = true_joints(self.figure, self.R)
+        joints, parts = self._true_joints
         name = self.figure.names
         return {
             "unit": self.figure.unit,
             "height": self.figure.height,
             "fps": self.fps,
-            "joints": joints,
+            "joints": [dict(joint) for joint in joints],
             "positions": self.X.tolist(),
-            "parts": parts,
+            "parts": [list(part) for part in parts],
             "contacts": [
                 {"limb": name[c.limb], "target": name[c.target], "frames": list(range(c.begin, c.end + 1))}
                 for c in self.contacts
@@ -148,7 +148,7 @@ class Body:
     def parts(self, t: int, V: Floats) -> Ints:
         """(vertex,) true rigid part of points near the surface of frame t: that of the nearest limb; see `truth`."""
         self._check_frame(t)
-        carried = [joint["part"] for joint in true_joints(self.figure, self.R)[0]]
+        carried = [joint["part"] for joint in self._true_joints[0]]
         of_limb = np.array([carried[p] for p in self.flesh.parent], dtype=np.int64)
         return np.asarray(of_limb[np.argmin(limb_distances(self._cones(t), V), axis=1)], dtype=np.int64)
 
@@ -189,6 +189,11 @@ class Body:
         for b, p in enumerate(self.flesh.parent):
             W[:, p] += self.skin.weights[:, b]
         return W
+
+    @cached_property
+    def _true_joints(self) -> tuple[list[dict[str, Any]], list[list[str]]]:
+        """What `true_joints` gives: it compares every frame with every other."""
+        return true_joints(self.figure, self.R)
 
     @cached_property
     def _box(self) -> tuple[Floats, Floats]:

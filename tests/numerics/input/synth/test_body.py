@@ -14,10 +14,12 @@ import yaml
 
 from kinetree.errors import FigureError
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
+from kinetree.tasks.numerics.input.synth import body as module
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.defects import punctured
 from kinetree.tasks.numerics.input.synth.figures import named
 from kinetree.tasks.numerics.input.synth.implicit import values
+from kinetree.tasks.numerics.input.synth.motion import true_joints
 
 FIGURES = {
     path.name.removesuffix(".yaml"): yaml.safe_load(path.read_text("utf-8"))
@@ -272,3 +274,28 @@ def test_a_frame_or_voxel_that_cannot_be_is_refused_in_words():
 def test_an_unknown_figure_is_refused_with_the_nearest_name():
     with pytest.raises(FigureError, match="did you mean 'human'"):
         named("hunam", FIGURES)
+
+
+def test_turning_of_joints_is_measured_once_for_all_frames(monkeypatch):
+    """It compares every frame with every other, so that asking in every frame would take the cube of their number."""
+    measured = []
+
+    def counted(figure, R):
+        measured.append(len(R))
+        return true_joints(figure, R)
+
+    monkeypatch.setattr(module, "true_joints", counted)
+    made = body(frames=6)
+    V = made.X[0]
+    for t in range(6):
+        made.parts(t, V)
+    assert made.truth() == made.truth()
+    assert measured == [6]
+
+
+def test_truth_that_somebody_changes_stays_what_it_was():
+    made = body(frames=3)
+    told = made.truth()
+    told["joints"][0]["name"] = "changed"
+    told["parts"][0].append("changed")
+    assert "changed" not in str(made.truth())
