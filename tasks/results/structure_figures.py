@@ -3,10 +3,11 @@
 from typing import Any
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
-from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.structure.skeleton import ArticulatedBody, Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.page.chapters import CaptionedFigure, FigureChapter, rendered_chapters
 from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
@@ -14,10 +15,13 @@ from kinetree.tasks.results.plots.derivation import cones, elimination, lengths,
 
 @task()
 def structure_figures(
-    skeleton: Skeleton, rigid_parts: RigidParts, kinematic_tree: KinematicTree, up_direction: UpDirection
+    rigid_parts: RigidParts, kinematic_tree: KinematicTree, sequence: Sequence, up_direction: UpDirection
 ) -> StructureFigures:
     """Draws cones, merge errors, elimination, the graph of parts and bones' lengths (2014, Figs. 7, 11 and 15)."""
-    artifacts = {"skeleton": skeleton, "rigid_parts": rigid_parts, "kinematic_tree": kinematic_tree}
+    # no picture here shows poses, so that nothing waits for those that are refined
+    body = {name: getattr(kinematic_tree, name) for name in ArticulatedBody.model_fields}
+    unposed = Skeleton(**body, fps=sequence.fps, unit=sequence.unit)
+    artifacts = {"skeleton": unposed, "rigid_parts": rigid_parts, "kinematic_tree": kinematic_tree}
 
     def fetch(name: str) -> Any:
         return artifacts[name]

@@ -59,7 +59,9 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
-        "structure_figures": structure_figures(skeleton, parts_of(skeleton), tree_of(skeleton), UP),
+        "structure_figures": structure_figures(
+            parts_of(skeleton), tree_of(skeleton), Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit), UP
+        ),
         "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),

@@ -7,18 +7,22 @@ from results.rigged_bodies import spider
 from results.sample_derivation import parts_of, tree_of
 from results.sample_report import UP
 
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.results.page.document import rendered
 from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
 from kinetree.tasks.results.structure_figures import structure_figures
 
 FIGURES = (cones, merging, elimination, structure, lengths)
+VECTOR = (False, True, False, False, True)
 
 
 def of(body: Skeleton) -> StructureFigures:
-    return structure_figures(body, parts_of(body), tree_of(body), UP)
+    sequence = Sequence(frames=body.frames, fps=body.fps, unit=body.unit)
+    return structure_figures(parts_of(body), tree_of(body), sequence, UP)
 
 
 def words(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> list[str]:
@@ -38,6 +42,17 @@ def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_tree()
         assert all(f.startswith(begins[p.kind]) for f, p in zip(files, chapter.pictures, strict=True))
     assert figures.end[-1] == len(figures.content)
     np.testing.assert_array_equal(figures.length_variation, tree_of(body).length_variation)
+
+
+def test_figures_are_those_of_the_finished_skeleton() -> None:
+    """They are drawn before poses are refined, and show none."""
+    body = spider()
+    parts, tree = parts_of(body), tree_of(body)
+    artifacts = {"skeleton": body, "rigid_parts": parts, "kinematic_tree": tree}
+    drawn = [
+        rendered(draw(lambda name, frame=None: artifacts[name], []), vector=v) for draw, v in zip(FIGURES, VECTOR, strict=True)
+    ]
+    assert b"".join(drawn) == of(body).content.tobytes()
 
 
 def test_same_derivation_gives_the_same_bytes() -> None:
