@@ -38,11 +38,14 @@ FRAME = "frame"
 
 @dataclass(frozen=True)
 class Job:
-    """One node: over which space its task runs, how deep that is in the graph, what it takes and what it waits for."""
+    """One node: over which space its task runs, how deep that is in the graph, whether it is aside (`Graph.aside`), what it
+    takes and what it waits for.
+    """
 
     node: Node
     space: Space
     depth: int
+    is_aside: bool
     seconds: float
     before: frozenset[Node]
 
@@ -103,7 +106,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
         read = {parse(label, graph) for argument in record.inputs for label in argument["nodes"]}
         read |= {n for n in found if n.task in tellers and _agree(task.over, node, graph.by_name[n.task].over, n)}
         before = frozenset(n for n in read if n in found and n != node)
-        jobs[node] = Job(node, task.over, depth[node.task], record.seconds, before)
+        jobs[node] = Job(node, task.over, depth[node.task], node.task in graph.aside, record.seconds, before)
     return jobs
 
 
@@ -124,13 +127,15 @@ def stretched(jobs: Jobs, times: int) -> Jobs:
 
 
 def makespan(jobs: Jobs, workers: int) -> float:
-    """Seconds until the last node is done, if every free worker takes the deepest node that is ready, with its parcel."""
+    """Seconds until the last node is done, if every free worker takes the deepest node that is ready, with its parcel, and what
+    is aside last.
+    """
     waits = {node: set(job.before) for node, job in jobs.items()}
     after: defaultdict[Node, list[Node]] = defaultdict(list)
     for node, job in jobs.items():
         for read in job.before:
             after[read].append(node)
-    ready = [(-job.depth, node.at, node) for node, job in jobs.items() if not job.before]
+    ready = [(job.is_aside, -job.depth, node.at, node) for node, job in jobs.items() if not job.before]
     heapq.heapify(ready)
     sent: set[Node] = set()
     under_way: list[tuple[float, int, list[Node]]] = []
@@ -138,7 +143,7 @@ def makespan(jobs: Jobs, workers: int) -> float:
     numbers = itertools.count()
     while ready or under_way:
         while ready and len(under_way) < workers:
-            parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[2])
+            parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[3])
             sent.update(parcel)
             took = sum(jobs[node].seconds + AT_WORKER for node in parcel)
             heapq.heappush(under_way, (now + took, next(numbers), parcel))
@@ -148,7 +153,7 @@ def makespan(jobs: Jobs, workers: int) -> float:
             for later in after[node]:
                 waits[later].discard(node)
                 if not waits[later] and later not in sent:
-                    heapq.heappush(ready, (-jobs[later].depth, later.at, later))
+                    heapq.heappush(ready, (jobs[later].is_aside, -jobs[later].depth, later.at, later))
     return now
 
 
@@ -174,7 +179,8 @@ def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Nod
     for member in parcel if first.at else ():
         for node in after[member]:
             is_here = node.at == first.at and jobs[node].space == jobs[first].space
-            if is_here and node not in parcel and waits[node] <= set(parcel):
+            goes_along = jobs[first].is_aside or not jobs[node].is_aside
+            if is_here and goes_along and node not in parcel and waits[node] <= set(parcel):
                 parcel.append(node)
     return parcel
 
