@@ -223,6 +223,8 @@ def _with_path(blocks: Mapping[str, Any], keys: Sequence[str], change: Callable[
     value = changed.get(keys[0])
     if len(keys) > 1 and isinstance(value, Mapping):
         changed[keys[0]] = _with_path(value, keys[1:], change)
+    elif len(keys) > 1 and isinstance(value, list):
+        changed[keys[0]] = [_with_path(each, keys[1:], change) if isinstance(each, Mapping) else each for each in value]
     elif len(keys) == 1 and isinstance(value, str) and value and "://" not in value:
         changed[keys[0]] = change(value)
     return changed

@@ -13,6 +13,7 @@ from kinetree.schemas.input.synth import SynthParams
 from kinetree.schemas.registration.deformation_graph import DeformationGraphParams
 from kinetree.schemas.registration.reference import ReferenceParams
 from kinetree.schemas.registration.roll_candidates import RollCandidates
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.schemas.topology.extrema import ExtremaParams
 from kinetree.schemas.topology.geodesics import GeodesicsParams
@@ -101,11 +102,22 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
     made.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
-    made.tracking_order = tracking_order(made.reference, made.sequence)
-    made.tracking = along(
-        tracking, made.tracking_order, list(meshes), mesh=meshes, deformation_graph=graph, params=TrackingParams()
+    made.take_entries, made.numbers = (
+        TakeEntries(frames=(), before=(), rotation=np.zeros((0, 3, 3)), shift=np.zeros((0, 3)), distance=np.zeros(0)),
+        {t: (t,) for t in meshes},
     )
-    made.recovery = recovery(graph, made.tracking, meshes)
+    made.tracking_order = tracking_order(made.reference, made.take_entries, made.sequence)
+    made.tracking = along(
+        tracking,
+        made.tracking_order,
+        list(meshes),
+        mesh=meshes,
+        deformation_graph=graph,
+        take_entries=made.take_entries,
+        index=made.numbers,
+        params=TrackingParams(),
+    )
+    made.recovery = recovery(graph, made.take_entries, made.tracking, meshes)
     made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
     for number in graph.members("pass", ()):
         one_pass(made, number)

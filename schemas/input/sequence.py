@@ -37,6 +37,8 @@ class Sequence(Artifact):
     """Unit of all lengths; None where nobody knows. No step depends on it."""
     dropped: tuple[BadFrame, ...] = ()
     """Frames that were left out because they cannot be of the same body."""
+    takes: tuple[str, ...] = ()
+    """Names of the takes, in their order; none where there is one alone. Frame t of take k has the number k · 10⁹ + t."""
     further: tuple[int, ...] = ()
     """Frames that nothing is learned from, ascending; they are posed as the others taught."""
 

@@ -12,11 +12,22 @@ from kinetree.schemas.input.synth import SynthParams
 Kind = Literal["file", "npz", "zarr", "synth", "silhouettes", "volume"]
 
 
+class TakeParams(Params):
+    """One of several takes of one body."""
+
+    name: str = Field(default="take", pattern=r"^[A-Za-z0-9_-]{1,40}$")
+    """What files of this take are called by."""
+    input: Annotated[str, PathLike()] = ""
+    """As `source.input`, of this take alone."""
+
+
 class SourceParams(Params):
     """Where the sequence is and which of its frames are wanted."""
 
     input: Annotated[str, PathLike()] = ""
     """Folder or glob of meshes, silhouettes or volumes, or one file that holds all frames; meshes also at s3://."""
+    takes: tuple[TakeParams, ...] = ()
+    """Several takes of one body, which have one skeleton; excludes `input` and `synth`."""
     synth: SynthParams | None = None
     """A synthetic sequence to generate instead of reading one; excludes `input`."""
     frames: str = ":"
@@ -49,6 +60,8 @@ class Source(Artifact):
     """Position in a file that holds all frames, in a synthetic sequence or among silhouettes; None for one file a frame."""
     recipe: Annotated[str, Location()] = ""
     """What a synthetic frame is made by, as JSON; its digest is in `content`."""
+    take: str = ""
+    """Name of the take that it is from; empty where there is one alone."""
     kind: Kind = "file"
     """How to read it: the first four are meshes."""
     calibration: Annotated[tuple[str, ...], Location()] = ()

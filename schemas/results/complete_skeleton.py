@@ -31,3 +31,5 @@ class CompleteSkeleton(Skeleton):
 
     interpolated: tuple[Interpolated, ...]
     """The frames that were not measured, ascending."""
+    takes: tuple[str, ...] = ()
+    """Names of the takes, in their order; none where there is one alone."""

@@ -6,7 +6,7 @@ from kinetree.errors import SourceError
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.sequence import Sequence, SequenceParams
 from kinetree.schemas.input.source import Source
-from kinetree.tasks.numerics.input.frame_numbers import selected_frames
+from kinetree.tasks.numerics.input.frame_numbers import TAKE, selected_frames, take_spans
 
 
 @task()
@@ -18,7 +18,9 @@ def sequence(source: Mapping[int, Source], params: SequenceParams) -> Sequence:
         raise SourceError(f"the files state different frame rates ({rates}); say which with sequence.fps")
     if params.unit is None and len(units) > 1:
         raise SourceError(f"the files state different units ({units}); say which with sequence.unit")
-    learned = selected_frames(params.learn_from, list(source), "the sequence")
+    numbers = list(source)
+    takes = tuple(dict.fromkeys(s.take for s in source.values() if s.take))
+    learned = [t for span in take_spans(numbers) for t in _learned(numbers[span], params.learn_from)]
     if len(learned) < 2 <= len(source):
         raise SourceError(
             f"sequence.learn_from: {params.learn_from!r} selects frame {learned[0]} alone; a body is learned from its motion,"
@@ -29,12 +31,21 @@ def sequence(source: Mapping[int, Source], params: SequenceParams) -> Sequence:
         fps=params.fps if params.fps is not None else next(iter(rates), None),
         unit=params.unit if params.unit is not None else next(iter(units), None),
         dropped=tuple(sorted((bad for s in source.values() for bad in s.dropped), key=lambda bad: bad.frame)),
+        takes=takes,
         further=tuple(t for t in source if t not in set(learned)),
     )
 
 
+def _learned(numbers: list[int], learn_from: str) -> list[int]:
+    """The frames of one take from which the body is learned."""
+    first = numbers[0] // TAKE * TAKE
+    return [first + t for t in selected_frames(learn_from, [number - first for number in numbers], "the sequence")]
+
+
 def refuse_further(sequence: Sequence, method: str) -> None:
-    """Refuses frames that nothing is learned from, for a method that poses no others; raises SourceError."""
+    """Refuses frames that nothing is learned from, and several takes, for a method that has no poses for them."""
+    if sequence.takes:
+        raise SourceError(f"source.takes: {method} takes one take alone; use the default method")
     if sequence.further:
         raise SourceError(
             f"sequence.learn_from leaves out {len(sequence.further)} of {len(sequence.frames)} frames, for which {method} finds"

@@ -17,11 +17,11 @@ from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import BadFrame, Kind, Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
-from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad
+from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad, refuse_other_bodies
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
 from kinetree.tasks.numerics.input.formats import suffixes as mesh_suffixes
-from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers, selected_frames
+from kinetree.tasks.numerics.input.frame_numbers import TAKE, are_frame_numbers, frame_numbers, selected_frames
 from kinetree.tasks.numerics.input.input_kind import input_kind
 from kinetree.tasks.numerics.input.silhouettes import mask_files, read_masks, read_packed_masks
 from kinetree.tasks.numerics.input.source import (
@@ -42,6 +42,8 @@ REMOTE = "content and measures/1"
 @origin(over="frame")
 def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     """Finds the frames of a sequence and the digest of each one's bytes (2014, Sec. 3)."""
+    if params.takes:
+        return _several(params, files)
     if params.synth is not None:
         if params.input:
             raise SourceError(f"source.input ({params.input}) and source.synth exclude each other; leave one out")
@@ -49,6 +51,28 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
     return _usable(_chosen(_found(params.input, files), params.frames, params.input), params, files)
+
+
+def _several(params: SourceParams, files: Files) -> dict[int, Source]:
+    """The frames of several takes, numbered one take after the other; bad frames are looked for in each take by itself.
+
+    raises : SourceError where a take shows another body
+    """
+    if params.input or params.synth is not None:
+        raise SourceError("source.takes excludes source.input and source.synth; name each take's input in source.takes")
+    names = [take.name for take in params.takes]
+    if len(set(names)) < len(names) or not all(take.input for take in params.takes):
+        raise SourceError(f"source.takes: {', '.join(names)}: each take needs a name of its own and an input")
+    found: dict[int, Source] = {}
+    measured: dict[str, list[FrameMeasures]] = {}
+    for k, take in enumerate(params.takes):
+        own = _usable(_chosen(_found(take.input, files), params.frames, take.input), params, files)
+        measured[take.name] = [m for m in _measured(own, files).values() if not isinstance(m, str)]
+        for t, frame in own.items():
+            dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)
+            found[k * TAKE + t] = frame.model_copy(update={"take": take.name, "dropped": dropped})
+    refuse_other_bodies(measured)
+    return found
 
 
 def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -> dict[int, Source]:

@@ -10,12 +10,14 @@ from kinetree.tasks.registration.refit import refit
 from kinetree.tasks.registration.roll import roll
 from kinetree.tasks.registration.roll_candidates import roll_candidates
 from kinetree.tasks.registration.stiffness import stiffness
+from kinetree.tasks.registration.take_entries import take_entries
 from kinetree.tasks.registration.tracking import tracking
 from kinetree.tasks.registration.tracking_order import tracking_order
 
 REGISTRATION = (
     reference,
     deformation_graph,
+    take_entries,
     tracking_order,
     tracking,
     recovery,

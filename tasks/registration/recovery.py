@@ -9,16 +9,25 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import recovery as numerics
 from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task(among=Sequence)
-def recovery(deformation_graph: DeformationGraph, tracking: Mapping[int, Tracking], mesh: Mapping[int, Mesh]) -> Recovery:
+def recovery(
+    deformation_graph: DeformationGraph,
+    take_entries: TakeEntries,
+    tracking: Mapping[int, Tracking],
+    mesh: Mapping[int, Mesh],
+) -> Recovery:
     """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
     frames = tuple(tracking)
     uncovered = np.array([t.uncovered for t in tracking.values()])
+    roots = [frames.index(t) for t in (deformation_graph.frame, *take_entries.frames)]
+    spans = [(span, next(t for t in roots if span.start <= t < span.stop)) for span in take_spans(frames)]
     outcome = numerics.recovery(
         graph(deformation_graph),
         uncovered,
@@ -26,6 +35,7 @@ def recovery(deformation_graph: DeformationGraph, tracking: Mapping[int, Trackin
         lambda at: target(mesh[frames[at]], deformation_graph),
         frames.index(deformation_graph.frame),
         fit_settings(tracking[deformation_graph.frame].fitting),
+        takes=spans,
     )
     recovered = sorted(outcome.recovered)
     poses = [outcome.recovered[at].pose for at in recovered]

@@ -14,6 +14,7 @@ from kinetree.schemas.registration.reference import Reference, ReferenceParams
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.mu_histogram import MuHistogram
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import reference as numerics
 
 QUANTILES = 100
@@ -40,7 +41,8 @@ def reference(
             f" which are {frames[0]} to {frames[-1]}; see sequence.learn_from"
         )
     pinned = None if params.frame is None else frames.index(params.frame)
-    chosen = numerics.reference(count, euler, area, profile, _followed(leaves, tuple(tips.values())), frame=pinned)
+    followed, takes = _followed(leaves, tuple(tips.values())), take_spans(frames)
+    chosen = numerics.reference(count, euler, area, profile, followed, frame=pinned, takes=takes)
     mine = mesh[frames[chosen.frame]]
     return Reference(
         frames=frames,

@@ -13,6 +13,7 @@ from kinetree.schemas.registration.roll import Roll
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.tasks.numerics.arrays import Ints as Longs
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
 from kinetree.tasks.numerics.registration.roll import chosen_rolls
 from kinetree.tasks.numerics.registration.roll_candidates import limbs
@@ -38,7 +39,8 @@ def roll(
     nodes, frames = graph(deformation_graph), tuple(candidates)
     cluster = stiffness.cluster.astype(np.int64)
     angle, misfit = (np.stack([getattr(c, name) for c in candidates.values()]) for name in ("angle", "misfit"))
-    chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame)).astype(np.int32)
+    begins = [span.start for span in take_spans(frames)[1:]]
+    chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame), begins=begins).astype(np.int32)
     limb = np.array(previous.limb) if previous is not None else np.full(len(nodes.node), -1, np.int32)
     corrected = np.array(stiffness.stiffness)
     if (chosen >= 0).any():

@@ -1,8 +1,12 @@
 """The reference bent onto one frame after the other, outwards in both directions."""
 
+import numpy as np
+
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Index
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.numerics.registration import tracking as numerics
@@ -11,7 +15,14 @@ from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
 
 
 @task(over="frame", along=TrackingOrder)
-def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking | None, params: TrackingParams) -> Tracking:
+def tracking(
+    mesh: Mesh,
+    deformation_graph: DeformationGraph,
+    take_entries: TakeEntries,
+    previous: Tracking | None,
+    params: TrackingParams,
+    index: Index,
+) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
     if previous is None:
@@ -19,10 +30,19 @@ def tracking(mesh: Mesh, deformation_graph: DeformationGraph, previous: Tracking
         return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
+    is_entry = index[0] in take_entries.frames
+    if is_entry:  # another take: the body stands elsewhere, and how it moved before says nothing
+        earlier, last = None, _moved(last, take_entries, take_entries.frames.index(index[0]))
     fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
-    return _stored(fitted, last, previous.steps + 1, usual, params)
+    return _stored(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)
+
+
+def _moved(pose: Pose, entries: TakeEntries, row: int) -> Pose:
+    """A pose where the body stands in the take that is entered."""
+    R, shift = np.array(entries.rotation[row]), np.array(entries.shift[row])
+    return Pose(R @ pose.rotation, pose.translation @ R.T + shift)
 
 
 def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float, params: TrackingParams) -> Tracking:

@@ -5,9 +5,11 @@ from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.skeleton_json import SkeletonJson
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import skeleton_file
+from kinetree.tasks.results.formats.takes import of_takes
 
 
 @task()
 def skeleton_json(skeleton: CompleteSkeleton, up_direction: UpDirection) -> SkeletonJson:
     """Writes skeleton.json, the joint tree with every joint's position and rotation in every frame (ours)."""
-    return SkeletonJson.of({"skeleton.json": skeleton_file(skeleton, up_direction, skeleton.interpolated)})
+    takes = of_takes(skeleton).items()
+    return SkeletonJson.of({f"skeleton{name}.json": skeleton_file(own, up_direction, own.interpolated) for name, own in takes})

@@ -13,6 +13,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTr
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
 from kinetree.tasks.numerics.structure.given_correspondence import is_given, limited_confidence
@@ -53,6 +54,7 @@ def kinematic_tree(
         limited_confidence(evidence.confidence),
         None if given else evidence,
         settings=tree_settings(params),
+        takes=take_spans(frames),
     )
     return KinematicTree(
         frames=frames,

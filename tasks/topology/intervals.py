@@ -11,6 +11,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.schemas.topology.intervals import Intervals, IntervalsParams
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.topology import intervals as numerics
 
 
@@ -19,21 +20,11 @@ def intervals(
     correlation: Correlation, extrema: Mapping[int, Extrema], connectivity: Connectivity, params: IntervalsParams
 ) -> Intervals:
     """Cuts the sequence at sharp drops of the correlation and where limbs join or part for good (2014, Sec. 4)."""
+    spans = take_spans(tuple(extrema))
     if params.tracked == "whole" and connectivity.fixed:
-        return _whole(tuple(extrema))
+        return _whole(tuple(extrema), spans)
     cues = _cues(tuple(extrema.values()), params.step)
-    if params.rule == "fixed":
-        cut = numerics.fixed_intervals(correlation.correlation, params.threshold, params.minimum)
-    else:
-        cut = numerics.intervals(
-            correlation.histograms,
-            {name: cue for name, cue in cues.items() if name in params.cues},
-            high=params.high,
-            low=params.low,
-            drop=params.drop,
-            minimum=params.minimum,
-            correlation="correlation" in params.cues,
-        )
+    cut = numerics.joined([_cut(correlation, cues, span, params) for span in spans])
     return Intervals(
         frames=tuple(extrema),
         begin=cut.begin,
@@ -46,11 +37,28 @@ def intervals(
     )
 
 
-def _whole(frames: tuple[int, ...]) -> Intervals:
-    """All frames as one interval: correspondence comes with the input (Sec. 7)."""
+def _cut(correlation: Correlation, cues: dict[str, numerics.Cue], span: slice, params: IntervalsParams) -> numerics.Intervals:
+    """The intervals of one take, by its own frames alone."""
+    if params.rule == "fixed":
+        inside = slice(span.start, span.stop - 1)
+        return numerics.fixed_intervals(correlation.correlation[inside], params.threshold, params.minimum)
+    return numerics.intervals(
+        correlation.histograms[span],
+        {name: cue._replace(profile=cue.profile[span]) for name, cue in cues.items() if name in params.cues},
+        high=params.high,
+        low=params.low,
+        drop=params.drop,
+        minimum=params.minimum,
+        correlation="correlation" in params.cues,
+    )
+
+
+def _whole(frames: tuple[int, ...], spans: list[slice]) -> Intervals:
+    """All frames of a take as one interval: correspondence comes with the input (Sec. 7)."""
     none = np.zeros(len(frames) - 1)
+    begin, end = np.array([span.start for span in spans]), np.array([span.stop - 1 for span in spans])
     return Intervals(
-        frames=frames, begin=np.zeros(1, int), end=np.array([len(frames) - 1]), z=none, cues=(), strengths=none[None],
+        frames=frames, begin=begin, end=end, z=none, cues=((numerics.TAKE,),) * (len(spans) - 1), strengths=none[None],
         cue_names=(numerics.CORRELATION,), threshold=0.0,
     )  # fmt: skip
 

@@ -8,6 +8,7 @@ from kinetree.schemas.input.connectivity import Connectivity, Odd
 from kinetree.schemas.input.hull import Hull
 from kinetree.schemas.input.isosurface import Isosurface
 from kinetree.schemas.input.sequence import Sequence
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 
 NAMED_GAPS = 8
 """Most gaps or frames that one sentence names."""
@@ -37,13 +38,19 @@ def _dropped(sequence: Sequence) -> tuple[str, ...]:
     return (f"{len(bad)} of {len(sequence.frames) + len(bad)} frames were left out of everything: {named}{more}",)
 
 
+def _gaps(numbers: list[int]) -> list[tuple[int, int]]:
+    """First and last number of every gap in one take."""
+    steps = [b - a for a, b in pairwise(numbers)]
+    step = math.gcd(*steps) or 1
+    return [(a + step, b - step) for a, b in pairwise(numbers) if b - a > step]
+
+
 def _missing(sequence: Sequence) -> tuple[str, ...]:
     """The frames that the numbering leaves out."""
     dropped = {bad.frame for bad in sequence.dropped}
     numbers = sorted({*sequence.frames, *dropped})
-    steps = [b - a for a, b in pairwise(numbers)]
-    step = math.gcd(*steps) or 1
-    gaps = [(a + step, b - step) for a, b in pairwise(numbers) if b - a > step]
+    gaps = [gap for span in take_spans(numbers) for gap in _gaps(numbers[span])]
+    step = math.gcd(*(b - a for span in take_spans(numbers) for a, b in pairwise(numbers[span]))) or 1
     if not gaps:
         return ()
     count = sum((last - first) // step + 1 for first, last in gaps)

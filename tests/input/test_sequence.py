@@ -7,6 +7,7 @@ from kinetree.pipeline.views import remarks
 from kinetree.schemas.input.sequence import Sequence, SequenceParams
 from kinetree.schemas.input.source import BadFrame, Source
 from kinetree.tasks.input.sequence import sequence
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 
 def frames(*told, start=0):
@@ -94,3 +95,11 @@ def test_further_frames_are_told():
         "the body is learned from 6 frames (0 to 5); 2 other frames (6 to 7) are posed by it",
     )
     assert remarks(Sequence(**told, further=(7,))) == ("the body is learned from 7 frames (0 to 6); frame 7 is posed by it",)
+
+
+def test_takes_are_named_and_each_is_learned_from_by_its_own_numbers():
+    given = {k * TAKE + t: Source(content=f"{k}{t}", path="x", take=take) for k, take in enumerate("ab") for t in range(4)}
+    made = sequence(given, SequenceParams(learn_from=":3"))
+    assert made.takes == ("a", "b")
+    assert made.further == (3, TAKE + 3)
+    assert remarks(made.model_copy(update={"further": ()})) == ()

@@ -13,6 +13,7 @@ from kinetree.pipeline.key import artifact_digest
 from kinetree.pipeline.store import Store
 from kinetree.schemas.input.source import Source, SourceParams
 from kinetree.tasks.input.source import name, source, surface
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
@@ -276,3 +277,21 @@ def test_missing_sequence_is_refused_by_name(found, tmp_path, where):
 def test_source_that_is_told_by_hand_is_read_like_any_other(scans):
     with pytest.raises(SourceError, match="the file changed"):
         surface(Source(content="00", path=str(scans / "frame_1.off")))
+
+
+def test_takes_are_numbered_one_after_the_other(files, scans, tmp_path):
+    shutil.copytree(scans, tmp_path / "other")
+    takes = [{"name": "a", "input": str(scans)}, {"name": "b-2", "input": str(tmp_path / "other")}]
+    found = source(SourceParams(takes=takes), files)
+    own = source(SourceParams(input=str(scans)), files)
+    assert list(found) == [*own, *(TAKE + t for t in own)]
+    assert [found[t].take for t in found] == ["a"] * len(own) + ["b-2"] * len(own)
+    assert [found[TAKE + t].content for t in own] == [own[t].content for t in own]
+
+
+def test_takes_without_names_of_their_own_and_beside_an_input_are_refused(files, scans):
+    one = {"name": "a", "input": str(scans)}
+    with pytest.raises(SourceError, match="a, a: each take needs a name of its own and an input"):
+        source(SourceParams(takes=[one, one]), files)
+    with pytest.raises(SourceError, match="takes excludes source.input"):
+        source(SourceParams(takes=[one], input=str(scans)), files)

@@ -28,7 +28,7 @@ def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     made = walk()
     body = graph(made.deformation_graph)
     tracked = {**made.tracking, 3: lost(made.tracking[3], 0.5 * made.reference.size, 0.9)}
-    found = recovery(made.deformation_graph, tracked, made.mesh)
+    found = recovery(made.deformation_graph, made.take_entries, tracked, made.mesh)
     assert found.recovered.tolist() == [3]
     assert found.failed.tolist() == [False, False, False, True, False]
     assert found.uncovered[3] == 0.9
@@ -40,7 +40,7 @@ def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
 def test_lost_frame_beyond_is_no_help() -> None:
     made = walk()
     gone, worse = (lost(made.tracking[t], 0.5 * made.reference.size, share) for t, share in ((3, 0.5), (4, 0.9)))
-    found = recovery(made.deformation_graph, {**made.tracking, 3: gone, 4: worse}, made.mesh)
+    found = recovery(made.deformation_graph, made.take_entries, {**made.tracking, 3: gone, 4: worse}, made.mesh)
     assert not len(found.recovered)
     assert found.failed[[3, 4]].all()
 

@@ -86,12 +86,19 @@ def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
     monkeypatch.setattr(numeric_recovery, "tracking", listening)
     first = along(
-        tracking, made.tracking_order, [0, 1], mesh=made.mesh, deformation_graph=made.deformation_graph, params=OTHERS
+        tracking,
+        made.tracking_order,
+        [0, 1],
+        mesh=made.mesh,
+        deformation_graph=made.deformation_graph,
+        take_entries=made.take_entries,
+        index=made.numbers,
+        params=OTHERS,
     )
     assert not np.array_equal(first[0].translation, made.tracking[0].translation)
     poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.tracking.items()}
     count, poses[3] = len(fits), poses[3].model_copy(update={"uncovered": 0.9})
-    recovery(made.deformation_graph, poses, made.mesh)
+    recovery(made.deformation_graph, made.take_entries, poses, made.mesh)
     assert len(fits) > count > 0
     for fitting in fits:
         assert {name: getattr(fitting, name) for name in OTHERS.model_dump()} == OTHERS.model_dump()

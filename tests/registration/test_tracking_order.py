@@ -4,6 +4,7 @@ import numpy as np
 
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.registration.tracking_order import tracking_order
 
@@ -15,7 +16,8 @@ def ordered(frames: range, at: int, *, learned: range | None = None, fixed: bool
         size=1.0, score=np.zeros(len(used)),
     )  # fmt: skip
     further = tuple(t for t in frames if t not in used)
-    return tracking_order(reference, Sequence(frames=tuple(frames), fps=None, unit=None, further=further))
+    none = TakeEntries(frames=(), before=(), rotation=np.zeros((0, 3, 3)), shift=np.zeros((0, 3)), distance=np.zeros(0))
+    return tracking_order(reference, none, Sequence(frames=tuple(frames), fps=None, unit=None, further=further))
 
 
 def test_frames_are_reached_outwards_in_both_directions() -> None:

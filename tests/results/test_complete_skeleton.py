@@ -11,6 +11,7 @@ from kinetree.schemas.input.source import BadFrame
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton, CompleteSkeletonParams
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
 from kinetree.tasks.results.complete_skeleton import complete_skeleton
 from kinetree.tasks.results.skeleton_json import skeleton_json
 
@@ -67,3 +68,18 @@ def test_the_file_names_them() -> None:
     told = json.loads(bytes(skeleton_json(found, UpDirection(up="y", confidence=1.0)).content))
     assert told["interpolated"] == [{"frame": WHOLE.frames[4], "cause": "missing", "reason": ""}]
     assert told["frames"] == list(WHOLE.frames)
+
+
+def test_every_take_has_files_of_its_own_with_the_same_bones() -> None:
+    half = len(WHOLE.frames) // 2
+    frames = (*range(half), *(TAKE + 3 + t for t in range(len(WHOLE.frames) - half)))
+    skeleton = WHOLE.model_copy(update={"frames": frames})
+    sequence = Sequence(frames=frames, fps=None, unit=None, takes=("walk", "run"))
+    found = complete_skeleton(skeleton, sequence, CompleteSkeletonParams())
+    assert found.frames == frames
+    made = skeleton_json(found, UpDirection(up="y", confidence=1.0))
+    assert made.names == ("skeleton-walk.json", "skeleton-run.json")
+    walk, run = (json.loads(part) for part in views.files(made, ()).values())
+    assert (walk["frames"], run["frames"][0]) == (list(range(half)), 3)
+    assert walk["bones"] == run["bones"]
+    assert walk["positions"] + run["positions"] == WHOLE.positions.tolist()

@@ -5,6 +5,7 @@ import pytest
 
 from kinetree.schemas.topology.correlation import CorrelationParams
 from kinetree.schemas.topology.mu_histogram import MuHistogram
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
 from kinetree.tasks.topology.correlation import correlation
 
 
@@ -14,7 +15,7 @@ def peaked(at: int, normalisation: str = "sequence") -> MuHistogram:
 
 @pytest.mark.parametrize("normalisation", ["sequence", "frame"])
 def test_equal_frames_correlate_fully_and_others_less(normalisation: str) -> None:
-    told = correlation(tuple(peaked(at, normalisation) for at in (500, 500, 1500)), CorrelationParams())
+    told = correlation(dict(enumerate(peaked(at, normalisation) for at in (500, 500, 1500))), CorrelationParams())
     assert told.correlation[0] == 1
     assert told.correlation[1] < 0.1
     assert told.histograms.shape == (3, 100)
@@ -23,4 +24,9 @@ def test_equal_frames_correlate_fully_and_others_less(normalisation: str) -> Non
 
 def test_spheres_whose_mu_is_constant_correlate_fully() -> None:
     ball = MuHistogram(normalisation="sequence", low=0.443, high=0.443, mass=np.eye(2000)[0])
-    assert correlation((ball, ball), CorrelationParams()).correlation.tolist() == [1.0]
+    assert correlation({0: ball, 1: ball}, CorrelationParams()).correlation.tolist() == [1.0]
+
+
+def test_frames_of_two_takes_are_no_transition() -> None:
+    told = correlation({t: peaked(500, "sequence") for t in (3, 4, TAKE, TAKE + 1)}, CorrelationParams())
+    assert told.correlation.tolist() == [1.0, 0.0, 1.0]

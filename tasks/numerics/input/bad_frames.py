@@ -1,6 +1,6 @@
 """Which frames of a sequence cannot be of the same body as the others: sizes, places and pieces against the medians (ours)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,8 @@ class BadFrameSettings(NamedTuple):
     """Frames on either side with which the place of a frame is compared."""
     tail: float = 0.05
     """Share of the area at either end of each axis that size and centre leave out, so that debris does not count."""
+    takes: float = 1.3
+    """Factor between the median areas of two takes of one body; between two frames of one body it is at most 1.08."""
     least: int = 3
     """Frames from which on there is a median to compare with."""
 
@@ -91,6 +93,22 @@ def refuse_bad(bad: Mapping[int, str], count: int, share: float | None) -> None:
     more = f"; and {len(bad) - 3} more" if len(bad) > 3 else ""
     remedy = "set source.on_bad_frame=drop to go on without them" if share is None else f"source.bad_share allows {share:g}"
     raise SourceError(f"{len(bad)} of {count} frames cannot be used ({remedy}): {named}{more}")
+
+
+def refuse_other_bodies(measured: Mapping[str, Sequence[FrameMeasures]], settings: BadFrameSettings | None = None) -> None:
+    """Refuses takes whose surfaces are not as large as those of the first; raises SourceError.
+
+    measured : by name of the take, in their order; takes that are no meshes yet have none
+    """
+    limit = (settings or BadFrameSettings()).takes
+    area = {name: float(np.median([m.area for m in frames])) for name, frames in measured.items() if frames}
+    first = next(iter(area), "")
+    for name, value in area.items():
+        if not area[first] / limit <= value <= area[first] * limit:
+            raise SourceError(
+                f"take {name} is not of the same body as take {first}: the median area of its frames is {value:.4g}, not"
+                f" {area[first]:.4g}; is it in another unit? Compute it by itself, or leave it out"
+            )
 
 
 def _of_another_size(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> dict[int, str]:

@@ -15,6 +15,19 @@ MOST_DIGITS = 9
 """Digits of a frame number; a longer number in a name is a time or a digest, and the files are numbered in their order."""
 
 
+TAKE = 10**MOST_DIGITS
+"""Frame t of take k has the number k · TAKE + t, so that the numbers alone say where a take begins."""
+
+
+def take_spans(frames: Sequence[int]) -> list[slice]:
+    """The positions of every take's frames, takes in their order.
+
+    frames : numbers, ascending
+    """
+    begins = [0, *(i for i, (a, b) in enumerate(pairwise(frames), 1) if b // TAKE > a // TAKE)]
+    return [slice(a, b) for a, b in pairwise([*begins, len(frames)])]
+
+
 def frame_numbers(files: Sequence[PurePath]) -> list[int]:
     """The number of every file: the one number that runs in their names; 0, 1, 2, … in their order where none does.
 

@@ -3,7 +3,7 @@
 A chain of frames that lost a limb does not find it by going on; entered from its other end, it often does.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +45,7 @@ def recovery(
     reference: int,
     fitting: FitSettings,
     settings: RecoverySettings | None = None,
+    takes: Sequence[tuple[slice, int]] | None = None,
 ) -> Recovery:
     """Track failed frames again, each from the frame beyond it, the outermost first, and keep what covers more (ours).
 
@@ -54,13 +55,14 @@ def recovery(
     target    : gives the frame at a position; called only for failed ones
     reference : position of the reference frame, which never fails
     fitting   : how frames were tracked
+    takes     : positions of the frames of each take, and of the one that is reached first; None takes all as one
     returns   : Recovery
     """
     others = np.arange(len(uncovered)) != reference
     failed = failures(uncovered, settings) & others
     usual = float(uncovered[others].min(initial=1.0))
     recovered: dict[int, Tracking] = {}
-    for at, beyond in _inwards(failed, reference):
+    for at, beyond in _inwards(failed, takes or [(slice(0, len(failed)), reference)]):
         there = recovered.get(beyond)
         if (there.uncovered if there else uncovered[beyond]) >= uncovered[at]:
             continue
@@ -84,7 +86,8 @@ def failures(uncovered: Floats, settings: RecoverySettings | None = None, usual:
     return uncovered > max(median + settings.deviations * deviation, median + settings.margin)
 
 
-def _inwards(failed: Flags, reference: int) -> Iterator[tuple[int, int]]:
-    """(failed frame, frame beyond it) from both ends of the sequence towards the reference."""
-    yield from ((at, at - 1) for at in range(1, reference) if failed[at])
-    yield from ((at, at + 1) for at in range(len(failed) - 2, reference, -1) if failed[at])
+def _inwards(failed: Flags, takes: Sequence[tuple[slice, int]]) -> Iterator[tuple[int, int]]:
+    """(failed frame, frame beyond it) from both ends of every take towards its frame that is reached first."""
+    for span, first in takes:
+        yield from ((at, at - 1) for at in range(span.start + 1, first) if failed[at])
+        yield from ((at, at + 1) for at in range(span.stop - 2, first, -1) if failed[at])

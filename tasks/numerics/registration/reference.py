@@ -5,6 +5,7 @@ is lost to the area. A reference with a fused hand can never open it, so contact
 near the others' poses leaves less to bend, and a frame in the middle of the sequence has fewer frames to track through.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -56,6 +57,7 @@ def reference(
     stems: Floats,
     settings: ReferenceSettings | None = None,
     frame: int | None = None,
+    takes: Sequence[slice] | None = None,
 ) -> Reference:
     """The frame with most leaves; among those one of large area, few handles, a pose near all others, in the middle (ours).
 
@@ -67,6 +69,7 @@ def reference(
     area    : (frame,) mesh unit²
     profile : (frame, quantile) quantiles over the surface of μ / area^1.5, by which another body is recognised
     stems   : (leaf, frame, station, xyz) points along the limbs, mesh unit, which show how limbs are bent; NaN where not seen
+    takes   : positions of the frames of each take; None takes all as one
     frame   : position of the frame that is taken whatever its score; None takes the best
     returns : Reference; ties go to the frame nearest to the middle, then to the earlier one
     """
@@ -74,12 +77,14 @@ def reference(
     count, characteristic, surface = (np.asarray(x, np.float64) for x in (leaves, euler, area))
     far = remoteness(unlikeness(profile))
     own = far <= settings.foreign
-    missing = _worst_around(np.where(own, count[own].max() - count, count.max()), settings.steady)
-    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, settings.steady)
-    distance = np.abs(np.arange(len(count)) - (len(count) - 1) / 2.0)
-    lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0), settings.steady)
+    spans = takes or [slice(0, len(count))]
+    missing = _worst_around(np.where(own, count[own].max() - count, count.max()), settings.steady, spans)
+    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, settings.steady, spans)
+    frames = np.concatenate([np.full(s.stop - s.start, s.stop - s.start) for s in spans])
+    distance = np.concatenate([np.abs(np.arange(s.stop - s.start) - (s.stop - s.start - 1) / 2.0) for s in spans])
+    lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0), settings.steady, spans)
     pose = settings.pose * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
-    aside = settings.aside * distance / max(len(count), settings.short)
+    aside = settings.aside * distance / np.maximum(frames, settings.short)
     score = 1.0 - missing - lack**2 / settings.area - settings.handle * handles - pose - aside - np.where(own, 0.0, far)
     frame = int(np.lexsort((distance, -np.round(score, 9)))[0]) if frame is None else frame
     return Reference(frame, bool(missing[frame] == 0), score)
@@ -141,6 +146,7 @@ def remoteness(distance: Floats) -> Floats:
     return mean / middle if middle > 0.0 else np.zeros(len(mean))
 
 
-def _worst_around(lack: Floats, steady: int) -> Floats:
-    """(frame,) a frame's own lack or that of its neighbours, whichever is worse."""
-    return np.array([lack[max(t - steady, 0) : t + steady + 1].max() for t in range(len(lack))])
+def _worst_around(lack: Floats, steady: int, spans: Sequence[slice]) -> Floats:
+    """(frame,) a frame's own lack or that of its neighbours in the take, whichever is worse."""
+    own = [lack[span] for span in spans]
+    return np.array([row[max(t - steady, 0) : t + steady + 1].max() for row in own for t in range(len(row))])

@@ -4,6 +4,7 @@ Parts whose surface is certain are fitted. Where little of a part is, its rotati
 frames around in which it was seen, interpolated on the shortest way from the one to the other.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -50,6 +51,7 @@ def frame_poses(
     confidence: Floats | None = None,
     settings: FramePosesSettings | None = None,
     expected: Floats | None = None,
+    takes: Sequence[slice] | None = None,
 ) -> FramePoses:
     """Fits the finished body to every frame.
 
@@ -61,6 +63,7 @@ def frame_poses(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     expected   : (frame, part, 3, 3) rotation against its parent at which a part is held that a frame does not show; None
                  interpolates between the frames that do
+    takes      : positions of the frames of each take, across which nothing is interpolated; None takes all as one
     """
     chosen = settings or FramePosesSettings()
     share = area / area.sum()
@@ -70,8 +73,8 @@ def frame_poses(
         motion = fitted(sums(V[sample], x[:, sample], W[sample], parents, mass), start, parents)
     else:
         s = sums(V[sample], x[:, sample], W[sample], parents, mass * np.maximum(confidence[:, sample], 1e-6))
-        free = fitted(s, start, parents, _prior(start, V, label, share, parents, seen, chosen, expected))
-        motion = fitted(s, free, parents, _prior(free, V, label, share, parents, seen, chosen, expected))
+        free = fitted(s, start, parents, _prior(start, V, label, share, parents, seen, chosen, expected, takes))
+        motion = fitted(s, free, parents, _prior(free, V, label, share, parents, seen, chosen, expected, takes))
     weight = np.ones(x.shape[:2]) if confidence is None else confidence
     square = weight * ((predicted(V, W, motion, parents) - x) ** 2).sum(axis=2)
     error = np.sqrt(
@@ -142,6 +145,7 @@ def _prior(
     seen: Floats,
     chosen: FramePosesSettings,
     expected: Floats | None = None,
+    takes: Sequence[slice] | None = None,
 ) -> PosePrior:
     """Each part's rotation from frames that saw it and its parent, held as firmly as its own surface would hold it."""
     turn = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)
@@ -151,7 +155,13 @@ def _prior(
     if expected is not None:
         wanted = np.where((both >= chosen.seen)[:, :, None, None], turn, expected)
         return PosePrior(wanted, chosen.hold * reach * (1.0 - both) ** 2)
-    wanted = np.stack([interpolated(turn[:, a], both[:, a] >= chosen.seen) for a in range(len(parents))], axis=1)
+    known = both >= chosen.seen
+    wanted = np.concatenate(
+        [
+            np.stack([interpolated(turn[span, a], known[span, a]) for a in range(len(parents))], axis=1)
+            for span in takes or [slice(0, len(turn))]
+        ]
+    )
     return PosePrior(wanted, chosen.hold * reach * (1.0 - both) ** 2)
 
 

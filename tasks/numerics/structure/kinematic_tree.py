@@ -1,5 +1,6 @@
 """From rigid parts to the finished articulated body: tree, joints, skin, poses, end effectors, names (2014, Sec. 6.3)."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -114,6 +115,7 @@ def kinematic_tree(
     evidence: FrameEvidence | None = None,
     *,
     settings: KinematicTreeSettings,
+    takes: Sequence[slice] | None = None,
 ) -> tuple[KinematicTree, Derivation]:
     """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
 
@@ -126,6 +128,7 @@ def kinematic_tree(
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
+    takes      : positions of the frames of each take; None takes all as one
     """
     chosen = settings
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
@@ -141,7 +144,7 @@ def kinematic_tree(
     R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (left.parts.R, left.parts.t))
     W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * float(np.sqrt(area.sum())))
     rest, drift = _joints(V, area, label, W, left, chosen)
-    poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence)
+    poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
     share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
     support = (np.minimum(share, share[:, above]) >= FramePosesSettings().seen).sum(axis=0)

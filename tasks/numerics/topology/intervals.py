@@ -15,6 +15,8 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.topology.correlation import correlations
 
 CORRELATION = "correlation"
+TAKE = "take"
+"""What cuts where one take ends and the next begins."""
 
 
 class IntervalsSettings(NamedTuple):
@@ -112,6 +114,22 @@ def fixed_intervals(C: Floats, threshold: float, minimum: int = 1) -> Intervals:
     """
     causes = {int(t): [CORRELATION] for t in np.flatnonzero(threshold > C)}
     return _partition(len(C) + 1, z_scores(C), causes, minimum)
+
+
+def joined(parts: Sequence[Intervals]) -> Intervals:
+    """The intervals of several takes, one after the other, with a cut wherever a take begins.
+
+    parts : of each take by itself; its z score is 0 at the cuts between takes
+    """
+    if len(parts) == 1:
+        return parts[0]
+    first = np.cumsum([0, *(part.end[-1] + 1 for part in parts)])
+    z = [row for part in parts for row in (np.zeros(1), part.z)][1:]
+    cues = [row for part in parts for row in (((TAKE,),), part.cues)][1:]
+    begin, end = (
+        np.concatenate([getattr(part, name) + at for part, at in zip(parts, first, strict=False)]) for name in ("begin", "end")
+    )
+    return Intervals(begin, end, np.concatenate(z), tuple(cue for row in cues for cue in row))
 
 
 def z_scores(C: Floats, settings: IntervalsSettings | None = None) -> Floats:

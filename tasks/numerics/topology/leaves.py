@@ -125,6 +125,20 @@ def gaps(tracks: Ints) -> list[Gap]:
     return lost
 
 
+def gaps_in(tracks: Ints, takes: Sequence[slice]) -> list[Gap]:
+    """The same within takes: a track is of one take, and is not lost where that ends.
+
+    takes : positions of the frames of each
+    """
+    found = []
+    for gap in gaps(tracks):
+        first = int(np.argmax(tracks[gap.track] >= 0))
+        last = next(span.stop for span in takes if span.start <= first < span.stop) - 1
+        if gap.begin <= last:
+            found.append(gap._replace(end=min(gap.end, last)))
+    return found
+
+
 def bridged(tracks: Ints, stems: Sequence[Floats], longest: int = 3) -> tuple[Floats, Flags]:
     """Where every leaf is, with short gaps filled on the straight line between the frames around them.
 

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from kinetree.errors import SourceError
-from kinetree.tasks.numerics.input.bad_frames import bad_frames, frame_measures, refuse_bad
+from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad, refuse_other_bodies
 
 BOX = trimesh.creation.box((1, 2, 5)).subdivide().subdivide()
 V, F = np.array(BOX.vertices), np.array(BOX.faces)
@@ -82,3 +82,12 @@ def test_share_decides_what_is_refused():
         refuse_bad(bad, 19, 0.2)
     with pytest.raises(SourceError, match=r"set source\.on_bad_frame=drop to go on without them"):
         refuse_bad(bad, 20, None)
+
+
+def test_a_take_whose_body_is_larger_is_refused_by_name():
+    def take(area):
+        return [FrameMeasures(area * (1 + 0.01 * t), 2.0, (0.0, 0.0, 0.0), 500, 1) for t in range(5)]
+
+    refuse_other_bodies({"a": take(4.0), "b": take(4.3), "c": [], "d": take(3.6)})
+    with pytest.raises(SourceError, match="take c is not of the same body as take a: .* is 8.16, not 4.08"):
+        refuse_other_bodies({"a": take(4.0), "b": take(4.3), "c": take(8.0)})

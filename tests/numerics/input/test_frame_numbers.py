@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinetree.errors import SourceError
-from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers, selected_frames
+from kinetree.tasks.numerics.input.frame_numbers import TAKE, are_frame_numbers, frame_numbers, selected_frames, take_spans
 
 
 def numbers(*names):
@@ -91,3 +91,8 @@ def test_refusal_says_how_the_frames_are_numbered():
 def test_longer_numbers_are_no_frame_numbers():
     assert are_frame_numbers([0, 999_999_999])
     assert not are_frame_numbers([0, 1_000_000_000])
+
+
+def test_numbers_alone_say_where_a_take_begins():
+    assert take_spans([3, 4, 9]) == [slice(0, 3)]
+    assert take_spans([TAKE - 1, TAKE, TAKE + 5, 3 * TAKE + 1]) == [slice(0, 1), slice(1, 3), slice(3, 4)]

@@ -82,3 +82,10 @@ def test_in_one_frame_only_limbs_that_are_known_to_roll_take_the_candidate_that_
     misfit = np.array([clear, clear, [0.5, 0.5, 0.5, 0.5, 0.48], [0.1, 0.3, 0.4, 0.5, 0.5]])
     assert frame_rolls(angle, misfit, np.array([True, False, True, True])).tolist() == [2, -1, -1, -1]
     assert frame_rolls(angle[:0], misfit[:0], np.zeros(0, bool)).tolist() == []
+
+
+def test_where_a_take_begins_roll_may_change_at_no_cost():
+    angle = np.tile(np.radians([0.0, 150.0]), (12, 1, 1))
+    misfit = np.where((np.arange(12) < 6)[:, None, None] == (np.arange(2) == 0), 0.5, 0.55)
+    assert chosen_rolls(angle, misfit, 0)[:, 0].tolist() == [-1] * 12
+    assert chosen_rolls(angle, misfit, 0, begins=(6,))[:, 0].tolist() == [-1] * 6 + [1] * 6

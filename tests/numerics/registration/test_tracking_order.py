@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinetree.tasks.numerics.registration.tracking_order import tracking_order
+from kinetree.tasks.numerics.registration.tracking_order import takes_order, tracking_order
 
 
 def test_all_frames_learned_from_are_reached_from_their_neighbours() -> None:
@@ -35,3 +35,9 @@ def test_the_order_of_learned_frames_is_that_without_the_others() -> None:
     alone = tracking_order(np.ones(len(number), bool), 2)
     among = tracking_order(learned, int(number[2]))[learned]
     assert among.tolist() == [int(number[b]) if b >= 0 else -1 for b in alone]
+
+
+def test_every_take_is_reached_by_its_entry_and_from_there_outwards() -> None:
+    takes = [slice(0, 3), slice(3, 6), slice(6, 8)]
+    before = takes_order(np.ones(8, bool), takes, {1: -1, 5: 0, 6: 3})
+    assert before.tolist() == [1, -1, 1, 4, 5, 0, 3, 6]

@@ -1,0 +1,33 @@
+"""The skeleton of every take by itself, as files have it (ours)."""
+
+from typing import Any
+
+import numpy as np
+
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.input.frame_numbers import TAKE, take_spans
+
+POSES = ("positions", "rotation", "confidence")
+
+
+def of_takes(skeleton: Skeleton) -> dict[str, CompleteSkeleton]:
+    """The skeleton with the frames of each take, by what follows "skeleton" in the names of its files.
+
+    Joints, bones, rest pose and surface are those of all takes. Frames have their numbers within the take.
+    """
+    if not isinstance(skeleton, CompleteSkeleton):
+        skeleton = CompleteSkeleton(**{name: getattr(skeleton, name) for name in Skeleton.model_fields}, interpolated=())
+    if not skeleton.takes:
+        return {"": skeleton}
+    found = {}
+    for span in take_spans(skeleton.frames):
+        k = skeleton.frames[span.start] // TAKE
+        told: dict[str, Any] = {name: np.array(getattr(skeleton, name)[span]) for name in POSES}
+        between = (t for t in skeleton.interpolated if t.frame // TAKE == k)
+        own = tuple(t.model_copy(update={"frame": t.frame - k * TAKE}) for t in between)
+        fields = {name: getattr(skeleton, name) for name in CompleteSkeleton.model_fields}
+        frames = tuple(t - k * TAKE for t in skeleton.frames[span])
+        told |= {"frames": frames, "interpolated": own, "takes": ()}
+        found[f"-{skeleton.takes[k]}"] = CompleteSkeleton(**{**fields, **told})
+    return found

@@ -1,0 +1,80 @@
+"""Several takes of one body: one skeleton with the joints of all, from a body that stands elsewhere in every take."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from limbs import rotation
+
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.schemas.input.synth import SynthParams
+from kinetree.schemas.registration.tracking_order import TrackingOrder
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.intervals import Intervals
+from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
+
+FRAMES = 6
+
+
+def written(folder: Path, motion: str, turn: float, shift: float) -> str:
+    """A generated body in motion, turned and moved, as files."""
+    made = body(recipe(SynthParams(figure="human", motion=motion, frames=FRAMES, vertices=800)))
+    folder.mkdir(parents=True)
+    for t in range(FRAMES):
+        V, F = made.frame(t)
+        trimesh.Trimesh(V @ rotation((0, 0, 1), turn).T + shift, F, process=False).export(folder / f"frame_{t}.ply")
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
+    """Two takes, computed."""
+    folder = tmp_path_factory.mktemp("takes")
+    takes = [
+        {"name": "walk", "input": written(folder / "walk", "walk", 0.0, 0.0)},
+        {"name": "wave", "input": written(folder / "wave", "wave", 1.2, 900.0)},
+    ]
+    small: dict[str, Any] = {
+        "geodesics": {"bases": 40},
+        "deformation_graph": {"nodes": 150},
+        "rigid_parts": {"patches": 120},
+        "compute": {"executor": "sync"},
+    }
+    pipeline = Pipeline.of({"source": {"takes": takes}, "output": str(folder / "out"), **small})
+    told = pipeline.run(until=("skeleton_json", "bvh", "frame_confidence"))
+    assert told["status"] == "done"
+    return pipeline
+
+
+def test_one_skeleton_has_the_frames_of_all_takes(run: Pipeline) -> None:
+    skeleton = run.artifact(Skeleton)
+    assert skeleton.frames == (*range(FRAMES), *range(TAKE, TAKE + FRAMES))
+    output = Path(run.config.output)
+    walk, wave = (json.loads((output / f"skeleton-{name}.json").read_text()) for name in ("walk", "wave"))
+    assert walk["bones"] == wave["bones"]
+    assert walk["joints"] == wave["joints"]
+    assert (output / "skeleton-wave.bvh").exists()
+
+
+def test_no_interval_and_no_neighbour_reaches_across_a_border(run: Pipeline) -> None:
+    cuts = run.artifact(Intervals)
+    assert FRAMES in cuts.begin.tolist()
+    order = run.artifact(TrackingOrder)
+    across = [t for t in order.frames if (b := order.previous(t)) is not None and b // TAKE != t // TAKE]
+    assert len(across) == 1
+
+
+def test_the_body_is_found_where_it_stands_in_every_take(run: Pipeline) -> None:
+    confidence = run.artifact("frame_confidence")
+    assert confidence.residual.max() < 0.02  # type: ignore[attr-defined]
+    skeleton = run.artifact(Skeleton)
+    for t in (0, TAKE):
+        mesh = run.artifact("mesh", frame=t)
+        low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)  # type: ignore[attr-defined]
+        X = skeleton.positions[skeleton.frames.index(t)]
+        assert (low - 0.05 * np.ptp([low, high]) < X).all()
+        assert (high + 0.05 * np.ptp([low, high]) > X).all()
