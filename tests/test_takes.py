@@ -17,12 +17,12 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
-FRAMES = 6
+FRAMES = 5
 
 
 def written(folder: Path, motion: str, turn: float, shift: float) -> str:
     """A generated body in motion, turned and moved, as files."""
-    made = body(recipe(SynthParams(figure="human", motion=motion, frames=FRAMES, vertices=800)))
+    made = body(recipe(SynthParams(figure="human", motion=motion, frames=FRAMES, vertices=600)))
     folder.mkdir(parents=True)
     for t in range(FRAMES):
         V, F = made.frame(t)
@@ -40,7 +40,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
     ]
     small: dict[str, Any] = {
         "geodesics": {"bases": 40},
-        "deformation_graph": {"nodes": 150},
+        "deformation_graph": {"nodes": 100},
         "rigid_parts": {"patches": 120},
         "compute": {"executor": "sync"},
     }
@@ -73,8 +73,6 @@ def test_the_body_is_found_where_it_stands_in_every_take(run: Pipeline) -> None:
     assert confidence.residual.max() < 0.02  # type: ignore[attr-defined]
     skeleton = run.artifact(Skeleton)
     for t in (0, TAKE):
-        mesh = run.artifact("mesh", frame=t)
-        low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)  # type: ignore[attr-defined]
-        X = skeleton.positions[skeleton.frames.index(t)]
-        assert (low - 0.05 * np.ptp([low, high]) < X).all()
-        assert (high + 0.05 * np.ptp([low, high]) > X).all()
+        vertices = np.array(run.artifact("mesh", frame=t).vertices)  # type: ignore[attr-defined]
+        root = skeleton.positions[skeleton.frames.index(t), 0]
+        assert np.linalg.norm(root - vertices.mean(axis=0)) < 0.2 * np.ptp(vertices, axis=0).max()

@@ -4,6 +4,7 @@ from kinetree.pipeline.views import remarks_of
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 
 UNSURE = 0.3
 """Confidence of the up direction below which people are told that it is a guess. Not recorded what it was chosen on."""
@@ -27,9 +28,10 @@ def leaves_remarks(leaves: Leaves) -> tuple[str, ...]:
     none = [i for i in range(len(leaves.kept)) if not leaves.kept[i].any()]
     lines = [f"interval {i} has no leaf that is found in enough of its frames" for i in none]
     lines += leaf_losses(leaves)
+    begins = [span.start for span in take_spans(leaves.frames)]
     for leaf in range(len(leaves.rows)):
         first = int((leaves.rows[leaf] >= 0).argmax())
-        if first > 0 and leaves.kept[:, leaf].any():
+        if first not in begins and leaves.kept[:, leaf].any():
             lines.append(f"leaf {leaf} appears first in frame {leaves.frames[first]}")
     return tuple(lines)
 
