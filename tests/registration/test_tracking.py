@@ -61,6 +61,8 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
         list(meshes),
         mesh=meshes,
         deformation_graph=made.deformation_graph,
+        take_entries=made.take_entries,
+        index=made.numbers,
         params=TrackingParams(),
     )
     assert again[strange].uncovered > 0.1
