@@ -22,7 +22,7 @@ from kinetree.pipeline.remote import brought
 from kinetree.pipeline.sight import Sight
 from kinetree.pipeline.store import Record, Store
 from kinetree.pipeline.task import Form, Task, load
-from kinetree.pipeline.threads import blas, limited
+from kinetree.pipeline.threads import blas, limited, simd
 from kinetree.schemas.array import Artifact, Index
 
 LIBRARIES = ("kinetree", "numpy", "scipy", "numba", "trimesh", "zarr", "dask", "pydantic")
@@ -173,7 +173,7 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
         own_bytes=peak.own,
         host=socket.gethostname(),
         created=datetime.now(UTC).isoformat(timespec="milliseconds"),
-        versions={**versions(), "blas": blas()},
+        versions={**versions(), "blas": blas(), "simd": simd()},
         asks_index=task.asks_index,
     )
     bench.store.write(record)

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import threadpoolctl
 from threadpoolctl import ThreadpoolController
 
@@ -69,6 +70,17 @@ def blas() -> str:
     """The BLAS libraries that are loaded, with the instruction set that each has chosen: bytes differ between these."""
     found = {_named(library) for library in _controller(len(sys.modules)).info() if library["user_api"] == "blas"}
     return ", ".join(sorted(found))
+
+
+@lru_cache(maxsize=1)
+def simd() -> str:
+    """The instruction set of numpy's own loops and the processor numba compiles for: bytes differ between these too."""
+    sets = np.show_config(mode="dicts")["SIMD Extensions"]
+    told = [f"numpy {[*sets.get('baseline', ()), *sets.get('found', ())][-1]}"]
+    numba, llvm = sys.modules.get("numba"), sys.modules.get("llvmlite.binding")
+    if numba is not None and llvm is not None:
+        told.append(f"numba {numba.config.CPU_NAME or llvm.get_host_cpu_name()}")
+    return ", ".join(told)
 
 
 def _named(library: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
-from kinetree.pipeline.threads import blas, limited
+from kinetree.pipeline.threads import blas, limited, simd
 
 MATRIX = np.random.default_rng(0).normal(size=(4, 4))
 
@@ -97,8 +97,19 @@ def test_the_instruction_set_of_blas_is_on_record(toys):
     toys.run(until=("smooth",))
     schedule = toys.pipeline().schedule(until=["smooth"])
     (record, *_) = [entry.record for entry in schedule.entries.values() if entry.record is not None]
-    assert record.versions["blas"] == blas()
+    assert (record.versions["blas"], record.versions["simd"]) == (blas(), simd())
     assert "openblas" in blas()
+
+
+def test_numpy_on_another_processor_is_told_apart():
+    """Wider registers add up in another order; what numpy is told not to use stands for a processor that has less."""
+    usable = np.show_config(mode="dicts")["SIMD Extensions"].get("found")
+    if not usable:
+        pytest.skip("numpy has one instruction set here")
+    ask = [sys.executable, "-c", "from kinetree.pipeline.threads import simd; print(simd())"]
+    environment = {**os.environ, "NPY_DISABLE_CPU_FEATURES": ",".join(usable)}
+    less = subprocess.run(ask, env=environment, capture_output=True, check=True)
+    assert less.stdout.decode().split(",")[0].strip() != simd().split(",")[0]
 
 
 def test_another_instruction_set_is_told_apart():
