@@ -9,6 +9,8 @@ import pytest
 import trimesh
 
 from kinetree.pipeline import Pipeline
+from kinetree.tasks.application import APPLICATION
+from kinetree.tasks.commands.plot import plot
 from kinetree.tasks.results.plots.mesoscopic import cones as drawn_cones
 from kinetree.tasks.results.plots.mesoscopic import lengths, merging, structure
 
@@ -122,3 +124,15 @@ def test_tracked_vertices_pass_unchanged(tmp_path: Path) -> None:
         here = artifact(pipeline, "arap", interval=0, frame=t)
         np.testing.assert_array_equal(here.vertices, artifact(pipeline, "mesh", frame=t).vertices)
         assert (here.confidence == 1.0).all()
+
+
+def test_on_the_defaults_alignment_a_run_goes_through_and_its_steps_are_drawn(tmp_path: Path) -> None:
+    blocks = {"method": "mesoscopic-2014-aligned", "extends": "paper-2014-aligned", "geodesics": {"bases": 30}}
+    pipeline = ran(tmp_path / "out", **blocks, source={"synth": {**DOG, "vertices": 700}})
+    skeleton, reference = artifact(pipeline, "kinematic_structure"), artifact(pipeline, "reference")
+    np.testing.assert_array_equal(skeleton.vertices, reference.vertices)
+    assert len(skeleton.frames) == DOG["frames"]
+    with APPLICATION.active():
+        for what in ("cones", "structure"):
+            plot(str(tmp_path / "out"), what, output=tmp_path / f"{what}.png", frames="", up=None)
+            assert (tmp_path / f"{what}.png").read_bytes().startswith(b"\x89PNG")

@@ -31,6 +31,7 @@ def plot(
     ] = None,
 ) -> None:
     """Draw a result of a run: curves, surfaces, the tree, errors."""
+    from kinetree.schemas.paper_2014.interval_reference import IntervalReference
     from kinetree.schemas.structure.skeleton import Skeleton
     from kinetree.tasks.results.plots import PLOTS_OF_METHOD, draw
 
@@ -38,10 +39,10 @@ def plot(
     there = pipeline.inspect()
     known = sorted(node.at[0] for node in there.schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
-    skeleton = pipeline.tasks.writers[Skeleton].name
+    writers, stored = pipeline.tasks.writers, {"skeleton": Skeleton, "interval_reference": IntervalReference}
 
     def fetch(name: str, **index: int) -> Any:
-        return there.artifact(skeleton if name == "skeleton" else name, **index)
+        return there.artifact(writers[stored[name]].name if stored.get(name) in writers else name, **index)
 
     draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method])
     typer.echo(str(path))
