@@ -39,10 +39,11 @@ def plot(
     there = pipeline.inspect()
     known = sorted(node.at[0] for node in there.schedule.entries if node.task == "source")
     path = output or Path(f"{what}.png")
-    writers, stored = pipeline.tasks.writers, {"skeleton": Skeleton, "interval_reference": IntervalReference}
+    of_method = {a.__name__: task.name for a, task in pipeline.tasks.writers.items()}
+    names = {"skeleton": of_method.get(Skeleton.__name__), "interval_reference": of_method.get(IntervalReference.__name__)}
 
     def fetch(name: str, **index: int) -> Any:
-        return there.artifact(writers[stored[name]].name if stored.get(name) in writers else name, **index)
+        return there.artifact(names.get(name) or name, **index)
 
     draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method])
     typer.echo(str(path))
