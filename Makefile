@@ -7,7 +7,7 @@ READY  := $(VENV)/ready
 DATA   ?=
 PROCESSES ?= 2
 
-.PHONY: demo test lint types tests coverage benchmarks accuracy clean
+.PHONY: demo test lint types tests coverage benchmarks faults accuracy clean
 
 demo: $(READY)
 	$(BIN)/kinetree demo --output demo-output
@@ -30,7 +30,11 @@ coverage: $(READY)
 	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder --cov --cov-report=term
 
 benchmarks: $(READY)
-	for file in $(filter-out benchmarks/accuracy.py benchmarks/sensitivity.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
+	for file in $(filter-out benchmarks/accuracy.py benchmarks/sensitivity.py benchmarks/faults.py benchmarks/flaky_service.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
+
+# runs whose workers, scheduler, store or own process are killed or taken away; an hour, and root for all of its cells
+faults: $(READY)
+	$(BIN)/python benchmarks/faults.py
 
 # every sequence with a known skeleton in the folder DATA, generated ones too, in one table
 accuracy: $(READY)

@@ -1,18 +1,14 @@
-"""What a cluster costs and gives: seconds per node by executor, one worker against two, planning a large graph, and kills.
+"""What a cluster costs and gives: seconds per node by executor, one worker against two, and planning a large graph.
 
-    python benchmarks/cluster.py [--frames 60] [--nodes 100000] [--kills 20]
+    python benchmarks/cluster.py [--frames 60] [--nodes 100000]
 
-Prints one table. `--kills` ends a worker with SIGKILL at random moments of so many runs and compares every artifact with a
-run that nobody disturbed.
+Prints one table. `faults.py` disturbs runs.
 """
 
 import argparse
 import os
-import random
-import signal
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -29,7 +25,6 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--frames", type=int, default=60, help="frames of the runs, three nodes each")
     options.add_argument("--nodes", type=int, default=100_000, help="nodes of the planned graph")
-    options.add_argument("--kills", type=int, default=20, help="runs in which a worker is killed")
     chosen = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "chain_of_three.py").write_text(CHAIN)
@@ -37,7 +32,6 @@ def main() -> None:
         os.environ["PYTHONPATH"] = os.pathsep.join([folder, os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
         for what, value in (*_costs(Path(folder), chosen.frames), *_plan(Path(folder), chosen.nodes)):
             print(f"{what:<64}{value:>16}", flush=True)
-        print(f"{'a worker killed at a random moment':<64}{_killed(Path(folder), chosen.frames, chosen.kills):>16}")
 
 
 def _pipeline(folder: Path, frames: int, compute: dict[str, Any]) -> Any:
@@ -76,34 +70,6 @@ def _plan(folder: Path, nodes: int) -> Iterator[tuple[str, str]]:
     started = time.perf_counter()
     plan = _pipeline(folder / "planned", nodes // 3, {"executor": "sync"}).plan()
     yield f"plan of {len(plan.nodes)} nodes, nothing stored", f"{time.perf_counter() - started:.1f} s"
-
-
-def _killed(folder: Path, frames: int, kills: int) -> str:
-    """How many of the disturbed runs ended as an undisturbed one; raises where one called itself done and was not."""
-    from distributed import Client, LocalCluster
-
-    calm = _pipeline(folder / "calm", frames, {"executor": "threads"})
-    calm.run()
-    expected = {node.node: node.artifact for node in calm.plan().nodes}
-    equal = 0
-    rng = random.Random(0)
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0") as cluster:
-        for number in range(kills):
-            pipeline = _pipeline(folder / f"killed{number}", frames, {})
-            with Client(cluster) as client:
-                client.wait_for_workers(2)
-                timer = threading.Timer(rng.uniform(0.0, 1.5), _kill, [cluster, rng])
-                timer.start()
-                told = pipeline.run(client)
-                timer.join()
-            found = {node.node: node.artifact for node in pipeline.plan().nodes}
-            assert told["status"] != "done" or found == expected, "a run called itself done and was not"
-            equal += found == expected
-    return f"{equal} of {kills} equal"
-
-
-def _kill(cluster: Any, rng: random.Random) -> None:
-    os.kill(rng.choice(list(cluster.workers.values())).pid, signal.SIGKILL)
 
 
 if __name__ == "__main__":

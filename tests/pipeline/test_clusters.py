@@ -11,6 +11,7 @@ from kinetree.pipeline import clusters
 from kinetree.pipeline.clusters import cluster_of
 from kinetree.pipeline.config import Compute
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.launch import launcher
 from kinetree.pipeline.living_workers import LivingWorkers
 
 NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
@@ -74,8 +75,6 @@ def test_workers_with_less_memory_than_was_asked_for_end_the_run_in_words():
 
 
 def test_the_window_follows_the_threads_that_live(toys, empty):
-    from kinetree.pipeline.launch import launcher
-
     with Client(empty) as client, launcher(Compute(executor="processes"), client) as launch:
         assert launch.window() >= 3
         before = launch.window()
@@ -138,3 +137,81 @@ def test_our_own_workers_are_told_before_they_start(monkeypatch):
     )
     with clusters.local(Compute(workers=1)):
         assert there == [0]
+
+
+INSIDE = {"n_workers": 0, "threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
+LATE = """
+import os, threading
+from pathlib import Path
+from distributed import LocalCluster
+
+class Queue(LocalCluster):
+    def scale(self, n):
+        turn = Path(os.environ["TOYS_FLAGS"]) / "turn"
+        def later():
+            while self.status.name == "running" and not turn.exists():
+                threading.Event().wait(0.01)
+            if self.status.name == "running":
+                super(Queue, self).scale(n)
+        threading.Thread(target=later, daemon=True).start()
+"""
+"""A queue that starts workers when it is their turn."""
+
+
+def test_adaptive_workers_come_with_the_work_and_go_with_it(toys):
+    compute = {"cluster": "distributed:LocalCluster", "options": INSIDE, "adapt": [0, 2], "workers": 2}
+    assert toys.run(until=("total",), compute=compute).told["status"] == "done"
+    with clusters.started(Compute(**compute)) as client:
+        cluster = client.cluster
+        assert len(cluster.workers) == 0, "nothing is to be done"
+        assert client.submit(abs, -1).result(timeout=60) == 1
+        toys.until(lambda: not cluster.workers, "they go away again")
+
+
+@pytest.fixture
+def late(toys):
+    """A configuration whose cluster is a queue."""
+    (toys.folder / toys.name / "late.py").write_text(LATE)
+    return {"cluster": f"{toys.name}.late:Queue", "options": INSIDE, "workers": 1}
+
+
+def test_a_queue_that_starts_its_workers_late_is_waited_for(toys, late):
+    process = toys.start("run", str(toys.yaml(compute=late)), "--quiet")
+    toys.until(lambda: (toys.output / "store" / "tmp").exists() and toys.pipeline().runs(), "the run begins", process)
+    assert toys.executions() == []
+    toys.flag("turn")
+    _, err = process.communicate(timeout=100)
+    assert (process.returncode, err) == (0, "")
+    assert len(toys.executions()) == 40
+
+
+def test_a_queue_that_never_starts_a_worker_is_given_up_in_words(toys, late):
+    given_up = pytest.raises(
+        ClusterError, match=r"no worker for 0\.6 s; .* give a queue more time \(--wait-workers N,SECONDS\)"
+    )
+    with given_up, launcher(Compute(**late).model_copy(update={"wait_workers": "0,0.6"})) as launch:
+        toys.until(launch.look_after, "it is given up")
+    done = toys.command("run", str(toys.yaml(compute={**late, "wait_workers": "1,0.5"})), "--quiet")
+    assert (done.returncode, toys.executions()) == (3, [])
+    assert "--wait-workers 1: 0 workers are there after 0.5 s" in done.stderr
+
+
+def test_dask_names_what_runs_by_its_tasks(toys, empty):
+    """On the dashboard, in reports and in logs."""
+    empty.scale(1)
+    with Client(empty) as client:
+        toys.run(client, until=("total",))
+        names = client.run_on_scheduler(lambda dask_scheduler: sorted(dask_scheduler.task_prefixes))
+    assert names == ["points+smooth", "total"]
+
+
+def test_dask_reports_on_a_run(toys, tmp_path):
+    pytest.importorskip("bokeh", reason="dask's pages are drawn by bokeh")
+    report = tmp_path / "report.html"
+    compute = {"executor": "processes", "workers": 1, "performance_report": str(report)}
+    run = toys.run(until=("total",), compute=compute)
+    assert run.told["status"] == "done"
+    text = report.read_text()
+    assert "points+smooth" in text
+    assert "<html" in text
+    assert [e["link"].startswith("http://127.0.0.1:") for e in run.heard.events if e["event"] == "dashboard"] == [True]
