@@ -103,6 +103,13 @@ class Dataset:
         """What the last run of every sequence left; None where there was none."""
         return {name: Outcome.at(config.output) for name, config in self.config.sequences.items()}
 
+    def left(self) -> dict[str, Any] | None:
+        """What dataset.json holds; None where there is none that can be read."""
+        try:
+            return dict(json.loads((self.config.root / SUMMARY).read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            return None
+
     def plan(self, *, only: Sequence[str] = (), failed: bool = False, since: str | None = None) -> DatasetPlan:
         """What a run would do, by sequence; looks at the input, computes nothing. Arguments as those of `run`."""
         files, heads, before = Files.of(self.store), Heads(self.store), self.outcomes()

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from kinetree.errors import ConfigError
+from kinetree.errors import ConfigError, KinetreeError
 from kinetree.pipeline.application import current
 from kinetree.pipeline.options import AsJson, Set, err, out, print_json
 from kinetree.pipeline.printable import printable
@@ -89,7 +89,12 @@ def dataset(
 
 def _run(found: "Dataset", chosen: dict[str, Any], *, quiet: bool, as_json: bool) -> None:
     listeners = [] if quiet or as_json else [Progress(err, len(found))]
-    told = found.run(**chosen, listeners=listeners)
+    try:
+        told = found.run(**chosen, listeners=listeners)
+    except (KinetreeError, KeyboardInterrupt):
+        if as_json and (left := found.left()) is not None:
+            print_json(left)
+        raise
     counts = told["counts"]
     if as_json:
         print_json(told)

@@ -24,6 +24,8 @@ from kinetree.pipeline.events import Account, Listener, Watch
 from kinetree.pipeline.files import Files, Settling
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.history import History
+from kinetree.pipeline.key import artifact_digest, code_digest, digest
+from kinetree.pipeline.layout import Given
 from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.made_with import MadeWith
 from kinetree.pipeline.memory import Needs
@@ -37,6 +39,8 @@ from kinetree.pipeline.store import Store
 from kinetree.schemas.array import Artifact
 
 A = TypeVar("A", bound=Artifact)
+Outside = tuple[Given, list[str]]
+"""What origins find, and remarks on it."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,21 @@ class Pipeline:
     ) -> Snapshot:
         return self.look(files, History.of(self.store, self.config), wanted, force, made_with)
 
+    def look_outside(self, files: Files, history: History) -> Outside:
+        """What the origins of all tasks that run unasked find now, and remarks on it; raises InputError."""
+        return found(self.tasks.until(self.tasks.unasked), self.config, files, history)
+
+    def mark(self, outside: Outside) -> str:
+        """A digest of all that decides what a run leaves: parameters, code, and what the origins found."""
+        tasks = [self.tasks.task(name) for name in self.tasks.unasked]
+        code = {task.name: code_digest(task.module, task.name) for task in tasks}
+        params = {name: block.model_dump(mode="json") for name, block in self.config.params.items()}
+        given = {
+            task: [[list(index), artifact_digest(artifact)] for index, artifact in members.items()]
+            for task, members in outside[0].items()
+        }
+        return digest([self.config.method, code, params, given])
+
     def look(
         self,
         files: Files,
@@ -110,10 +129,14 @@ class Pipeline:
         wanted: tuple[str, ...] = (),
         force: Iterable[str] = (),
         made_with: Iterable[str] = (),
+        outside: Outside | None = None,
     ) -> Snapshot:
-        """What `inspect` gives, with a memory of files and a history that several pipelines on one store share."""
+        """What `inspect` gives, with a memory of files and a history that several pipelines on one store share.
+
+        outside : what `look_outside` found for the same tasks; None looks now
+        """
         graph = self.tasks.until(wanted) if wanted else self.tasks
-        given, notes = found(graph, self.config, files, history)
+        given, notes = outside or found(graph, self.config, files, history)
         schedule = Schedule(
             graph,
             self.config.params,

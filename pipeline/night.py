@@ -30,6 +30,7 @@ from kinetree.pipeline.outcome import OUTCOME, Ending, Outcome, computing_second
 from kinetree.pipeline.ownership import Owned
 from kinetree.pipeline.session import Session
 from kinetree.pipeline.snapshot import Snapshot
+from kinetree.pipeline.store import artifact_path
 
 State = Literal["fresh", "ran", "failed", "elsewhere", "left"]
 """What a run did with a sequence; elsewhere: another process is at it; left: the time was over before it was done."""
@@ -52,6 +53,7 @@ class _Open:
     name: str
     pipeline: Pipeline
     session: Session
+    mark: str
     is_longest: bool
 
 
@@ -144,11 +146,13 @@ class Night:
                 return None
             pipeline.store.records.look_again()
             history = History.of(pipeline.store, pipeline.config, self._heads)
-            there = pipeline.look(self._files, history, pipeline.tasks.unasked)
-            before = Outcome.at(folder)
-            if before is not None and before.is_done and there.plan.is_done and before.is_untouched(folder):
+            outside, before = pipeline.look_outside(self._files, history), Outcome.at(folder)
+            mark = pipeline.mark(outside)
+            is_whole = before is not None and before.is_done and before.is_untouched(folder) and self._holds(before)
+            if before is not None and is_whole and before.mark == mark:
                 self._settle(name, "fresh", before)
                 return None
+            there = pipeline.look(self._files, history, pipeline.tasks.unasked, outside=outside)
             session = Session.begin(
                 pipeline.config,
                 there,
@@ -164,11 +168,16 @@ class Night:
             self._refuse(name, error)
             return None
         job = Job(there.schedule, session.watch)
-        self._open[job] = _Open(name, pipeline, session, is_longest)
+        self._open[job] = _Open(name, pipeline, session, mark, is_longest)
         if job.is_idle:
             self.end(job)
             return None
         return job
+
+    def _holds(self, outcome: Outcome) -> bool:
+        """Whether what the summary reads of a sequence is still in the store."""
+        place = next(iter(self.pipelines.values())).store.place
+        return all(place.size(artifact_path(digest)) is not None for digest in outcome.artifacts.values())
 
     def _refuse(self, name: str, error: Exception) -> None:
         """The input of a sequence is wrong, or its folder cannot be written."""
@@ -203,6 +212,7 @@ class Night:
             counts,
             (*known, *failures),
             _remarks(session.there) if is_done else (),
+            one.mark,
             _artifacts(one.pipeline, schedule, self.linked) if is_done else {},
             stamps(config.output, session.left) if is_done else {},
         )

@@ -34,6 +34,8 @@ class Outcome:
     failures: tuple[Mapping[str, str], ...] = ()
     remarks: tuple[str, ...] = ()
     """What its results have to say."""
+    mark: str = ""
+    """Digest of the parameters, code and input that it was made of."""
     artifacts: Mapping[str, str] = field(default_factory=dict)
     """Digests, by task, of what the data set's summary reads."""
     files: Mapping[str, tuple[int, int]] = field(default_factory=dict)

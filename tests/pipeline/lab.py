@@ -55,14 +55,17 @@ class Lab:
 
     def dataset(self) -> Dataset:
         """The data set in this process."""
-        application = Application(
+        return Dataset.of(self.file, application=self.application())
+
+    def application(self) -> Application:
+        """The product of toys in this process."""
+        return Application(
             "toy",
             "Adds numbers.",
             lambda: {"toy": self.toys.module.GRAPH},
             shortcuts=(Shortcut(("--input",), "source.input", "", is_input=True),),
             data_sets=lambda: importlib.import_module(f"{self.toys.name}.toy_datasets").GRAPH,
         )
-        return Dataset.of(self.file, application=application)
 
     def run(self, **options: Any) -> dict[str, Any]:
         """Runs in this process; what was executed before is forgotten."""

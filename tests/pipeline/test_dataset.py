@@ -177,3 +177,29 @@ def test_what_no_run_needs_goes_where_that_is_asked_for(lab):
     assert told["deleted"]["artifacts"] > 0
     assert len(list((lab.results / "store" / "artifacts").rglob("*.zip"))) <= before
     assert lab.states(lab.run()) == {"a": "fresh", "b": "fresh", "c": "fresh"}
+
+
+def test_a_store_that_somebody_removed_is_filled_again(lab):
+    lab.run()
+    shutil.rmtree(lab.results / "store")
+    told = lab.run()
+    assert lab.states(told) == {"a": "ran", "b": "ran", "c": "ran"}
+    assert all(value is not None for value in lab.summary().values())
+
+
+@pytest.mark.parametrize("change", ["parameter", "code"])
+def test_other_parameters_or_code_make_a_sequence_stale(lab, change):
+    lab.run()
+    if change == "parameter":
+        lab.write(overrides={"b": {"points": {"scale": 7.0}}})
+    else:
+        lab.toys.edit("return Report(value=value)", "return Report(value=2 * value)")
+    told = lab.run()
+    assert told["sequences"]["b"]["state"] == "ran"
+    assert told["sequences"]["a"]["state"] == ("fresh" if change == "parameter" else "ran")
+
+
+def test_an_edit_that_changes_no_result_leaves_all_alone(lab):
+    lab.run()
+    lab.toys.edit("The numerics of the toy graph", "The formulas of the toy graph", "toy_sums.py")
+    assert set(lab.states(lab.run()).values()) == {"fresh"}

@@ -6,12 +6,15 @@ import re
 import shutil
 import signal
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from pipeline.lab import Lab
 
 from kinetree.errors import ClusterError, StoreFullError
+from kinetree.pipeline.application import Section, built_in
+from kinetree.pipeline.cli import command_line
 from kinetree.pipeline.place import Folder
 from kinetree.pipeline.workers import Workers
 
@@ -131,6 +134,17 @@ def test_a_cluster_that_goes_away_ends_the_run_and_the_next_goes_on(lab, monkeyp
     assert lab.told()["status"] == "stopped"
     assert lab.dataset().status()[0]["status"] in ("stopped", "new")
     assert lab.run()["status"] == "done"
+
+
+def test_json_is_printed_also_where_the_run_was_stopped(lab, monkeypatch, capsys):
+    def away(workers, jobs, store):
+        raise ClusterError("nobody answers")
+
+    monkeypatch.setattr(Workers, "run", away)
+    application = replace(lab.application(), sections=(Section("All", (built_in("dataset"),)),))
+    with application.active(), pytest.raises(ClusterError):
+        command_line(application)(["dataset", "run", str(lab.file), "--json"], standalone_mode=False)
+    assert json.loads(capsys.readouterr().out)["error"] == "ClusterError: nobody answers"
 
 
 def test_a_folder_that_cannot_be_written_is_one_sequences_failure(lab):
