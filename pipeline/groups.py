@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.chunks import as_written
 from kinetree.schemas.array import Array
 
 CHUNK_BYTES = 64 * 2**20
@@ -83,8 +82,7 @@ def decoded(files: Mapping[str, bytes], spec: Array | None) -> NDArray[Any]:
         raise ForeignArrayError("a chunk is missing")
     for data in chunks.values():
         _refuse_packed(data, meta, len(data))
-    array = as_written(meta, chunks)
-    return _read(files) if array is None else array
+    return _read(files)
 
 
 def user_arrays(path: Path, names: Collection[str]) -> dict[str, NDArray[Any]]:
