@@ -134,6 +134,18 @@ def test_files_stand_upright_and_in_their_unit(out):
     np.testing.assert_allclose(list(map(float, first[:3])), body.positions[0, 0] @ to / 10, atol=1e-6)
 
 
+def test_names_that_people_know_are_those_of_all_files_and_the_skeleton_keeps_its_own(out, configured):
+    pipeline = Pipeline.of(configured, sets=["joint_names.rename={arm: jaw}"])
+    assert ran(pipeline.run(until=["glb", "bvh", "skeleton_json", "tables"])) == {
+        "joint_names", "glb", "bvh", "skeleton_json", "tables",
+    }  # fmt: skip
+    assert "jaw" in Read((out / "skeleton.glb").read_bytes()).names
+    assert "JOINT jaw" in (out / "skeleton.bvh").read_text()
+    assert json.loads((out / "skeleton.json").read_text())["joints"][1]["name"] == "jaw"
+    assert ",jaw," in (out / "tables" / "motion.csv").read_text()
+    assert pipeline.artifact("skeleton").names == spider().names
+
+
 def test_option_of_an_export_runs_that_export_alone(out, configured):
     before = {name: (out / name).read_bytes() for name in LEFT[1:]}
     result = Pipeline.of(configured, sets=["glb.up=y"]).run()

@@ -35,6 +35,8 @@ class Joint(_FileObject):
 
     name: str
     """Readable, unique and the same on every run."""
+    anatomy: str | None
+    """What it is on a person or a four-legged animal, such as knee_l, whatever its name; null where that is not known."""
     parent: Annotated[int, Field(ge=0)] | None
     """Position of its parent in the list of joints, before its own; null for the root."""
     kind: Literal["root", "joint", "leaf"]
@@ -80,6 +82,12 @@ class Document(_FileObject):
     """Axis of the coordinates that points up, as the run found it or was told."""
     up_confidence: Share
     """Confidence in it, 0 to 1."""
+    topology: Literal["human", "quadruped", "unknown"]
+    """What the body was recognised as."""
+    front: Point | None
+    """Direction that it faces in the reference pose; null where that is not known."""
+    front_confidence: Share
+    """Confidence in it, and so in left and right, 0 to 1."""
     frames: list[Annotated[int, Field(ge=0)]]
     """Source frame number of every frame, ascending."""
     seconds: list[Annotated[float, Field(ge=0)]] | None

@@ -3,13 +3,15 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.skeleton_json import SkeletonJson
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import skeleton_file
 from kinetree.tasks.results.formats.takes import of_takes
 
 
 @task()
-def skeleton_json(skeleton: CompleteSkeleton, up_direction: UpDirection) -> SkeletonJson:
+def skeleton_json(skeleton: CompleteSkeleton, joint_names: JointNames, up_direction: UpDirection) -> SkeletonJson:
     """Writes skeleton.json, the joint tree with every joint's position and rotation in every frame (ours)."""
     takes = of_takes(skeleton).items()
-    return SkeletonJson.of({f"skeleton{name}.json": skeleton_file(own, up_direction, own.interpolated) for name, own in takes})
+    files = {f"skeleton{name}.json": skeleton_file(own, joint_names, up_direction, own.interpolated) for name, own in takes}
+    return SkeletonJson.of(files)

@@ -3,16 +3,17 @@
 from kinetree.pipeline.task import task
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.usd import Usd, UsdParams
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import upright_rotation
-from kinetree.tasks.results.formats.placement import placed, placement
+from kinetree.tasks.results.formats.placement import placed, placement, renamed
 from kinetree.tasks.results.formats.usd import usd as usd_text
 
 
 @task(on_request=True)
-def usd(skeleton: CompleteSkeleton, up_direction: UpDirection, params: UsdParams) -> Usd:
+def usd(skeleton: CompleteSkeleton, joint_names: JointNames, up_direction: UpDirection, params: UsdParams) -> Usd:
     """Writes skeleton.usda, the reference mesh skinned to the animated skeleton (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
     up = "z" if known.up == "z" else "y"
-    body = placed(skeleton, upright_rotation(known.up, up), 1.0)
+    body = placed(renamed(skeleton, joint_names), upright_rotation(known.up, up), 1.0)
     return Usd.of({"skeleton.usda": usd_text(body, up, known.metres)}, **known._asdict())

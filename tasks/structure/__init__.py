@@ -1,6 +1,7 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
 from kinetree.tasks.structure.further_pose import further_pose
+from kinetree.tasks.structure.joint_names import joint_names
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.rigid_parts import rigid_parts
@@ -12,4 +13,5 @@ STRUCTURE = (
     pose_refinement,
     further_pose,
     skeleton,
+    joint_names,
 )

@@ -1,6 +1,7 @@
 """Views of the artifacts of the shelf `structure`."""
 
 from kinetree.pipeline.views import remarks_of, text_of
+from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 
@@ -49,3 +50,26 @@ def _measures(skeleton: Skeleton, joint: int) -> str:
         return length
     support = f"supported by {skeleton.support[joint]} of {len(skeleton.frames)} frames"
     return f"{length}, turns {skeleton.degrees[joint]:.0f}°, ±{skeleton.drift[joint]:.2g}{unit}, {support}"
+
+
+@remarks_of(JointNames)
+def joint_names_remarks(names: JointNames) -> tuple[str, ...]:
+    """What the body was recognised as, and whether left and right may be exchanged."""
+    if names.topology == "unknown":
+        return ()
+    what = "a person" if names.topology == "human" else "a four-legged animal"
+    lines = [f"recognised as {what} (confidence {names.confidence:.1f})"]
+    if names.front_confidence < CERTAIN_FRONT:
+        lines.append(
+            "left and right may be exchanged: neither feet, knees nor travel say for certain which way the body faces"
+            f" (confidence {names.front_confidence:.1f}); set joint_names.front to the direction that it faces"
+        )
+    return tuple(lines)
+
+
+@text_of(JointNames)
+def joint_names_text(names: JointNames) -> tuple[str, ...]:
+    """One line a joint: the skeleton's name, the name in files, and what the joint is."""
+    wide = [max(map(len, column)) for column in (names.given, names.names)]
+    rows = zip(names.given, names.names, names.anatomy, strict=True)
+    return tuple(f"{given:{wide[0]}}  {name:{wide[1]}}  {anatomy or '–'}" for given, name, anatomy in rows)

@@ -29,6 +29,7 @@ from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.tables import tables
 from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.usd import usd
+from kinetree.tasks.structure.joint_names import joint_names
 
 
 class SkeletonParams(Params):
@@ -100,6 +101,7 @@ GRAPH = Graph.of(
         projection,
         skeleton,
         up_direction,
+        joint_names,
         glb,
         bvh,
         skeleton_json,

@@ -5,6 +5,7 @@ import ast
 import numpy as np
 import pytest
 from results.blender_reader import opened, python, run
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
@@ -32,13 +33,13 @@ def folder(body, tmp_path_factory):
 
 
 def files(skeleton):
-    return views.files(blender(glb(skeleton, Z_UP, GlbParams()), skeleton), ())
+    return views.files(blender(glb(skeleton, plain(skeleton), Z_UP, GlbParams()), skeleton), ())
 
 
 def test_script_lies_beside_the_file_that_it_reads_and_knows_the_pace(body):
     written = files(body)
     assert list(written) == ["blender/skeleton.glb", "blender/to_fbx.py"]
-    assert written["blender/skeleton.glb"] == views.files(glb(body, Z_UP, GlbParams()), ())["skeleton.glb"]
+    assert written["blender/skeleton.glb"] == views.files(glb(body, plain(body), Z_UP, GlbParams()), ())["skeleton.glb"]
     ast.parse(written["blender/to_fbx.py"])
     assert b"FPS = 10.0\n" in written["blender/to_fbx.py"]
     assert b"FPS = 30.0\n" in files(spider(fps=None))["blender/to_fbx.py"]

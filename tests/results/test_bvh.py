@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from results.plain_names import plain
 from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
@@ -24,7 +25,7 @@ UP = UpDirection(up="y", confidence=0.9)
 
 
 def text(skeleton, up_direction=UP, **params):
-    made = bvh(skeleton, up_direction, BvhParams(**{"scale": 1.0, **params}))
+    made = bvh(skeleton, plain(skeleton), up_direction, BvhParams(**{"scale": 1.0, **params}))
     return views.files(made, ())["skeleton.bvh"].decode()
 
 
@@ -56,10 +57,10 @@ def test_file_is_upright_and_in_centimetres(body, tmp_path, wanted, columns, sig
 
 
 def test_unknown_unit_is_guessed_from_the_size_and_said(body):
-    made = bvh(spider(unit=None), UP, BvhParams())
+    made = bvh(spider(unit=None), plain(spider(unit=None)), UP, BvhParams())
     assert "unit not known" in views.remarks(made)[0]
     assert "bvh.scale" in views.remarks(made)[0]
-    assert views.remarks(bvh(spider(unit=None), UP, BvhParams(scale=1.0))) == ()
+    assert views.remarks(bvh(spider(unit=None), plain(spider(unit=None)), UP, BvhParams(scale=1.0))) == ()
 
 
 def test_parser_finds_the_pace(body, tmp_path):
@@ -97,9 +98,9 @@ def test_frames_left_out_are_put_in_between(body):
     assert "Frame Time: 0.2" in lines
     rows = np.array([list(map(float, line.split())) for line in lines[lines.index("Frame Time: 0.2") + 1 :]])
     np.testing.assert_allclose(rows[11:14, :3], np.linspace(rows[10, :3], rows[13, :3], 4)[1:], atol=1e-6)
-    (remark,) = views.remarks(bvh(gaps, UP, BvhParams()))
+    (remark,) = views.remarks(bvh(gaps, plain(gaps), UP, BvhParams()))
     assert "2 frames were interpolated" in remark
-    assert views.remarks(bvh(body, UP, BvhParams())) == ()
+    assert views.remarks(bvh(body, plain(body), UP, BvhParams())) == ()
 
 
 def test_angles_are_those_of_the_turns_even_where_two_axes_are_one():

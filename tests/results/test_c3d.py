@@ -5,6 +5,7 @@ import warnings
 
 import numpy as np
 import pytest
+from results.plain_names import plain
 from results.rigged_bodies import spider
 
 from kinetree.errors import ConfigError
@@ -18,7 +19,7 @@ Z_UP = UpDirection(up="z", confidence=0.9)
 
 
 def written(skeleton, **params):
-    return views.files(c3d(skeleton, Z_UP, C3dParams(**params)), ())["skeleton.c3d"]
+    return views.files(c3d(skeleton, plain(skeleton), Z_UP, C3dParams(**params)), ())["skeleton.c3d"]
 
 
 def test_ezc3d_reads_every_joint_as_a_marker_upright_along_z_in_millimetres(tmp_path):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from results.gltf_reader import Glb as Read
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
@@ -27,7 +28,7 @@ Y_UP = UpDirection(up="y", confidence=0.9)
 
 
 def written(skeleton, up_direction=Y_UP, **params):
-    return views.files(glb(skeleton, up_direction, GlbParams(**{"scale": 1.0, **params})), ())["skeleton.glb"]
+    return views.files(glb(skeleton, plain(skeleton), up_direction, GlbParams(**{"scale": 1.0, **params})), ())["skeleton.glb"]
 
 
 def read(skeleton, up_direction=Y_UP, **params):
@@ -86,21 +87,21 @@ def test_unknown_pace_is_thirty_frames_a_second_and_said_to_be_a_guess():
     unknown = spider(fps=None, unit=None)
     assert read(unknown).times[-1] == pytest.approx(11 / 30)
     assert read(unknown).json["asset"]["extras"]["fps_is_assumed"] is True
-    (rate,) = views.remarks(glb(spider(fps=None), Y_UP, GlbParams()))
+    (rate,) = views.remarks(glb(spider(fps=None), plain(spider(fps=None)), Y_UP, GlbParams()))
     assert "30 frames a second assumed" in rate
 
 
 def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
     np.testing.assert_allclose(read(body, scale=None).pose(3)[:, :3, 3], body.positions[3] / 1000, atol=1e-8)
     np.testing.assert_allclose(read(body, scale=None).skinned(3), skinned(body)[3] / 1000, atol=1e-7)
-    assert views.remarks(glb(body, Y_UP, GlbParams())) == ()
-    assert glb(body, Y_UP, GlbParams(scale=2.0)).metres == 2.0
+    assert views.remarks(glb(body, plain(body), Y_UP, GlbParams())) == ()
+    assert glb(body, plain(body), Y_UP, GlbParams(scale=2.0)).metres == 2.0
 
 
 @pytest.mark.parametrize(("size", "unit", "metres"), [(0.1, "m", 1.0), (10, "cm", 0.01), (100, "mm", 0.001)])
 def test_unknown_unit_is_guessed_from_the_size_of_the_body_and_said(body, size, unit, metres):
     unknown = placed(body, np.eye(3), size).model_copy(update={"unit": "ell"})
-    made = glb(unknown, Y_UP, GlbParams())
+    made = glb(unknown, plain(unknown), Y_UP, GlbParams())
     assert (made.metres, made.metres_from) == (metres, "size")
     assert views.remarks(made) == (
         f"unit not known: by the size of the body, one unit is taken for 1 {unit}; set sequence.unit or glb.scale",
@@ -110,11 +111,11 @@ def test_unknown_unit_is_guessed_from_the_size_of_the_body_and_said(body, size, 
 def test_up_is_what_the_run_found_and_glb_up_goes_before_it(body):
     found = UpDirection(up="z", confidence=0.1)
     np.testing.assert_allclose(read(body, found).pose(3)[:, 1, 3], body.positions[3][:, 2], atol=2e-5)
-    assert views.remarks(glb(body, found, GlbParams())) == (
+    assert views.remarks(glb(body, plain(body), found, GlbParams())) == (
         "up direction not certain: z of the input is taken to point up; set up_direction.up",
     )
     np.testing.assert_allclose(read(body, found, up="x").pose(3)[:, 1, 3], body.positions[3][:, 0], atol=2e-5)
-    assert views.remarks(glb(body, found, GlbParams(up="x"))) == ()
+    assert views.remarks(glb(body, plain(body), found, GlbParams(up="x"))) == ()
 
 
 def test_nothing_above_the_joints_rotates_or_scales_them(body):
@@ -125,6 +126,13 @@ def test_nothing_above_the_joints_rotates_or_scales_them(body):
     assert not any("scale" in node for node in nodes)
     size = np.ptp(file.attribute("POSITION"), axis=0)
     np.testing.assert_allclose(size, np.ptp(body.vertices, axis=0)[[0, 2, 1]] / 1000, rtol=1e-5)
+
+
+def test_body_faces_the_viewer_where_its_front_is_certain(body):
+    for confidence, expected in ((0.9, body.positions[3] @ [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]), (0.1, body.positions[3])):
+        names = plain(body, front=(1, 0, 0), front_confidence=confidence)
+        file = Read(views.files(glb(body, names, Y_UP, GlbParams(scale=1.0)), ())["skeleton.glb"])
+        np.testing.assert_allclose(file.pose(3)[:, :3, 3], expected, atol=2e-5)
 
 
 def test_turns_of_a_joint_take_the_short_way_from_key_to_key(body):

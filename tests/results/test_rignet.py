@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
+from results.plain_names import plain
 from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
@@ -15,13 +16,15 @@ def body():
 
 
 def lines(skeleton):
-    rig = views.files(rignet(skeleton), ())["rignet/skeleton.txt"].decode().splitlines()
+    rig = views.files(rignet(skeleton, plain(skeleton)), ())["rignet/skeleton.txt"].decode().splitlines()
     return {word: [line.split()[1:] for line in rig if line.split()[0] == word] for word in ("joints", "root", "hier", "skin")}
 
 
 def test_every_line_is_of_a_known_kind_and_no_joint_is_missing(body):
     rig = lines(body)
-    assert sum(map(len, rig.values())) == len(views.files(rignet(body), ())["rignet/skeleton.txt"].decode().splitlines())
+    assert sum(map(len, rig.values())) == len(
+        views.files(rignet(body, plain(body)), ())["rignet/skeleton.txt"].decode().splitlines()
+    )
     assert [row[0] for row in rig["joints"]] == list(body.names)
     np.testing.assert_allclose([[float(x) for x in row[1:]] for row in rig["joints"]], body.rest)
 
@@ -44,7 +47,7 @@ def test_skin_gives_every_vertex_weights_that_sum_to_one(body):
 
 def test_mesh_beside_it_is_the_one_whose_vertices_are_numbered(body, tmp_path):
     path = tmp_path / "skeleton.obj"
-    path.write_bytes(views.files(rignet(body), ())["rignet/skeleton.obj"])
+    path.write_bytes(views.files(rignet(body, plain(body)), ())["rignet/skeleton.obj"])
     mesh = trimesh.load(path, process=False, maintain_order=True)
     np.testing.assert_allclose(mesh.vertices, body.vertices, rtol=1e-7, atol=1e-7)
     np.testing.assert_array_equal(mesh.faces, body.faces)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from results.plain_names import plain
 from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
@@ -28,14 +29,14 @@ Z_UP = UpDirection(up="z", confidence=0.9)
 def text(skeleton):
     fields = {name: getattr(skeleton, name) for name in Skeleton.model_fields}
     complete = CompleteSkeleton(**fields, interpolated=())
-    return views.files(skeleton_json(complete, Z_UP), ())["skeleton.json"].decode()
+    return views.files(skeleton_json(complete, plain(skeleton), Z_UP), ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
     content = json.loads(text(body))
     assert list(content) == [
-        "format", "unit", "fps", "up", "up_confidence", "frames", "seconds", "joints", "positions", "rotations", "bones",
-        "confidence", "interpolated",
+        "format", "unit", "fps", "up", "up_confidence", "topology", "front", "front_confidence", "frames", "seconds", "joints",
+        "positions", "rotations", "bones", "confidence", "interpolated",
     ]  # fmt: skip
     assert content["format"] == "kinetree.skeleton/2"
     assert (content["unit"], content["fps"], content["up"], content["frames"]) == ("mm", 10.0, "z", list(range(12)))
@@ -60,6 +61,17 @@ def test_rotations_and_rest_pose_carry_every_joint_to_its_position(body):
             G.append(local if p is None else G[p] @ local)
         expected = body.rest if t is None else body.positions[t]
         np.testing.assert_allclose(X, expected, atol=1e-6)
+
+
+def test_what_a_joint_is_stands_beside_its_name(body):
+    names = plain(
+        body, names=tuple("abcdefg"), anatomy=("pelvis", "", "", "", "knee_l", "", ""), topology="human", front=(0, -1, 0),
+        front_confidence=0.75,
+    )  # fmt: skip
+    content = json.loads(views.files(skeleton_json(body, names, Z_UP), ())["skeleton.json"])
+    assert [(joint["name"], joint["anatomy"]) for joint in content["joints"]][3:5] == [("d", None), ("e", "knee_l")]
+    assert (content["topology"], content["front"], content["front_confidence"]) == ("human", [0, -1, 0], 0.75)
+    assert json.loads(text(body))["front"] is None
 
 
 def test_time_is_null_where_nobody_knows_it():

@@ -5,6 +5,7 @@ import io
 
 import numpy as np
 import pytest
+from results.plain_names import plain
 from results.rigged_bodies import spider
 from scipy.signal import savgol_filter
 
@@ -22,7 +23,7 @@ def body():
 
 
 def files(skeleton, **params):
-    return views.files(tables(skeleton, TablesParams(**params)), ())
+    return views.files(tables(skeleton, plain(skeleton), TablesParams(**params)), ())
 
 
 def rows(skeleton, name, **params):
@@ -54,10 +55,10 @@ def test_motion_has_a_row_for_every_joint_in_every_frame(body):
 
 
 def test_smoothing_is_said():
-    assert views.remarks(tables(spider(), TablesParams(window=0.7, degree=2))) == (
+    assert views.remarks(tables(spider(), plain(spider()), TablesParams(window=0.7, degree=2))) == (
         "velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",
     )
-    (remark,) = views.remarks(tables(spider(fps=None), TablesParams()))
+    (remark,) = views.remarks(tables(spider(fps=None), plain(spider(fps=None)), TablesParams()))
     assert "no velocities" in remark
     assert {row[6] for row in rows(spider(fps=None), "motion")[1:]} == {""}
 

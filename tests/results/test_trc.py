@@ -1,6 +1,7 @@
 """skeleton.trc, read back line by line as OpenSim's documentation describes it."""
 
 import numpy as np
+from results.plain_names import plain
 from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
@@ -12,7 +13,7 @@ Z_UP = UpDirection(up="z", confidence=0.9)
 
 
 def lines(skeleton, **params):
-    text = views.files(trc(skeleton, Z_UP, TrcParams(**params)), ())["skeleton.trc"].decode()
+    text = views.files(trc(skeleton, plain(skeleton), Z_UP, TrcParams(**params)), ())["skeleton.trc"].decode()
     return [line.split("\t") for line in text.split("\n")]
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.errors import ConfigError
@@ -20,7 +21,7 @@ Y_UP = UpDirection(up="y", confidence=0.9)
 
 
 def written(skeleton, found=Y_UP, **params):
-    return views.files(usd(skeleton, found, UsdParams(**params)), ())["skeleton.usda"]
+    return views.files(usd(skeleton, plain(skeleton), found, UsdParams(**params)), ())["skeleton.usda"]
 
 
 @pytest.fixture

@@ -26,14 +26,21 @@ class SizeSettings(NamedTuple):
     by ratio is taken: metres below 10 units, centimetres below 316."""
 
 
-def upright_rotation(up: str, wanted: str = "y") -> Floats:
+def upright_rotation(up: str, wanted: str = "y", front: Floats | None = None) -> Floats:
     """Rotation by right angles that brings one axis to another  (ours).
 
     up      : axis that points up: x, y, z, -x, -y or -z
     wanted  : axis that it is brought to: y or z
+    front   : (xyz,) direction that the body faces, which comes as near as right angles allow to +z where y is up and to −y
+              where z is; None: nothing is rotated about the vertical
     returns : (row, xyz) for columns of coordinates
     """
     to_y = np.array(UP_ROTATIONS[up], np.float64)
+    if front is not None:
+        x, _, z = to_y @ front
+        quarters = int(np.rint(-np.arctan2(x, z) / (np.pi / 2)))
+        c, s = round(np.cos(quarters * np.pi / 2)), round(np.sin(quarters * np.pi / 2))
+        to_y = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]], np.float64) @ to_y
     return to_y if wanted == "y" else np.array(UP_ROTATIONS["z"], np.float64).T @ to_y
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from kinetree.schemas.array import Floats
 from kinetree.schemas.results.complete_skeleton import Interpolated
 from kinetree.schemas.results.skeleton_json import FORMAT, Bone, Document, InterpolatedFrame, Joint, Rest
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames, seconds
@@ -18,7 +19,7 @@ DIGITS = 9
 """Decimals of quaternions and seconds."""
 
 
-def document(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> Document:
+def document(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> Document:
     """The content of skeleton.json: joints, rest pose, positions, rotations and confidence in every frame.
 
     interpolated : the frames that were not measured
@@ -33,9 +34,12 @@ def document(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpo
         fps=skeleton.fps,
         up=up.up,
         up_confidence=up.confidence,
+        topology=names.topology,
+        front=tuple(np.round(names.front, DIGITS).tolist()) if names.front.any() else None,
+        front_confidence=names.front_confidence,
         frames=list(skeleton.frames),
         seconds=None if skeleton.fps is None else np.round(seconds(skeleton, skeleton.fps), DIGITS).tolist(),
-        joints=_joints(skeleton, B),
+        joints=_joints(skeleton, names, B),
         positions=skeleton.positions.tolist(),
         rotations=np.round(rotations, DIGITS).tolist(),
         bones=[Bone(parent=p, child=j, length=lengths[j]) for j, p in enumerate(parents) if p is not None],
@@ -44,14 +48,15 @@ def document(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpo
     )
 
 
-def _joints(skeleton: Skeleton, B: Floats) -> list[Joint]:
+def _joints(skeleton: Skeleton, names: JointNames, B: Floats) -> list[Joint]:
     """The joints with their rest pose."""
     offset = local_offsets(skeleton.rest, B, skeleton.parents).tolist()
     identity = np.broadcast_to(np.eye(3), (1, *B.shape))
     rotation = np.round(quaternions(local_rotations(identity, B, skeleton.parents))[0], DIGITS).tolist()
     return [
         Joint(
-            name=skeleton.names[j],
+            name=names.names[j],
+            anatomy=names.anatomy[j] or None,
             parent=None if skeleton.parents[j] < 0 else skeleton.parents[j],
             kind=skeleton.kinds[j],
             range=float(skeleton.degrees[j]),
@@ -61,9 +66,9 @@ def _joints(skeleton: Skeleton, B: Floats) -> list[Joint]:
     ]
 
 
-def skeleton_file(skeleton: Skeleton, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> bytes:
+def skeleton_file(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> bytes:
     """The file skeleton.json, with one line a frame, so that people and `diff` can read it."""
-    fields = document(skeleton, up, interpolated).model_dump(mode="json")
+    fields = document(skeleton, names, up, interpolated).model_dump(mode="json")
     entries = [f"  {json.dumps(name)}: {_lines(name, value)}" for name, value in fields.items()]
     return ("{\n" + ",\n".join(entries) + "\n}\n").encode()
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.results.glb import ASSUMED_FPS
+from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import Axis, guessed_metres, upright_rotation
@@ -56,13 +57,24 @@ def placed(skeleton: Skeleton, rotation: Floats, scale: float) -> Skeleton:
 
 
 def in_unit(
-    skeleton: Skeleton, found: UpDirection, up: Literal["y", "z"], scale: float | None, unit: str
+    skeleton: Skeleton, found: UpDirection, up: Literal["y", "z"], scale: float | None, unit: str, front: Floats | None = None
 ) -> tuple[Skeleton, Placement]:
     """The same body with an axis up and in a unit, and what is known or assumed of the input.
 
     up    : axis of the result that points up
     scale : length in the result of one unit of the input; None: the result is in `unit`
     unit  : as in METRES
+    front : (xyz,) direction that the body faces, which is brought to where programs look for it
     """
     known = placement(skeleton, found, metres=scale and scale * METRES[unit])
-    return placed(skeleton, upright_rotation(known.up, up), scale or known.metres / METRES[unit]), known
+    return placed(skeleton, upright_rotation(known.up, up, front), scale or known.metres / METRES[unit]), known
+
+
+def renamed(skeleton: Skeleton, joint_names: JointNames) -> Skeleton:
+    """The same body with the names that people know."""
+    return skeleton.model_copy(update={"names": joint_names.names})
+
+
+def known_front(joint_names: JointNames) -> Floats | None:
+    """(xyz,) direction that the body faces, where it is certain enough to rotate the body by it."""
+    return np.array(joint_names.front) if joint_names.front_confidence >= CERTAIN_FRONT else None

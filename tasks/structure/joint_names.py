@@ -1,0 +1,46 @@
+"""Names that people know for the joints of people and four-legged animals."""
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
+from kinetree.schemas.structure.joint_names import JointNames, JointNamesParams
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.structure.anatomical_names import Named, anatomical_names
+from kinetree.tasks.numerics.structure.anatomy import Motion, anatomy
+from kinetree.tasks.numerics.structure.name_styles import styled_names
+
+
+@task()
+def joint_names(skeleton: Skeleton, up_direction: UpDirection, params: JointNamesParams) -> JointNames:
+    """Recognises people and four-legged animals, and names their joints by place, side and front (ours)."""
+    count = len(skeleton.names)
+    body = Motion(
+        np.array(skeleton.rest),
+        np.array(skeleton.parents),
+        np.array(skeleton.positions),
+        np.array(skeleton.rotation),
+        _vector(up_direction.up),
+    )
+    front = None if params.front is None else _vector(params.front)
+    found = None if params.style == "none" else anatomy(body, front)
+    ends = np.array([kind == "leaf" for kind in skeleton.kinds])
+    named: list[Named | None] = [None] * count if found is None else anatomical_names(body, ends, found)
+    style = "kinetree" if found is None or found.topology == "quadruped" else params.style
+    return JointNames(
+        given=skeleton.names,
+        names=styled_names(named, skeleton.names, style, params.side_suffixes, params.rename),
+        anatomy=tuple("" if name is None else name.text for name in named),
+        topology="unknown" if found is None else found.topology,
+        confidence=0.0 if found is None else found.confidence,
+        front=np.zeros(3) if found is None else found.front,
+        front_confidence=0.0 if found is None else found.certainty,
+    )
+
+
+def _vector(axis: str) -> Floats:
+    """The unit vector of a signed axis."""
+    vector = np.zeros(3)
+    vector["xyz".index(axis[-1])] = -1.0 if axis.startswith("-") else 1.0
+    return vector
