@@ -263,7 +263,10 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
     pipeline = Pipeline.of({**configured, "skeleton": {"fails": True}})
     pipeline.run()
     for form in ("glb", "csv", "ply", "rignet"):
-        with pytest.raises(UnknownNodeError, match=r"from skeleton.*, .*: skeleton: stale.*; kinetree run computes"):
+        with pytest.raises(
+            UnknownNodeError,
+            match=r"from (complete_)?skeleton.* no up-to-date result: .*skeleton: stale.*; kinetree run computes",
+        ):
             export(str(tmp_path / "out"), form, tmp_path / "x")
     assert not (tmp_path / "x").exists()
 
@@ -271,7 +274,9 @@ def test_export_before_there_is_a_skeleton_says_what_is_missing(configured, tmp_
 def test_export_of_what_was_never_run_says_so(configured, tmp_path):
     shutil.rmtree(tmp_path / "out")
     (tmp_path / "walk.yaml").write_text(json.dumps(configured))
-    with pytest.raises(UnknownNodeError, match=r"from skeleton.*, which has no up-to-date result: skeleton: stale"):
+    with pytest.raises(
+        UnknownNodeError, match=r"from complete_skeleton and 2 more, which has no up-to-date result: sequence: stale"
+    ):
         export(str(tmp_path / "walk.yaml"), "glb")
     assert not (tmp_path / "out").exists()
 

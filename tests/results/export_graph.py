@@ -17,10 +17,12 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.input.hull import hull
 from kinetree.tasks.input.isosurface import isosurface
+from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.input.source import source, surface
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
+from kinetree.tasks.results.complete_skeleton import complete_skeleton
 from kinetree.tasks.results.glb import glb
 from kinetree.tasks.results.ply import ply
 from kinetree.tasks.results.rignet import rignet
@@ -99,7 +101,9 @@ GRAPH = Graph.of(
         isosurface,
         alignment,
         projection,
+        sequence,
         skeleton,
+        complete_skeleton,
         up_direction,
         joint_names,
         glb,

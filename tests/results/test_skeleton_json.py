@@ -26,10 +26,10 @@ def body():
 Z_UP = UpDirection(up="z", confidence=0.9)
 
 
-def text(skeleton):
+def text(skeleton, names=None):
     fields = {name: getattr(skeleton, name) for name in Skeleton.model_fields}
     complete = CompleteSkeleton(**fields, interpolated=())
-    return views.files(skeleton_json(complete, plain(skeleton), Z_UP), ())["skeleton.json"].decode()
+    return views.files(skeleton_json(complete, names or plain(skeleton), Z_UP), ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
@@ -68,7 +68,7 @@ def test_what_a_joint_is_stands_beside_its_name(body):
         body, names=tuple("abcdefg"), anatomy=("pelvis", "", "", "", "knee_l", "", ""), topology="human", front=(0, -1, 0),
         front_confidence=0.75,
     )  # fmt: skip
-    content = json.loads(views.files(skeleton_json(body, names, Z_UP), ())["skeleton.json"])
+    content = json.loads(text(body, names))
     assert [(joint["name"], joint["anatomy"]) for joint in content["joints"]][3:5] == [("d", None), ("e", "knee_l")]
     assert (content["topology"], content["front"], content["front_confidence"]) == ("human", [0, -1, 0], 0.75)
     assert json.loads(text(body))["front"] is None
