@@ -11,6 +11,9 @@ ASSUMED_FPS = 30.0
 """Frames a second of an animation where the sequence has no frame rate."""
 
 
+RestChoice = Literal["reference", "t", "a"]
+
+
 class GlbParams(Params):
     """Orientation and size of the body in the file."""
 
@@ -19,7 +22,12 @@ class GlbParams(Params):
     scale: float | None = Field(default=None, gt=0)
     """Metres of one unit of the input, as glTF is in metres; None: from the sequence's unit; where that is not known,
     guessed from the size of the body: m, cm or mm."""
+    rest: RestChoice = "reference"
+    """Rest pose: the body as it is in the reference frame, or a person in a T-pose or an A-pose."""
 
 
 class Glb(PlacedFile):
     """skeleton.glb: the reference mesh skinned to the animated skeleton (glTF 2.0)."""
+
+    rest: RestChoice
+    """Rest pose of the file; only a person has others than that of the reference."""

@@ -8,6 +8,7 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import upright_rotation
 from kinetree.tasks.results.formats.gltf import gltf
 from kinetree.tasks.results.formats.placement import known_front, placed, placement, renamed
+from kinetree.tasks.results.formats.rest_pose import at_rest
 from kinetree.tasks.results.formats.takes import of_takes
 
 
@@ -15,7 +16,8 @@ from kinetree.tasks.results.formats.takes import of_takes
 def glb(skeleton: CompleteSkeleton, joint_names: JointNames, up_direction: UpDirection, params: GlbParams) -> Glb:
     """Writes skeleton.glb, the reference mesh skinned to the animated skeleton, upright and in metres (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
-    named, front = renamed(skeleton, joint_names), known_front(joint_names)
-    body = placed(named, upright_rotation(known.up, front=front), known.metres)
+    named, rest = at_rest(renamed(skeleton, joint_names), joint_names, known.up, params.rest)
+    body = placed(named, upright_rotation(known.up, front=known_front(joint_names)), known.metres)
     origin = {"input_unit": skeleton.unit, "input_up": known.up, "metres_of_input_unit": known.metres}
-    return Glb.of({f"skeleton{name}.glb": gltf(own, origin) for name, own in of_takes(body).items()}, **known._asdict())
+    files = {f"skeleton{name}.glb": gltf(own, origin) for name, own in of_takes(body).items()}
+    return Glb.of(files, rest=rest, **known._asdict())

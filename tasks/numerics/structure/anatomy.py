@@ -78,6 +78,8 @@ class Anatomy(NamedTuple):
 
 
 Pair = tuple[Limb, Limb]
+APART = 0.05
+"""Distance of two innermost joints from which on they say where left is, share of the length of both limbs."""
 
 
 class _Roles(NamedTuple):
@@ -187,7 +189,7 @@ def _human_sides(body: Motion, roles: _Roles, front: Floats | None, confidence: 
     if across[0] @ across[1] < 0.0:
         arms, across[1] = (arms[1], arms[0]), -across[1]
     trunk = _in_rest(body, pelvis, _trunk(body, legs, arms))
-    ahead = np.cross(across[0] + across[1], trunk)  # the front, if the first leg is the left one
+    ahead = np.cross(across[0], trunk)  # the front, if the first leg is the left one
     ahead /= max(float(np.linalg.norm(ahead)), 1e-12)
     votes = _votes(body, legs, pelvis, ahead, 1.0, s) + [-0.5 * v for v in _bends(body, arms, pelvis, ahead, s)]
     certainty = float(np.clip(abs(sum(votes)), 0.0, 1.0))
@@ -240,9 +242,13 @@ def _quadruped_sides(body: Motion, roles: _Roles, front: Floats | None, confiden
 
 
 def _across(body: Motion, a: Limb, b: Limb) -> Floats:
-    """(frame, xyz) from the second limb of a pair to the first, between their two innermost joints."""
-    inner = range(-min(2, len(a.joints), len(b.joints)), 0)
-    return np.asarray(np.mean([body.X[:, a.joints[k]] - body.X[:, b.joints[k]] for k in inner], axis=0))
+    """(frame, xyz) from the second limb of a pair to the first, between their innermost joints.
+
+    Where those lie in one place, the next ones count too.
+    """
+    apart = [body.X[:, a.joints[k]] - body.X[:, b.joints[k]] for k in range(-min(2, len(a.joints), len(b.joints)), 0)]
+    is_wide = float(np.linalg.norm(apart[-1], axis=1).mean()) > APART * (a.length + b.length)
+    return np.asarray(apart[-1] if is_wide else np.mean(apart, axis=0))
 
 
 def _votes(body: Motion, legs: tuple[Limb, ...], base: int, ahead: Floats, knees: float, s: AnatomySettings) -> list[float]:

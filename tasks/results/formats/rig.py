@@ -35,16 +35,21 @@ def rest_frames(rest: Floats, parents: Sequence[int]) -> Floats:
     parents : (joint,) parents before children, −1 for the root
     returns : (joint, 3, 3), columns are the axes
     """
+    ahead = main_children(rest, parents)
+    B = np.empty((len(parents), 3, 3))
+    for joint, parent in enumerate(parents):
+        before = B[parent] if parent >= 0 else np.eye(3)
+        B[joint] = _rotated(before, rest[ahead[joint]] - rest[joint])
+    return B
+
+
+def main_children(rest: Floats, parents: Sequence[int]) -> tuple[int, ...]:
+    """(joint,) the child with the longest bones, all below it counted; the joint itself where there is none."""
     below = children(parents)
     reach = np.zeros(len(parents))
     for joint in reversed(range(1, len(parents))):
         reach[joint] = np.linalg.norm(rest[joint] - rest[parents[joint]]) + sum(reach[c] for c in below[joint])
-    B = np.empty((len(parents), 3, 3))
-    for joint, parent in enumerate(parents):
-        before = B[parent] if parent >= 0 else np.eye(3)
-        ahead = max(below[joint], key=lambda c: (reach[c], -c), default=joint)
-        B[joint] = _rotated(before, rest[ahead] - rest[joint])
-    return B
+    return tuple(max(below[joint], key=lambda c: (reach[c], -c), default=joint) for joint in range(len(parents)))
 
 
 def local_rotations(R: Floats, B: Floats, parents: Sequence[int]) -> Floats:
