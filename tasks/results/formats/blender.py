@@ -4,7 +4,7 @@ FBX has no open specification, and no maintained Python package writes skinned, 
 does.
 """
 
-SCRIPT = '''"""Makes skeleton.fbx and skeleton.blend of skeleton.glb, in the folder of this file.
+SCRIPT = '''"""Makes an .fbx and a .blend of every .glb in the folder of this file.
 
     blender --background --python to_fbx.py
 
@@ -19,32 +19,33 @@ import bpy
 
 FPS = @FPS@
 here = Path(__file__).resolve().parent
-bpy.ops.wm.read_factory_settings(use_empty=True)
-scene = bpy.context.scene
-scene.render.fps = max(1, round(FPS))
-scene.render.fps_base = scene.render.fps / FPS
-bpy.ops.import_scene.gltf(filepath=str(here / "skeleton.glb"))
+for model in sorted(here.glob("*.glb")):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.fps = max(1, round(FPS))
+    scene.render.fps_base = scene.render.fps / FPS
+    bpy.ops.import_scene.gltf(filepath=str(model))
 
-body = [o for o in bpy.data.objects if o.type == "ARMATURE" or any(m.type == "ARMATURE" for m in o.modifiers)]
-for other in [o for o in bpy.data.objects if o not in body]:
-    bpy.data.objects.remove(other)  # the importer's picture of a bone
-begin, end = (round(x) for x in bpy.data.actions[0].frame_range)
-scene.frame_start, scene.frame_end = begin, end
-scene.frame_set(begin)
-bpy.ops.wm.save_as_mainfile(filepath=str(here / "skeleton.blend"))
-bpy.ops.export_scene.fbx(
-    filepath=str(here / "skeleton.fbx"),
-    object_types={"ARMATURE", "MESH"},
-    apply_scale_options="FBX_SCALE_ALL",
-    add_leaf_bones=False,
-    bake_anim_use_all_actions=False,
-    bake_anim_use_nla_strips=False,
-    bake_anim_simplify_factor=0.0,
-)
-print("wrote", here / "skeleton.fbx")
+    body = [o for o in bpy.data.objects if o.type == "ARMATURE" or any(m.type == "ARMATURE" for m in o.modifiers)]
+    for other in [o for o in bpy.data.objects if o not in body]:
+        bpy.data.objects.remove(other)  # the importer's picture of a bone
+    begin, end = (round(x) for x in bpy.data.actions[0].frame_range)
+    scene.frame_start, scene.frame_end = begin, end
+    scene.frame_set(begin)
+    bpy.ops.wm.save_as_mainfile(filepath=str(model.with_suffix(".blend")))
+    bpy.ops.export_scene.fbx(
+        filepath=str(model.with_suffix(".fbx")),
+        object_types={"ARMATURE", "MESH"},
+        apply_scale_options="FBX_SCALE_ALL",
+        add_leaf_bones=False,
+        bake_anim_use_all_actions=False,
+        bake_anim_use_nla_strips=False,
+        bake_anim_simplify_factor=0.0,
+    )
+    print("wrote", model.with_suffix(".fbx"))
 '''
 
 
 def fbx_script(fps: float) -> str:
-    """The script, for an animation of `fps` frames a second; it lies beside skeleton.glb."""
+    """The script, for an animation of `fps` frames a second; it lies beside the GLB."""
     return SCRIPT.replace("@FPS@", repr(float(fps)))
