@@ -61,8 +61,12 @@ class Watch:
         """A node failed, and those below it are skipped."""
         cause = {"error": result.error, "message": result.message, "seconds": round(result.seconds, 6), "trace": result.trace}
         self._tell("failed", node=entry.label, task=entry.node.task, **cause)
-        for other in skipped:
-            self._tell("skipped", node=other.label, task=other.node.task, because=entry.label)
+        self.skip(skipped)
+
+    def skip(self, entries: Iterable[Entry]) -> None:
+        """Nodes do not run, since one that they read failed."""
+        for entry in entries:
+            self._tell("skipped", node=entry.label, task=entry.node.task, because=entry.cause)
 
     def damaged(self, entry: Entry, was: State, what: str) -> None:
         """The artifact of a node that was done lost bytes: what was told of the node is taken back, it runs again."""

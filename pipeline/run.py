@@ -262,6 +262,7 @@ class _Loop:
                 job.needs.learn(result.record)
             job.watch.finish(entry, result)
             job.watch.fresh(fresh)
+            job.watch.skip(schedule.skipped_late())
             _tell_losses(job)
         elif result.status == "failed":
             skipped = schedule.fail(entry.node, result.message)

@@ -69,6 +69,7 @@ class Schedule:
         self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
+        self._skipped_late: list[Node] = []
         self._holder: Holder = inventory(store)
         self.lay_out()
         self._holder = store  # from now on others write
@@ -303,6 +304,11 @@ class Schedule:
         found, self._losses = self._losses, []
         return found
 
+    def skipped_late(self) -> list[Entry]:
+        """What was skipped as soon as it was laid out since this was asked last: a node that it reads had failed before."""
+        found, self._skipped_late = self._skipped_late, []
+        return [self.entries[node] for node in found]
+
     def _link(self, entry: Entry) -> None:
         """Lists what a node reads; while that cannot be known, it waits for the nodes that will tell."""
         blocking: list[Node] = []
@@ -322,7 +328,7 @@ class Schedule:
         failed = next((n for n in wanted if n in self.entries and self.entries[n].state in ("failed", "skipped")), None)
         if failed is not None and entry.state != "skipped":
             entry.state, entry.cause = "skipped", self._failure(failed)
-            self._skip_below(entry.node)
+            self._skipped_late += [entry.node, *self._skip_below(entry.node)]
 
     def _failure(self, node: Node) -> str:
         """The label of the node whose failure is why `node` did not run."""

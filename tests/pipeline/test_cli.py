@@ -97,9 +97,9 @@ def test_bare_command_says_how_to_begin(kinetree):
 def test_commands_stand_in_their_sections_in_the_order_of_a_persons_work(kinetree):
     _, printed, _ = kinetree("--help")
     titles = [line for line in printed.splitlines() if re.fullmatch(r"\w[\w ]*:", line)]
-    assert titles == ["Start:", "Look:", "Take away:", "Configure:", "Make:", "Care:", "Options:"]
+    assert titles == ["Start:", "Many sequences:", "Look:", "Take away:", "Configure:", "Make:", "Care:", "Options:"]
     names = re.findall(r"^  ([a-z]+) ", printed.partition("Start:")[2].partition("Options:")[0], re.MULTILINE)
-    order = "demo run view show plan why graph tasks runs diff export plot evaluate compare reproduce config synth"
+    order = "demo run view dataset show plan why graph tasks runs diff export plot evaluate compare reproduce config synth"
     order += " silhouettes gc verify"
     assert names == order.split()
 
@@ -151,19 +151,19 @@ def test_run_says_what_it_did_and_where_the_results_are(kinetree, scans, tmp_pat
     first, *remarks, second = printed.splitlines()
     expected = "connectivity: fixed connectivity: all frames have the same 4 faces, so nothing has to be aligned"
     assert remarks == [expected]
-    assert first.startswith("done: 4 ran, 0 fresh in ")
+    assert first.startswith("done: 5 ran, 0 fresh in ")
     assert second == f"results: {tmp_path / 'walk'}"
     assert "mesh: 3 ran, 0 fresh" in complained
     code, printed, complained = kinetree("run", "walk", "--until", "connectivity")
     assert code == 0
-    assert printed.startswith("done: 0 ran, 4 fresh in ")
+    assert printed.startswith("done: 0 ran, 5 fresh in ")
 
 
 def test_run_leaves_its_account_and_its_configuration(kinetree, walked, tmp_path):
     left = json.loads((tmp_path / "walk" / "run.json").read_text())
     assert left["status"] == "done"
-    assert left["nodes"] == {"ran": 4, "fresh": 0, "failed": 0, "skipped": 0}
-    assert set(left["tasks"]) == {"mesh", "connectivity"}
+    assert left["nodes"] == {"ran": 5, "fresh": 0, "failed": 0, "skipped": 0}
+    assert set(left["tasks"]) == {"mesh", "sequence", "connectivity"}
     assert {"ran", "fresh", "failed", "seconds"} <= set(left["tasks"]["mesh"])
     assert left["failures"] == []
     assert {"seconds", "versions"} <= set(left)
@@ -252,7 +252,7 @@ def test_failed_node_is_told_and_exits_1(kinetree, scans, monkeypatch):
     monkeypatch.setattr(home, "clean", refusing)
     code, printed, complained = kinetree("run", "-i", "scans", "-o", "w", "--until", "connectivity", "--executor", "sync")
     assert code == 1
-    assert printed.startswith("failed: 2 ran, 0 fresh, 1 failed, 1 skipped")
+    assert printed.startswith("failed: 3 ran, 0 fresh, 1 failed, 1 skipped")
     assert "mesh[frame=1]: MeshError: " in complained
     code, printed, complained = kinetree("run", "w", "--until", "connectivity", "-q")
     assert (code, printed) == (1, "")
@@ -312,7 +312,7 @@ def test_plan_tells_states_and_reasons(kinetree, walked):
 def test_plan_as_json(kinetree, walked):
     plan = told(kinetree("plan", walked, "--until", "connectivity", "--json")[1])
     assert set(plan) == {"counts", "tasks", "nodes"}
-    assert plan["counts"] == {"fresh": 7}
+    assert plan["counts"] == {"fresh": 8}
     assert set(plan["nodes"][0]) == {"node", "task", "state", "reasons", "waits", "key", "artifact"}
     assert set(plan["tasks"][0]) == {"task", "over", "states", "reasons", "unknown"}
 
