@@ -24,10 +24,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
-from kinetree.pipeline import execute
-from kinetree.pipeline.history import History
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import Node, parse, project
+from kinetree.pipeline.running import execute
 from kinetree.pipeline.task import Space
 
 WORKERS = (1, 2, 4, 8, 16, 64)

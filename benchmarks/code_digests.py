@@ -28,12 +28,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from kinetree.pipeline.definitions import Code
-from kinetree.pipeline.key import HARMLESS
-from kinetree.pipeline.modules import PACKAGE
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.records import Records
-from kinetree.pipeline.statements import syntax
+from kinetree.pipeline.identity.definitions import Code
+from kinetree.pipeline.identity.key import HARMLESS
+from kinetree.pipeline.identity.modules import PACKAGE
+from kinetree.pipeline.identity.statements import syntax
+from kinetree.pipeline.storage.place import Folder
+from kinetree.pipeline.storage.records import Records
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.input.synth import write_sequence
 

@@ -92,7 +92,7 @@ def main() -> None:
 
 def computed(cell: Cell, blocks: dict[str, Any], folder: Path) -> dict[str, Made]:
     """Every node of a run in a process of its own, by label; raises CalledProcessError where it does not end well."""
-    from kinetree.pipeline.store import Store
+    from kinetree.pipeline.storage.store import Store
 
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "run.yaml").write_text(yaml.safe_dump({**blocks, "compute": cell.compute}))

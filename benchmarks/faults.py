@@ -103,7 +103,7 @@ COMMANDS = tuple(map(built_in, ("run", "plan")))
 APPLICATION = Application("faulty", "A graph to disturb.", lambda: {"toy": GRAPH}, sections=(Section("All", COMMANDS),))
 """
 MAIN = """
-from kinetree.pipeline.cli import main
+from kinetree.pipeline.command_line.cli import main
 from faulty.toy import APPLICATION
 if __name__ == "__main__":
     main(APPLICATION)

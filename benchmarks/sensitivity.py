@@ -50,10 +50,11 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from kinetree.errors import KinetreeError
-from kinetree.pipeline import execute, schedule
 from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.identity.key import code_parts, digest
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.key import code_parts, digest
+from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.running import execute
 from kinetree.tasks import METHODS
 
 NUMERICS = "kinetree.tasks.numerics"

@@ -1,7 +1,7 @@
 """What a product tells the loom about itself: its graphs, its presets, its commands. Cheap to import, and so is making one.
 
-A product makes one `Application`, passes it to `kinetree.pipeline.cli.main` in its console script and names it in the entry
-point group `kinetree.application`, so that `Pipeline.of` finds it.
+A product makes one `Application`, passes it to `kinetree.pipeline.command_line.cli.main` in its console script and names it
+in the entry point group `kinetree.application`, so that `Pipeline.of` finds it.
 """
 
 import contextlib
@@ -142,7 +142,7 @@ def _imported(place: str) -> Callable[..., Any]:
 def built_in(name: str, *examples: str) -> Command:
     """One of the loom's own commands, with examples in the product's words; raises KeyError."""
     module, summary = _BUILT_IN[name]
-    function = f"kinetree.pipeline.{module}:{name}"
+    function = f"kinetree.pipeline.command_line.{module}:{name}"
     return Command(name, summary, function, examples, takes_shortcuts=name in ("run", "plan"))
 
 

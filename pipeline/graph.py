@@ -13,7 +13,7 @@ from typing import Any
 import networkx as nx
 
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
-from kinetree.pipeline.key import code_parts, keep_code
+from kinetree.pipeline.identity.key import code_parts, keep_code
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space
 from kinetree.schemas.array import Artifact

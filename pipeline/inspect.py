@@ -15,27 +15,27 @@ from pathlib import Path
 from typing import Any, TypeVar, overload
 
 from kinetree.errors import NodesFailedError, UnknownNodeError
-from kinetree.pipeline import config as configuration
 from kinetree.pipeline.application import Application, current
-from kinetree.pipeline.config import Config
-from kinetree.pipeline.diff import difference
-from kinetree.pipeline.drawn_graph import DrawnGraph
-from kinetree.pipeline.events import Account, Listener, Watch
-from kinetree.pipeline.files import Files, Settling
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.history import History
-from kinetree.pipeline.key import artifact_digest, code_digest, digest
-from kinetree.pipeline.layout import Given
-from kinetree.pipeline.look import Difference, RunList, RunSummary, html_table
-from kinetree.pipeline.made_with import MadeWith
-from kinetree.pipeline.memory import Needs
-from kinetree.pipeline.origins import found
-from kinetree.pipeline.output import as_yaml
-from kinetree.pipeline.plan import Plan, Planned
-from kinetree.pipeline.schedule import Schedule
-from kinetree.pipeline.session import Session, Status
-from kinetree.pipeline.snapshot import Snapshot
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
+from kinetree.pipeline.inspection.diff import difference
+from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
+from kinetree.pipeline.inspection.history import History
+from kinetree.pipeline.inspection.look import Difference, RunList, RunSummary, html_table
+from kinetree.pipeline.inspection.origins import found
+from kinetree.pipeline.inspection.plan import Plan, Planned
+from kinetree.pipeline.inspection.snapshot import Snapshot
+from kinetree.pipeline.output.output import as_yaml
+from kinetree.pipeline.output.session import Session, Status
+from kinetree.pipeline.planning.layout import Given
+from kinetree.pipeline.planning.made_with import MadeWith
+from kinetree.pipeline.planning.schedule import Schedule
+from kinetree.pipeline.running.events import Account, Listener, Watch
+from kinetree.pipeline.running.memory import Needs
+from kinetree.pipeline.settings import config as configuration
+from kinetree.pipeline.settings.config import Config
+from kinetree.pipeline.storage.files import Files, Settling
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.array import Artifact
 
 A = TypeVar("A", bound=Artifact)
@@ -248,8 +248,8 @@ class Pipeline:
         schedule = there.schedule
         if schedule.is_idle:
             return
-        from kinetree.pipeline.launch import launcher
-        from kinetree.pipeline.run import run
+        from kinetree.pipeline.running.launch import launcher
+        from kinetree.pipeline.running.run import run
 
         with launcher(self.config.compute, client) as launch:
             run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NoReturn
 
 from kinetree.pipeline.application import Application, Command, Section, Shortcut, built_in
-from kinetree.pipeline.cli import main as run_command_line
+from kinetree.pipeline.command_line.cli import main as run_command_line
 
 if TYPE_CHECKING:
     from kinetree.pipeline.graph import Graph

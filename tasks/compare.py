@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 
 from kinetree.errors import ConfigError, InputError, NodesFailedError, UnknownNodeError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.snapshot import Snapshot
+from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.schemas.array import Artifact, Params
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.source import Source

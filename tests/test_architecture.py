@@ -25,7 +25,13 @@ SCHEMAS = sorted(ROOT.glob("schemas/**/*.py"))
 NUMERIC = {"numpy", "scipy", "numba", "networkx", "trimesh", "skimage"}
 READERS = {"PIL", "nrrd", "tifffile", "yaml"}
 """What reads the users' own files, beside the numbers."""
-ALONE = {"dask": "pipeline/launch.py", "distributed": "pipeline/clusters.py", "zarr": "pipeline/groups.py"}
+ALONE = {
+    "dask": "pipeline/running/launch.py",
+    "distributed": "pipeline/running/clusters.py",
+    "zarr": "pipeline/storage/groups.py",
+}
+ROOMS = ("identity", "storage", "settings", "planning", "running", "inspection", "output", "dataset", "command_line")
+"""Folders of the loom: one imports only from those before it."""
 OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
 PRODUCT = re.compile(
     r"\b(mesh|meshes|skeletons?|joints?|bones?|body|bodies|limbs?|scans?|vertex|vertices|geodesics?|kinematic|silhouettes?"
@@ -39,7 +45,7 @@ SYNTAX = {"body"}
 """Names of fields of Python's syntax trees."""
 PLOTTED = sorted(ROOT.glob("tasks/results/plots/*.py"))
 BORDER = "tasks/input/source.py"
-DOORS = ("kinetree.pipeline.files", "kinetree.pipeline.key", "kinetree.pipeline.groups")
+DOORS = ("kinetree.pipeline.storage.files", "kinetree.pipeline.identity.key", "kinetree.pipeline.storage.groups")
 """What the border alone may know of the loom."""
 
 
@@ -110,12 +116,19 @@ def test_tasks_know_their_declaration_and_only_the_source_the_world_outside() ->
 
 
 def test_the_loom_imports_no_product_and_no_mathematics() -> None:
-    for path in sorted(ROOT.glob("pipeline/*.py")):
+    for path in sorted(ROOT.glob("pipeline/**/*.py")):
         assert not {m for m in imports(path) if m.startswith(("kinetree.tasks", "kinetree.configs"))}, name(path)
         assert not {m for m in imports(path) if m.startswith("kinetree.schemas.")} - {
             m for m in imports(path) if m.startswith(("kinetree.schemas.array", "kinetree.schemas.dims"))
         }, name(path)
         assert not outside(imports(path)) & (NUMERIC - {"numpy", "networkx"}), name(path)
+
+
+def test_a_room_of_the_loom_imports_only_from_rooms_before_it() -> None:
+    assert {path.name for path in ROOT.glob("pipeline/*") if (path / "__init__.py").is_file()} == set(ROOMS)
+    for path in sorted(ROOT.glob("pipeline/*/*.py")):
+        after = ROOMS[ROOMS.index(path.parent.name) + 1 :]
+        assert not {m for m in imports(path) if m.startswith(tuple(f"kinetree.pipeline.{room}" for room in after))}, name(path)
 
 
 def texts(path: Path) -> list[str]:
@@ -128,7 +141,7 @@ def texts(path: Path) -> list[str]:
 
 def test_the_loom_says_no_word_of_the_product() -> None:
     operations = {task.name for graph in METHODS.values() for task in graph.tasks} | set(METHODS)
-    for path in sorted(ROOT.glob("pipeline/*.py")):
+    for path in sorted(ROOT.glob("pipeline/**/*.py")):
         said = set(texts(path)) - {"key.py": OURS, "bindings.py": SYNTAX, "statements.py": SYNTAX}.get(path.name, set())
         assert not {text for text in said if PRODUCT.search(text)}, name(path)
         assert not said & operations, name(path)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinetree.pipeline import cli
+from kinetree.pipeline.command_line import cli
 from kinetree.tasks.application import main
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -572,7 +572,7 @@ def test_store_whose_marker_is_damaged_is_refused(kinetree, walked):
 def test_scheduler_that_does_not_answer_is_to_be_tried_again_and_a_wrong_address_is_refused(
     kinetree, scans, monkeypatch, address, expected, words
 ):
-    from kinetree.pipeline import clusters
+    from kinetree.pipeline.running import clusters
 
     monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.2)
     code, _, complained = kinetree("run", "-i", "scans", "-o", "out", "--until", "mesh", "--scheduler", address, "-q")

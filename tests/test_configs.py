@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from kinetree.pipeline.blocks import Reading
-from kinetree.pipeline.config import Compute, checked
-from kinetree.pipeline.explain import explained
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.settings.blocks import Reading
+from kinetree.pipeline.settings.config import Compute, checked
+from kinetree.pipeline.settings.explain import explained
 from kinetree.tasks.application import APPLICATION
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"

@@ -26,11 +26,11 @@ from kinetree.errors import (
     UnknownNodeError,
 )
 from kinetree.pipeline import application, views
-from kinetree.pipeline.cli import command_line
+from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.output import write_elsewhere
-from kinetree.pipeline.ownership import MARKER
-from kinetree.pipeline.store import artifact_path
+from kinetree.pipeline.output.output import write_elsewhere
+from kinetree.pipeline.output.ownership import MARKER
+from kinetree.pipeline.storage.store import artifact_path
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.export import EXTRAS, export
 

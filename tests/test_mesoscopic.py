@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from kinetree.pipeline import Pipeline
-from kinetree.pipeline.ownership import MARKER
+from kinetree.pipeline.output.ownership import MARKER
 
 LEFT = ("report.html", "skeleton.json", "skeleton.glb", "skeleton.bvh", "segmentation.zarr", "evaluation.json", "run.json",
         "config.yaml", "store")  # fmt: skip

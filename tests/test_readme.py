@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kinetree.pipeline.cli import command_line
+from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.graph import AnyTask
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.methods import METHODS

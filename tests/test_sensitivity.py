@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinetree.pipeline import execute, schedule
+from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.running import execute
 from kinetree.tasks.numerics.registration.deformation import FitSettings
 from kinetree.tasks.numerics.structure import rotation_centres
 from kinetree.tasks.numerics.structure.part_tree import PartTreeSettings

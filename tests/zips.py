@@ -4,7 +4,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
-from kinetree.pipeline.packed import packed
+from kinetree.pipeline.storage.packed import packed
 
 
 def alter(path: Path, name: str, change: Callable[[bytes], bytes | None]) -> None:

@@ -9,8 +9,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import AsJson, out, print_json
-from kinetree.pipeline.printable import printable
+from kinetree.pipeline.command_line.options import AsJson, out, print_json
+from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
     from kinetree.schemas.results.comparison import Comparison
@@ -63,7 +63,7 @@ def _check_name(output: Path | None) -> None:
 
 def _write_page(output: Path, a: "FinishedRun", b: "FinishedRun", comparison: "Comparison") -> None:
     """Writes the page, complete or not at all; raises StoreError where it cannot be written."""
-    from kinetree.pipeline.place import Folder
+    from kinetree.pipeline.storage.place import Folder
     from kinetree.tasks.compare import scenes
     from kinetree.tasks.results.page.comparison import comparison_document
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from kinetree.pipeline.commands import compute_and_report
-from kinetree.pipeline.options import out, pipeline_of
-from kinetree.pipeline.printable import printable
+from kinetree.pipeline.command_line.commands import compute_and_report
+from kinetree.pipeline.command_line.options import out, pipeline_of
+from kinetree.pipeline.command_line.printable import printable
 
 
 def demo(

@@ -9,8 +9,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import AsJson, Set, out, pipeline_of, print_json
-from kinetree.pipeline.printable import printable
+from kinetree.pipeline.command_line.options import AsJson, Set, out, pipeline_of, print_json
+from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
     from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary

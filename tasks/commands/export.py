@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import AsJson, Set, Target, pipeline_of, print_json
-from kinetree.pipeline.printable import printable
+from kinetree.pipeline.command_line.options import AsJson, Set, Target, pipeline_of, print_json
+from kinetree.pipeline.command_line.printable import printable
 from kinetree.pipeline.suggest import nearest
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ def export(
 def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list[Path], list[str]]:
     """Where the files are, and the remarks on them."""
     from kinetree.pipeline import views
-    from kinetree.pipeline.output import write_elsewhere, write_result
-    from kinetree.pipeline.ownership import Owned
+    from kinetree.pipeline.output.output import write_elsewhere, write_result
+    from kinetree.pipeline.output.ownership import Owned
 
     schedule = pipeline.computed(task).schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]

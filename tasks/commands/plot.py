@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from kinetree.errors import ConfigError, KinetreeError
-from kinetree.pipeline.options import pipeline_of
+from kinetree.pipeline.command_line.options import pipeline_of
 
 if TYPE_CHECKING:
     from kinetree.tasks.results.plots.drawing import Fetch

@@ -7,8 +7,8 @@ import typer
 from rich.markup import escape
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import AsJson, Set, err, out, print_json
-from kinetree.pipeline.printable import printable
+from kinetree.pipeline.command_line.options import AsJson, Set, err, out, print_json
+from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
     from kinetree.tasks.reproduction.sequence import Sequence

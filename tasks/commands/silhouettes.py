@@ -27,8 +27,8 @@ def silhouettes(
 
     Files: calibration.json, and a folder of masks for every camera: cam_00/frame_0000.png, … . A run reads them back.
     """
-    from kinetree.pipeline.files import Files
-    from kinetree.pipeline.store import Store
+    from kinetree.pipeline.storage.files import Files
+    from kinetree.pipeline.storage.store import Store
     from kinetree.schemas.input.source import SourceParams
     from kinetree.tasks.input.source import source
 

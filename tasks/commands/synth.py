@@ -61,7 +61,7 @@ def synth(
 
 
 def _params(figure: str, **options: Any) -> "SynthParams":
-    from kinetree.pipeline.config import checked
+    from kinetree.pipeline.settings.config import checked
     from kinetree.schemas.input.synth import SynthParams
 
     own = figure.endswith((".yaml", ".yml"))

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.options import pipeline_of
+from kinetree.pipeline.command_line.options import pipeline_of
 
 
 def view(

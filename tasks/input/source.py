@@ -9,9 +9,9 @@ from pathlib import Path, PurePath, PurePosixPath
 import numpy as np
 
 from kinetree.errors import MeshError, SourceError, StoreError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.groups import is_array, opened_array, user_arrays
-from kinetree.pipeline.key import array_digest, digest, file_digest
+from kinetree.pipeline.identity.key import array_digest, digest, file_digest
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.groups import is_array, opened_array, user_arrays
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints

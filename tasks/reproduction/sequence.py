@@ -11,7 +11,7 @@ import yaml
 
 from kinetree.errors import InputError, NodesFailedError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.snapshot import Snapshot
+from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.schemas.structure.skeleton import Skeleton
 
 PRESETS = ("paper-2014", "default")

@@ -8,9 +8,9 @@ import pytest
 from results.rigged_bodies import spider
 from results.sequence_tables import evaluated
 
-from kinetree.pipeline.cli import command_line
-from kinetree.pipeline.dataset import Dataset
-from kinetree.pipeline.outcome import Outcome
+from kinetree.pipeline.command_line.cli import command_line
+from kinetree.pipeline.dataset.dataset import Dataset
+from kinetree.pipeline.output.outcome import Outcome
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.application import APPLICATION

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kinetree.pipeline.cli import command_line
+from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.graph import Graph
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.demo import demo

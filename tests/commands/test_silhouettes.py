@@ -5,8 +5,8 @@ import pytest
 import trimesh
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
 from kinetree.tasks.commands.silhouettes import silhouettes
 from kinetree.tasks.input.source import silhouettes as read_back

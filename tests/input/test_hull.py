@@ -6,8 +6,8 @@ from ball_views import rewrite, write_folder
 from PIL import Image
 
 from kinetree.errors import HullError, SourceError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.hull import HullParams
 from kinetree.schemas.input.source import SourceParams
 from kinetree.tasks.input.hull import hull

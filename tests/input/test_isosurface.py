@@ -8,10 +8,10 @@ import zarr
 from ball_views import CENTRE, RADIUS, write_folder
 
 from kinetree.errors import HullError
-from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.isosurface import IsosurfaceParams
 from kinetree.schemas.input.source import SourceParams
 from kinetree.tasks.input import INPUT

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinetree.errors import MeshError, SourceError
-from kinetree.pipeline.key import file_digest
+from kinetree.pipeline.identity.key import file_digest
 from kinetree.schemas.input.mesh import MeshParams
 from kinetree.schemas.input.source import Source
 from kinetree.tasks.input.mesh import mesh

@@ -8,9 +8,9 @@ import pytest
 import zarr
 
 from kinetree.errors import MeshError, SourceError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.key import artifact_digest
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.identity.key import artifact_digest
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import Source, SourceParams
 from kinetree.tasks.input.source import name, source, surface
 from kinetree.tasks.numerics.input.frame_numbers import TAKE

@@ -9,9 +9,9 @@ from shapes import sphere
 
 from kinetree.errors import InputError, SourceError
 from kinetree.pipeline import Pipeline
-from kinetree.pipeline.events import Account, Watch
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.running.events import Account, Watch
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
 from kinetree.tasks.input.source import source
 

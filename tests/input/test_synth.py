@@ -9,8 +9,8 @@ import pytest
 import trimesh
 
 from kinetree.errors import ConfigError, FigureError, SourceError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
 from kinetree.schemas.input.synth import ContactParams, SynthParams
 from kinetree.tasks.commands.synth import synth

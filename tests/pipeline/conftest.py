@@ -19,12 +19,12 @@ from typing import Any
 
 import pytest
 
+from kinetree.pipeline.identity.key import forget_code
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.key import forget_code
 
 HERE = Path(__file__).parent
 MAIN = """from kinetree.pipeline.application import Application, Section, Shortcut, built_in
-from kinetree.pipeline.cli import main
+from kinetree.pipeline.command_line.cli import main
 NAMES = "run plan dataset show why graph tasks runs diff config gc verify"
 COMMANDS = tuple(map(built_in, NAMES.split()))
 INPUT = Shortcut(("--input",), "source.input", "Where the numbers are.", is_input=True)

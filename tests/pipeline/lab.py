@@ -11,7 +11,7 @@ from typing import Any
 from pipeline.conftest import Toys
 
 from kinetree.pipeline.application import Application, Shortcut
-from kinetree.pipeline.dataset import Dataset
+from kinetree.pipeline.dataset.dataset import Dataset
 
 
 @dataclass

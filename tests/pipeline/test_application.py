@@ -13,7 +13,7 @@ import pytest
 from kinetree.errors import ConfigError, UnknownNodeError
 from kinetree.pipeline import application
 from kinetree.pipeline.application import Application, Command, Section, Shortcut, built_in, current
-from kinetree.pipeline.cli import command_line
+from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.tasks.application import APPLICATION
 

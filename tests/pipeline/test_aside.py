@@ -2,8 +2,8 @@
 
 import pytest
 
-from kinetree.pipeline.entry import Entry
-from kinetree.pipeline.schedule import Schedule
+from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.planning.schedule import Schedule
 
 LONG = '''"""A long way over all frames, and a note of each frame that only its end reads."""
 

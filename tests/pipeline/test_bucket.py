@@ -6,9 +6,9 @@ import pytest
 from s3_service import SECRET
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.gc import collect
-from kinetree.pipeline.store import Store, artifact_path
-from kinetree.pipeline.verify import verify
+from kinetree.pipeline.planning.verify import verify
+from kinetree.pipeline.storage.gc import collect
+from kinetree.pipeline.storage.store import Store, artifact_path
 
 
 @pytest.fixture

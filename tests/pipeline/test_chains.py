@@ -3,14 +3,14 @@
 import pytest
 
 from kinetree.errors import GraphError
-from kinetree.pipeline.launch import Launcher
-from kinetree.pipeline.run import run
+from kinetree.pipeline.running.launch import Launcher
+from kinetree.pipeline.running.run import run
 
 CHAIN = '''"""Frames without files, linked in a row."""
 
 from collections.abc import Mapping
 
-from kinetree.pipeline.files import Files
+from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.task import origin, task
 from kinetree.schemas.array import Artifact, Params
@@ -181,13 +181,13 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
     def submit(name, demand, url, steps, sight):
         from dask.local import SynchronousExecutor
 
-        from kinetree.pipeline.execute import execute
+        from kinetree.pipeline.running.execute import execute
 
         names.append(name.partition("-")[0])
         sent.append([step.label for step in steps])
         return SynchronousExecutor().submit(execute, url, steps, sight)
 
-    from kinetree.pipeline.events import Watch
+    from kinetree.pipeline.running.events import Watch
 
     run(schedule, Launcher(submit, lambda: 1), Watch())
     assert sent == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]

@@ -13,9 +13,9 @@ import pytest
 import yaml
 
 from kinetree.errors import KinetreeError, MeshError
-from kinetree.pipeline import cli, queries
+from kinetree.pipeline.command_line import cli, queries
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.show import statistics
+from kinetree.pipeline.inspection.show import statistics
 from kinetree.tasks.application import APPLICATION, main
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n{x} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"

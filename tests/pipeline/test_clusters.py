@@ -7,12 +7,12 @@ import pytest
 from distributed import Client, LocalCluster
 
 from kinetree.errors import ClusterError, ConfigError
-from kinetree.pipeline import clusters
-from kinetree.pipeline.clusters import cluster_of
-from kinetree.pipeline.config import Compute
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.launch import launcher
-from kinetree.pipeline.living_workers import LivingWorkers
+from kinetree.pipeline.running import clusters
+from kinetree.pipeline.running.clusters import cluster_of
+from kinetree.pipeline.running.launch import launcher
+from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.settings.config import Compute
 
 NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from kinetree.pipeline import key
-from kinetree.pipeline.code_cache import FILES_KEPT, CodeCache
+from kinetree.pipeline.identity import key
+from kinetree.pipeline.identity.code_cache import FILES_KEPT, CodeCache
 from kinetree.tasks.input.mesh import mesh
 
 TEXTS = {"a.b": "def f(): return 1\n", "a.c": "X = 2\n"}

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.blocks import Reading
-from kinetree.pipeline.config import Compute, load, with_compute
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.output import as_yaml
-from kinetree.pipeline.yaml_text import parsed
+from kinetree.pipeline.output.output import as_yaml
+from kinetree.pipeline.settings.blocks import Reading
+from kinetree.pipeline.settings.config import Compute, load, with_compute
+from kinetree.pipeline.settings.yaml_text import parsed
 from kinetree.tasks.application import APPLICATION
 
 PRESETS = Reading.of({}, APPLICATION.presets).preset_names
@@ -363,7 +363,7 @@ def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, worke
 
 
 def test_saved_configuration_is_read_back_from_the_output_folder(tmp_path):
-    from kinetree.pipeline.output import write_config
+    from kinetree.pipeline.output.output import write_config
 
     config = of({"output": str(tmp_path / "out"), "source": {"input": "x", "frames": "10:50:2"}, "sequence": {"unit": "no"}})
     write_config(config)
@@ -385,7 +385,7 @@ def test_compute_output_and_store_are_never_in_a_key(tmp_path):
 
 
 def configuration_schedule(pipeline, given):
-    from kinetree.pipeline.schedule import Schedule
+    from kinetree.pipeline.planning.schedule import Schedule
 
     return Schedule(pipeline.tasks.until(["mesh", "sequence"]), pipeline.config.params, pipeline.store, given)
 

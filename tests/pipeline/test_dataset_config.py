@@ -6,8 +6,8 @@ import pytest
 
 from kinetree.errors import ConfigError, UnknownNodeError
 from kinetree.pipeline.application import Application, Shortcut
-from kinetree.pipeline.dataset import Dataset
-from kinetree.pipeline.sequences import matches
+from kinetree.pipeline.dataset.dataset import Dataset
+from kinetree.pipeline.dataset.sequences import matches
 
 
 @pytest.fixture

@@ -14,9 +14,9 @@ from pipeline.lab import Lab
 
 from kinetree.errors import ClusterError, StoreFullError
 from kinetree.pipeline.application import Section, built_in
-from kinetree.pipeline.cli import command_line
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.workers import Workers
+from kinetree.pipeline.command_line.cli import command_line
+from kinetree.pipeline.running.workers import Workers
+from kinetree.pipeline.storage.place import Folder
 
 PAGE = Path(__file__).parents[2] / "docs" / "TIMETABLE.md"
 
@@ -216,8 +216,8 @@ def test_the_commands_of_the_page_are_those_there_are(lab):
 
 
 def test_the_file_of_the_page_is_a_data_set():
-    from kinetree.pipeline.dataset import Dataset
-    from kinetree.pipeline.yaml_text import parsed
+    from kinetree.pipeline.dataset.dataset import Dataset
+    from kinetree.pipeline.settings.yaml_text import parsed
     from kinetree.tasks.application import APPLICATION
 
     told = parsed(code_block("yaml", "# Many")[0], "page")

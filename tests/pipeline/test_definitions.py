@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinetree.pipeline.definitions import Code
+from kinetree.pipeline.identity.definitions import Code
 
 Package = dict[str, str]
 

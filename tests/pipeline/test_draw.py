@@ -5,8 +5,8 @@ import json
 import networkx as nx
 import pytest
 
-from kinetree.pipeline.draw import draw
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.inspection.draw import draw
 from kinetree.tasks import METHODS
 
 

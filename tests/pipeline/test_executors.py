@@ -6,8 +6,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from kinetree.errors import StaleWorkerError
-from kinetree.pipeline.execute import compute
-from kinetree.pipeline.parcels import steps_of
+from kinetree.pipeline.running.execute import compute
+from kinetree.pipeline.running.parcels import steps_of
 
 
 @pytest.fixture
@@ -128,7 +128,7 @@ def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
 
 def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):
     from kinetree.errors import ClusterError
-    from kinetree.pipeline import clusters
+    from kinetree.pipeline.running import clusters
 
     monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.2)
     with pytest.raises(ClusterError, match="nobody answers there"):

@@ -9,11 +9,11 @@ import pytest
 from zips import alter
 
 from kinetree.errors import DamagedArtifactError
-from kinetree.pipeline import sight
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.records import Records
-from kinetree.pipeline.schedule import MENDS
-from kinetree.pipeline.store import Store, artifact_path
+from kinetree.pipeline.planning.schedule import MENDS
+from kinetree.pipeline.running import sight
+from kinetree.pipeline.storage.place import Folder
+from kinetree.pipeline.storage.records import Records
+from kinetree.pipeline.storage.store import Store, artifact_path
 
 TERMINAL = {"finish", "fresh", "failed", "skipped"}
 

@@ -5,11 +5,11 @@ import os
 
 import pytest
 
-from kinetree.pipeline import files as remembering
-from kinetree.pipeline.files import MEMORY, Files
-from kinetree.pipeline.key import file_digest
-from kinetree.pipeline.sealed import sealed, unsealed
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.identity.key import file_digest
+from kinetree.pipeline.storage import files as remembering
+from kinetree.pipeline.storage.files import MEMORY, Files
+from kinetree.pipeline.storage.sealed import sealed, unsealed
+from kinetree.pipeline.storage.store import Store
 
 LONG_AGO = 1_000_000_000
 

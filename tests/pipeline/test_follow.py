@@ -5,8 +5,8 @@ import os
 import pytest
 
 from kinetree.errors import SourceError
-from kinetree.pipeline.files import Settling
-from kinetree.pipeline.follow import follow
+from kinetree.pipeline.command_line.follow import follow
+from kinetree.pipeline.storage.files import Settling
 
 
 def asked(settling, path):

@@ -6,8 +6,8 @@ import signal
 import pytest
 
 from kinetree.errors import UnknownNodeError
-from kinetree.pipeline.gc import collect
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.gc import collect
+from kinetree.pipeline.storage.store import Store
 
 
 def store(toys):

@@ -8,8 +8,8 @@ import networkx as nx
 import pytest
 
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
-from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.task import Previous, origin, task
 from kinetree.schemas.array import Artifact, Params
 from kinetree.tasks import METHODS

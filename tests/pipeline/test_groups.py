@@ -13,8 +13,8 @@ import zarr
 from zarr.codecs import BloscCodec, Crc32cCodec, GzipCodec, ShardingCodec, ZstdCodec
 
 from kinetree.errors import StoreError
-from kinetree.pipeline import groups
-from kinetree.pipeline.groups import ForeignArrayError, decoded, group_files, user_arrays
+from kinetree.pipeline.storage import groups
+from kinetree.pipeline.storage.groups import ForeignArrayError, decoded, group_files, user_arrays
 
 NAMES = ("vertices", "fps", "unit")
 
@@ -147,7 +147,7 @@ READ = """
 import resource, sys
 from pathlib import Path
 from kinetree.errors import InputError
-from kinetree.pipeline.groups import user_arrays
+from kinetree.pipeline.storage.groups import user_arrays
 from kinetree.tasks.numerics.input.source import ARRAYS, Frames, read_npz
 path = Path(sys.argv[1])
 import zarr, numpy  # what importing takes is no part of it

@@ -7,10 +7,10 @@ import time
 
 import pytest
 
-from kinetree.pipeline import heartbeat
-from kinetree.pipeline.gc import collect
-from kinetree.pipeline.heartbeat import beating, identity, lives
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage import heartbeat
+from kinetree.pipeline.storage.gc import collect
+from kinetree.pipeline.storage.heartbeat import beating, identity, lives
+from kinetree.pipeline.storage.store import Store
 
 
 @pytest.fixture

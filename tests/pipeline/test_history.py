@@ -5,9 +5,9 @@ import json
 import pytest
 
 from kinetree.errors import UnknownNodeError
-from kinetree.pipeline.look import RunList
-from kinetree.pipeline.reason import Work, differences
-from kinetree.pipeline.store import Record
+from kinetree.pipeline.inspection.look import RunList
+from kinetree.pipeline.planning.reason import Work, differences
+from kinetree.pipeline.storage.store import Record
 
 
 def why(toys, node, **blocks):

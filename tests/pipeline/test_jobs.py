@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 import pytest
 from pipeline.conftest import Heard
 
-from kinetree.pipeline.config import Compute
-from kinetree.pipeline.events import Watch
-from kinetree.pipeline.jobs import Job
-from kinetree.pipeline.launch import launcher
-from kinetree.pipeline.run import run_all
+from kinetree.pipeline.running.events import Watch
+from kinetree.pipeline.running.jobs import Job
+from kinetree.pipeline.running.launch import launcher
+from kinetree.pipeline.running.run import run_all
+from kinetree.pipeline.settings.config import Compute
 
 
 @dataclass

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinetree.pipeline import key
-from kinetree.pipeline.definitions import Code
-from kinetree.pipeline.key import (
+from kinetree.pipeline.identity import key
+from kinetree.pipeline.identity.definitions import Code
+from kinetree.pipeline.identity.key import (
     array_digest,
     artifact_digest,
     code_digest,
@@ -155,7 +155,7 @@ def test_keys_that_are_no_texts_are_refused():
 
 def test_digests_are_the_same_in_another_process_with_another_hash_seed():
     code = (
-        "from kinetree.pipeline.key import *;"
+        "from kinetree.pipeline.identity.key import *;"
         " print(digest({'b': 1.5, 'a': [1]}), code_digest('kinetree.schemas.input.mesh', 'Mesh'))"
     )
     seed = "1" if sys.flags.hash_randomization else "2"

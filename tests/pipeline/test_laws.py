@@ -188,7 +188,7 @@ def test_moving_and_renaming_the_input_reruns_nothing(toys, tmp_path):
 
 
 def test_where_a_file_lies_is_no_part_of_what_it_is(toys):
-    from kinetree.pipeline.key import artifact_digest
+    from kinetree.pipeline.identity.key import artifact_digest
 
     source = toys.module.Source
     assert artifact_digest(source(content="a", path="/here")) == artifact_digest(source(content="a", path="/there"))
@@ -277,7 +277,8 @@ def test_keys_are_the_same_in_every_process(toys, monkeypatch, seed):
 
 
 def test_planning_computes_and_writes_nothing(toys, monkeypatch):
-    from kinetree.pipeline import execute, files, launch
+    from kinetree.pipeline.running import execute, launch
+    from kinetree.pipeline.storage import files
 
     def refuse(*_, **__):
         raise AssertionError("planning started something")
@@ -303,7 +304,7 @@ def test_planning_an_empty_store_makes_none(toys):
 
 
 def test_files_that_settled_are_not_read_again(toys, monkeypatch):
-    from kinetree.pipeline import files
+    from kinetree.pipeline.storage import files
 
     monkeypatch.setattr(files, "SETTLED_SECONDS", -1e9)
     toys.run(until=("points",))

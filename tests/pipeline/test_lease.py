@@ -9,12 +9,12 @@ import time
 import pytest
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.heartbeat import LOST_SECONDS
-from kinetree.pipeline.lease import LEASE, Leases, holder
+from kinetree.pipeline.dataset.lease import LEASE, Leases, holder
+from kinetree.pipeline.storage.heartbeat import LOST_SECONDS
 
 TAKEN = """
 import sys, pathlib
-from kinetree.pipeline.lease import Leases
+from kinetree.pipeline.dataset.lease import Leases
 leases = Leases()
 print(leases.take(pathlib.Path(sys.argv[1])), flush=True)
 sys.stdin.read()
@@ -78,7 +78,7 @@ def test_a_holder_on_another_machine_lives_while_it_touches_its_lease(tmp_path):
 
 
 def test_a_holder_touches_its_lease(tmp_path, monkeypatch):
-    monkeypatch.setattr("kinetree.pipeline.lease.BEAT_SECONDS", 0.01)
+    monkeypatch.setattr("kinetree.pipeline.dataset.lease.BEAT_SECONDS", 0.01)
     with Leases() as mine:
         mine.take(tmp_path)
         os.utime(tmp_path / LEASE, (0, 0))

@@ -9,10 +9,10 @@ import pytest
 from distributed import Client, LocalCluster
 
 from kinetree.errors import ClusterError, GraphError
-from kinetree.pipeline.config import Compute
-from kinetree.pipeline.memory import Needs, measured
-from kinetree.pipeline.pool import Pool
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.running.memory import Needs, measured
+from kinetree.pipeline.running.pool import Pool
+from kinetree.pipeline.settings.config import Compute
+from kinetree.pipeline.storage.store import Store
 from kinetree.pipeline.task import task
 
 TOTAL = "@task()\ndef total("
@@ -131,7 +131,7 @@ def test_nodes_that_do_not_fit_together_are_not_on_one_worker_at_once(toys):
 
 
 def test_our_own_workers_declare_their_memory():
-    from kinetree.pipeline import clusters
+    from kinetree.pipeline.running import clusters
 
     assert [Compute(memory=m).memory_bytes for m in ("4GB", "512 MiB", "1.5kB", "7B")] == [4 * 10**9, 2**29, 1500, 7]
     with clusters.local(Compute(workers=1, memory="3GiB")) as client:

@@ -10,8 +10,8 @@ import pytest
 import yaml
 
 from kinetree.errors import StoreError, StoreFullError
-from kinetree.pipeline.config import load
-from kinetree.pipeline.output import write_config, write_run_json
+from kinetree.pipeline.output.output import write_config, write_run_json
+from kinetree.pipeline.settings.config import load
 from kinetree.tasks.application import APPLICATION
 
 

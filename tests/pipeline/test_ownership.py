@@ -5,10 +5,10 @@ import shutil
 import pytest
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.output import RUN_JSON
-from kinetree.pipeline.ownership import MARKER, Owned
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.session import UNRECORDED
+from kinetree.pipeline.output.output import RUN_JSON
+from kinetree.pipeline.output.ownership import MARKER, Owned
+from kinetree.pipeline.output.session import UNRECORDED
+from kinetree.pipeline.storage.place import Folder
 
 
 def test_a_folder_that_is_not_there_is_all_ours(tmp_path):

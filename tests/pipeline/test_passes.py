@@ -5,8 +5,8 @@ import signal
 
 import pytest
 
-from kinetree.pipeline.draw import draw
-from kinetree.pipeline.gc import collect
+from kinetree.pipeline.inspection.draw import draw
+from kinetree.pipeline.storage.gc import collect
 
 NUMBERS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
 FRAMES = range(6)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kinetree.errors import StoreError, StoreFullError
-from kinetree.pipeline.place import Folder
+from kinetree.pipeline.storage.place import Folder
 
 bound = pytest.mark.skipif(os.geteuid() == 0, reason="permissions do not bind root")
 

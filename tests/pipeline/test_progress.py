@@ -5,9 +5,9 @@ import io
 import pytest
 from rich.console import Console
 
-from kinetree.pipeline import progress
-from kinetree.pipeline.printable import printable
-from kinetree.pipeline.progress import LiveProgress, PlainProgress, Rows, clock
+from kinetree.pipeline.command_line import progress
+from kinetree.pipeline.command_line.printable import printable
+from kinetree.pipeline.command_line.progress import LiveProgress, PlainProgress, Rows, clock
 
 
 def events(*told):

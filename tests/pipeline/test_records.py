@@ -2,10 +2,10 @@
 
 import pytest
 
-from kinetree.pipeline.packed import packed
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.records import PACKED_FROM, Record, Records
-from kinetree.pipeline.sealed import sealed, unsealed
+from kinetree.pipeline.storage.packed import packed
+from kinetree.pipeline.storage.place import Folder
+from kinetree.pipeline.storage.records import PACKED_FROM, Record, Records
+from kinetree.pipeline.storage.sealed import sealed, unsealed
 
 KEYS = [f"{n:040x}" for n in range(PACKED_FROM)]
 

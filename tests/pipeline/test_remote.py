@@ -7,9 +7,9 @@ from typing import Annotated
 import pytest
 
 from kinetree.errors import InputError
-from kinetree.pipeline.files import Files
-from kinetree.pipeline.remote import brought, copied, found
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.remote import brought, copied, found
+from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.array import Artifact, Location
 
 

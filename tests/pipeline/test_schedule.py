@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from kinetree.errors import StoreError
-from kinetree.pipeline import schedule as module
-from kinetree.pipeline.entry import Entry
-from kinetree.pipeline.schedule import MENDS, Schedule
+from kinetree.pipeline.planning import schedule as module
+from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.planning.schedule import MENDS, Schedule
 
 HOME = Path(str(module.__file__))
 

@@ -7,13 +7,13 @@ import pytest
 from distributed import Client, LocalCluster
 
 from kinetree.errors import StoreError
-from kinetree.pipeline import sight as module
-from kinetree.pipeline.sight import Sight
-from kinetree.pipeline.store import Store
+from kinetree.pipeline.running import sight as module
+from kinetree.pipeline.running.sight import Sight
+from kinetree.pipeline.storage.store import Store
 
 ELSEWHERE = """
 from pathlib import Path
-from kinetree.pipeline import place
+from kinetree.pipeline.storage import place
 original = place.Folder.__init__
 def elsewhere(self, root, *rest, **named):
     original(self, root, *rest, **named)
@@ -22,7 +22,7 @@ place.Folder.__init__ = elsewhere
 """
 """As in a container: the same path, another folder; what is written there nobody else sees."""
 OVERLAY = """
-from kinetree.pipeline import place
+from kinetree.pipeline.storage import place
 original = place.Folder.put
 def beside(self, path, data):
     if "sight" in path:
@@ -33,7 +33,7 @@ place.Folder.put = beside
 """
 """What the run wrote can be read, what the worker writes goes elsewhere."""
 FORGETFUL = """
-from kinetree.pipeline import store
+from kinetree.pipeline.storage import store
 store.Store.write = lambda self, record: None
 """
 """The worker's records never reach the store."""

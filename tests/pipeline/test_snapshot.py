@@ -3,7 +3,7 @@
 import pytest
 
 from kinetree.errors import ConfigError, UnknownNodeError
-from kinetree.pipeline.layout import Layout
+from kinetree.pipeline.planning.layout import Layout
 
 
 def test_every_question_to_one_snapshot_lays_the_graph_out_once(toys, monkeypatch):

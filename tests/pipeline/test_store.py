@@ -13,13 +13,13 @@ import zarr
 from zarr.storage import ZipStore
 
 from kinetree.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
-from kinetree.pipeline import groups
-from kinetree.pipeline import store as stores
-from kinetree.pipeline.key import artifact_digest
-from kinetree.pipeline.packed import packed
-from kinetree.pipeline.place import Folder
-from kinetree.pipeline.sealed import sealed
-from kinetree.pipeline.store import FORMAT, MARKER, Record, Store, artifact_path
+from kinetree.pipeline.identity.key import artifact_digest
+from kinetree.pipeline.storage import groups
+from kinetree.pipeline.storage import store as stores
+from kinetree.pipeline.storage.packed import packed
+from kinetree.pipeline.storage.place import Folder
+from kinetree.pipeline.storage.sealed import sealed
+from kinetree.pipeline.storage.store import FORMAT, MARKER, Record, Store, artifact_path
 from kinetree.schemas.array import Array, Artifact, Bools, Floats, Ints
 from kinetree.schemas.dims import FRAME, VERTEX, XYZ
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
-from kinetree.pipeline.threads import blas, limited, simd
+from kinetree.pipeline.running.threads import blas, limited, simd
 
 MATRIX = np.random.default_rng(0).normal(size=(4, 4))
 
@@ -106,7 +106,7 @@ def test_numpy_on_another_processor_is_told_apart():
     usable = np.show_config(mode="dicts")["SIMD Extensions"].get("found")
     if not usable:
         pytest.skip("numpy has one instruction set here")
-    ask = [sys.executable, "-c", "from kinetree.pipeline.threads import simd; print(simd())"]
+    ask = [sys.executable, "-c", "from kinetree.pipeline.running.threads import simd; print(simd())"]
     environment = {**os.environ, "NPY_DISABLE_CPU_FEATURES": ",".join(usable)}
     less = subprocess.run(ask, env=environment, capture_output=True, check=True)
     assert less.stdout.decode().split(",")[0].strip() != simd().split(",")[0]
@@ -115,7 +115,7 @@ def test_numpy_on_another_processor_is_told_apart():
 def test_another_instruction_set_is_told_apart():
     told = {}
     for core in ("Nehalem", "Haswell"):
-        code = "import json, numpy; from kinetree.pipeline.threads import blas; print(json.dumps(blas()))"
+        code = "import json, numpy; from kinetree.pipeline.running.threads import blas; print(json.dumps(blas()))"
         environment = {**os.environ, "OPENBLAS_CORETYPE": core}
         done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
         told[core] = json.loads(done.stdout)

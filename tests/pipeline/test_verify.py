@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.gc import collect
-from kinetree.pipeline.store import MARKER, Store
-from kinetree.pipeline.verify import discard_damage, verify
+from kinetree.pipeline.planning.verify import discard_damage, verify
+from kinetree.pipeline.storage.gc import collect
+from kinetree.pipeline.storage.store import MARKER, Store
 
 FLIPS = 3
 """Bytes altered in every file of the store."""

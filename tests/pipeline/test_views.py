@@ -5,8 +5,9 @@ import sys
 import pytest
 
 from kinetree.errors import GraphError
-from kinetree.pipeline import output, views
-from kinetree.pipeline.key import code_parts
+from kinetree.pipeline import views
+from kinetree.pipeline.identity.key import code_parts
+from kinetree.pipeline.output import output
 from kinetree.schemas.array import Artifact
 from kinetree.tasks import VIEWS
 from kinetree.tasks.methods import METHODS

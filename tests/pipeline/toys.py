@@ -16,8 +16,8 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from kinetree.errors import SourceError
-from kinetree.pipeline.files import Files
 from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.task import origin, task
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Location, Params, PathLike
 from kinetree.schemas.dims import FRAME, VERTEX

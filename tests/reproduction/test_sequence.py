@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from kinetree.errors import InputError
-from kinetree.pipeline.blocks import SAVED
+from kinetree.pipeline.settings.blocks import SAVED
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.reproduction.sequence import PRESETS, Sequence
 

@@ -9,7 +9,7 @@ from results.rigged_bodies import skinned, spider
 
 from kinetree.errors import MeshError
 from kinetree.pipeline import views
-from kinetree.pipeline.key import file_digest
+from kinetree.pipeline.identity.key import file_digest
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
 from kinetree.tasks.results.formats.labels import input_labels

@@ -1,0 +1,1 @@
+"""The command line: commands, options, what people see in a terminal."""

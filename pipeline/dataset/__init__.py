@@ -1,0 +1,1 @@
+"""Many sequences with one configuration, on a timetable."""

@@ -1,0 +1,258 @@
+"""The configuration of a data set: which sequences, what all of them share, what some have of their own.
+
+sequences: takes/*          one folder or file each; or a list, or names with paths
+name: "{stem}"              how a name is made of a path
+output: results/{name}
+store: results/store        shared
+overrides: {walk_07: {task: {parameter: value}}, "dance_*": …}
+compute, on_failure, retention, and the blocks of tasks, which all sequences share; in their paths {name} and {input} stand
+for each sequence's name and path
+"""
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.application import Application
+from kinetree.pipeline.dataset.sequences import NAME, WILD, matches, sequences
+from kinetree.pipeline.settings.blocks import Reading, absolute, extended, merged, override, read_yaml, with_paths
+from kinetree.pipeline.settings.config import RUN_KEYS, Compute, Config, Origins, checked, resolved
+from kinetree.pipeline.storage.sizes import bytes_of
+from kinetree.pipeline.suggest import nearest
+
+KEYS = ("sequences", "name", "overrides", "on_failure", "retention")
+"""The keys that a data set has beside those of a single run."""
+OUTPUT = f"results/{NAME}"
+STORE = "store"
+INPUT = "{input}"
+"""Stands in paths of parameters for the sequence's own path."""
+
+
+class Retention(BaseModel):
+    """What is deleted from the store at the end of a run; without any of the first three nothing is."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    keep_last: int | None = Field(default=None, ge=1)
+    """Runs of each sequence whose results stay."""
+    keep_days: float | None = Field(default=None, ge=0)
+    """Results of runs of so many days stay as well."""
+    max_size: str | None = None
+    """Oldest results go until the store is no larger, e.g. 200GB."""
+    logs: int = Field(default=5, ge=1)
+    """Logs that are kept beside the one that is written."""
+    log_size: str = "10MB"
+    """Size from which the next run begins another log."""
+
+    @field_validator("max_size", "log_size")
+    @classmethod
+    def _is_a_size(cls, size: str | None) -> str | None:
+        if size is not None:
+            bytes_of(size)
+        return size
+
+    @property
+    def deletes(self) -> bool:
+        """Whether anything is deleted."""
+        return (self.keep_last, self.keep_days, self.max_size) != (None, None, None)
+
+
+@dataclass(frozen=True)
+class DatasetConfig:
+    """A checked data set: a configuration for every sequence, by name."""
+
+    file: str
+    """Where it was read from, for messages."""
+    root: Path
+    """The folder in which the data set's own results lie, above those of its sequences."""
+    store: Path | str
+    sequences: Mapping[str, Config]
+    inputs: Mapping[str, str]
+    """Path or pattern of every sequence."""
+    compute: Compute
+    on_failure: tuple[str, ...] = ()
+    """A program and its arguments; the path of the summary is added as the last."""
+    retention: Retention = field(default_factory=Retention)
+    notes: tuple[str, ...] = ()
+    """What is to be known, e.g. that a pattern matches nothing."""
+
+
+def load(target: str | Path | Mapping[str, Any], application: Application, sets: Iterable[str] = ()) -> DatasetConfig:
+    """The data set that a YAML file or a mapping describes.
+
+    sets   : overrides for all sequences as task.name=value
+    raises : ConfigError, naming file and key
+    """
+    reading = Reading.of(application.methods(), application.presets)
+    given, where, base = _read(target)
+    known = {task.name for graph in application.methods().values() for task in graph.tasks if task.params is not None}
+    for key in given:
+        if key not in {*known, *RUN_KEYS, *KEYS}:
+            raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), {*known, *RUN_KEYS, *KEYS})}")
+    if "sequences" not in given:
+        raise ConfigError(f"{where}: sequences is missing: say which there are, e.g. sequences: takes/*")
+    inputs, notes = sequences(given["sequences"], given.get("name", "{stem}"), base, where)
+    template = _output(given.get("output", OUTPUT), where)
+    shared = {key: value for key, value in given.items() if key not in KEYS}
+    blocks, _ = extended({**shared, "output": template}, base, where, (), reading)
+    sets = tuple(sets)
+    for text in sets:
+        override(blocks, text, reading.paths)
+    template = str(blocks["output"])
+    root = _above_name(template)
+    blocks.setdefault("store", str(root / STORE))
+    options = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
+    parameter = _input_parameter(application, blocks, where)
+    own = _overrides(given.get("overrides"), where)
+    configs: dict[str, Config] = {}
+    missing: dict[str, list[str]] = {}
+    for name, path in inputs.items():
+        mine, origins = dict(blocks), dict(options)
+        for pattern, above in own.items():
+            if fnmatchcase(name, pattern):
+                mine = merged(mine, absolute(above, base, reading.paths))
+                origins |= dict.fromkeys(_leaves(above), f"{where}: overrides.{pattern}")
+        mine = merged(_filled(mine, name, path, reading, missing), _nested(parameter, path))
+        configs[name] = resolved(mine, Origins(where, frozenset(given), origins), application, reading)
+    first = next(iter(configs.values()))
+    _refuse_overlap(configs, inputs, given["sequences"], base, where)
+    lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
+    notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
+    notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
+    retention = checked(Retention, given.get("retention") or {}, "retention", Origins(where, frozenset(given), {}))
+    hook = _hook(given.get("on_failure"), where)
+    return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, retention, tuple(notes))
+
+
+def with_compute(config: DatasetConfig, compute: Compute) -> DatasetConfig:
+    """The data set computed elsewhere or wider."""
+    moved = {name: replace(one, compute=compute) for name, one in config.sequences.items()}
+    return replace(config, sequences=moved, compute=compute)
+
+
+def _read(target: str | Path | Mapping[str, Any]) -> tuple[dict[str, Any], str, Path]:
+    if isinstance(target, Mapping):
+        return dict(target), "data set", Path.cwd()
+    path = Path(target).expanduser()
+    if not path.is_file():
+        raise ConfigError(f"{path}: there is no such file; a data set is a YAML file with the keys sequences and output")
+    return read_yaml(path), str(path), path.absolute().parent
+
+
+def _output(output: Any, where: str) -> str:
+    if not isinstance(output, str) or NAME not in output:
+        raise ConfigError(f"{where}: output: {output!r} has no {NAME}; every sequence needs a folder of its own, e.g. {OUTPUT}")
+    return output
+
+
+def _above_name(template: str) -> Path:
+    """The folder above the part of a path that differs by sequence."""
+    above, _, _ = template.partition(NAME)
+    return Path(above) if above.endswith("/") else Path(above).parent
+
+
+def _input_parameter(application: Application, blocks: Mapping[str, Any], where: str) -> tuple[str, ...]:
+    """The keys of the parameter that says what a run reads, which nothing but `sequences` may set."""
+    written = next((s.parameter for s in application.shortcuts if s.is_input), None)
+    if written is None:
+        raise ConfigError(f"{where}: {application.name} has no parameter that says what a run reads; it has no data sets")
+    keys = tuple(written.split("."))
+    value: Any = blocks
+    for key in keys:
+        value = value.get(key) if isinstance(value, Mapping) else None
+    if value:
+        raise ConfigError(f"{where}: {written}: the sequences say what is read; remove it")
+    return keys
+
+
+def _overrides(given: Any, where: str) -> dict[str, dict[str, Any]]:
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise ConfigError(f"{where}: overrides: expected names of sequences with blocks of parameters, got {given!r}")
+    for name, blocks in given.items():
+        if not isinstance(blocks, Mapping):
+            raise ConfigError(f"{where}: overrides.{name}: expected blocks of parameters, got {blocks!r}")
+        shared = [key for key in blocks if key in (*KEYS, "extends", "output", "store", "compute")]
+        if shared:
+            raise ConfigError(f"{where}: overrides.{name}: {shared[0]} is the same for all sequences; set it at the top")
+    return {str(name): dict(blocks) for name, blocks in given.items()}
+
+
+def _hook(given: Any, where: str) -> tuple[str, ...]:
+    if given is None:
+        return ()
+    if not isinstance(given, list) or not given or not all(isinstance(part, str) and part for part in given):
+        raise ConfigError(
+            f"{where}: on_failure: expected a program and its arguments as a list, e.g. [notify, --to, lab], got {given!r}; no"
+            " shell reads it"
+        )
+    return tuple(given)
+
+
+def _refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:
+    """Results must not lie where a later run would look for sequences, nor in the folder of the store."""
+    patterns = [given] if isinstance(given, str) else given if isinstance(given, list) else []
+    wild = [os.path.normpath(base / Path(p).expanduser()) for p in patterns if WILD.search(p) and "://" not in p]
+    for name, config in configs.items():
+        places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}
+        for key, place in places.items():
+            for pattern in wild:
+                found = next(
+                    (p for p in (place, *place.parents) if str(p) not in inputs.values() and matches(p, pattern)), None
+                )
+                if found is not None:
+                    raise ConfigError(
+                        f"{where}: {key} {place} lies in {found}, which the pattern {pattern} would take for a sequence; name"
+                        f" another folder, e.g. {OUTPUT}"
+                    )
+            for other, path in inputs.items():
+                if "://" not in path and place.is_relative_to(path):
+                    raise ConfigError(
+                        f"{where}: {key} {place} lies in {path}, the input of {other}; name a folder outside it, e.g. {OUTPUT}"
+                    )
+        if isinstance(config.store, Path) and config.output.is_relative_to(config.store):
+            raise ConfigError(
+                f"{where}: the output of {name}, {config.output}, lies in the store; name the store otherwise with store:"
+            )
+
+
+def _filled(blocks: dict[str, Any], name: str, path: str, reading: Reading, missing: dict[str, list[str]]) -> dict[str, Any]:
+    """The blocks with {name} and {input} in paths replaced; a parameter whose file is not there is left out and noted."""
+
+    def filled(written: str) -> str:
+        if INPUT in written:
+            place = path + written.partition(INPUT)[2].replace(NAME, name)
+        elif NAME in written:
+            place = written.replace(NAME, name)
+        else:
+            return written
+        if written != blocks.get("output") and not Path(place).exists():
+            missing.setdefault(written[written.find("{") :], []).append(name)
+            return ""
+        return place
+
+    return with_paths(blocks, reading.paths, filled)
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _leaves(blocks: Mapping[str, Any]) -> Iterable[str]:
+    for key, value in blocks.items():
+        yield str(key)
+        if isinstance(value, Mapping):
+            yield from (f"{key}.{inner}" for inner in _leaves(value))
+
+
+def _nested(keys: tuple[str, ...], value: Any) -> dict[str, Any]:
+    for key in reversed(keys):
+        value = {key: value}
+    return dict(value)

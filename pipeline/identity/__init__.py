@@ -1,0 +1,1 @@
+"""Identity: of values, of code, of what a node will compute."""

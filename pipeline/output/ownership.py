@@ -1,0 +1,61 @@
+"""Whose the files of an output folder are: what another program or a person put there is never replaced."""
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from kinetree.errors import StoreError
+from kinetree.pipeline.settings.blocks import SAVED
+from kinetree.pipeline.storage.place import Folder
+
+MARKER = ".files.json"
+"""Lists what runs have left in the folder it lies in."""
+HEAD = "# The configuration of the last run into this folder; what is not here is the default.\n"
+"""First line of the configuration that a run leaves; a folder that has it is an output folder, also where the list was lost."""
+
+
+@dataclass(eq=False)
+class Owned:
+    """The names directly in an output folder that runs have left there, or are about to."""
+
+    folder: Path
+    names: set[str] | None
+    """None where all that is there is a run's: the folder was copied without its list."""
+
+    @staticmethod
+    def of(folder: Path) -> "Owned":
+        """What is known of a folder, which need not exist."""
+        place = _place(folder)
+        try:
+            listed = json.loads(place.get(MARKER) or b"")["files"]
+            return Owned(folder, {str(name) for name in listed})
+        except (ValueError, KeyError, TypeError):
+            is_output = (place.get(SAVED) or b"").startswith(HEAD.encode())
+            return Owned(folder, None if is_output else set())
+
+    def claim(self, paths: Iterable[str]) -> None:
+        """Lists what a run is about to write, so that the next run knows it again even if this one is killed.
+
+        paths  : relative to the folder; what lies in a folder in it is listed by that folder
+        raises : StoreError where something is there that no run has left, or where the list cannot be written
+        """
+        wanted = {path.partition("/")[0] for path in paths}
+        was_lost = self.names is None
+        if self.names is None:
+            self.names = {name for name in _place(self.folder).names("") if not name.startswith(".")}
+        new = sorted(wanted - self.names)
+        foreign = [name for name in new if (self.folder / name).exists() or (self.folder / name).is_symlink()]
+        if foreign:
+            more = f" and {', '.join(foreign[1:])}" if foreign[1:] else ""
+            raise StoreError(
+                f"output folder {self.folder}: no run has left {foreign[0]}{more} there, and a run would replace what is;"
+                " move it away or name another folder with --output; what is computed is kept"
+            )
+        if new or was_lost:
+            self.names.update(new)
+            _place(self.folder).put(MARKER, json.dumps({"files": sorted(self.names)}, indent=1).encode())
+
+
+def _place(folder: Path) -> Folder:
+    return Folder(folder, "output folder", beside="")

@@ -1,0 +1,398 @@
+"""Which nodes there are, which are fresh, which are stale and why, and which may run next.
+
+A schedule is laid out as far as it is known: where a fan-out depends on data that is not there yet (the intervals of a
+sequence), its nodes appear when that data does, so that running is a fixpoint of laying out and completing. Planning is a
+schedule nobody completes; it computes nothing.
+"""
+
+import heapq
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+
+from kinetree.errors import DamagedArtifactError, GraphError, StoreError
+from kinetree.pipeline.graph import AnyTask, Graph
+from kinetree.pipeline.identity.key import artifact_digest, code_digest, code_parts, node_key
+from kinetree.pipeline.node import Node, label
+from kinetree.pipeline.planning.entry import DONE, Entry, Loss, State
+from kinetree.pipeline.planning.layout import Given, Layout, T
+from kinetree.pipeline.planning.made_with import EVERY_VERSION_TRUSTED, MadeWith
+from kinetree.pipeline.planning.reason import Reason, Recall, Work, differences, never_ran
+from kinetree.pipeline.storage.inventory import Holder, inventory
+from kinetree.pipeline.storage.store import Record, Store
+from kinetree.pipeline.task import Argument
+from kinetree.schemas.array import Artifact, Index, Params
+
+Links = Mapping[str, Mapping[Index, str]]
+"""Digests of artifacts that another graph made, by task name and index."""
+MENDS = 3
+"""How often a node is computed again because its artifact is damaged, before the disk is to blame."""
+
+
+class Schedule:
+    """The nodes of one graph over one sequence; nobody else changes their entries.
+
+    A run takes nodes with `ready`, sends them with `send` and tells what became of each with `complete`, `fail`, `put_back`
+    or `mend`.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        params: Mapping[str, Params],
+        store: Store,
+        given: Given,
+        *,
+        force: Iterable[str] = (),
+        recall: Recall = lambda _: "nothing",
+        distrusted: MadeWith = EVERY_VERSION_TRUSTED,
+        links: Links = MappingProxyType({}),
+    ) -> None:
+        self.graph = graph
+        self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
+        self.store = store
+        self.given = given
+        self.links = links
+        self.force = frozenset(force)
+        self.recall = recall
+        self.distrusted = distrusted
+        self.entries: dict[Node, Entry] = {}
+        self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
+        self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
+        self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
+        self._depth = {name: n - len(graph.tasks) * (name in graph.aside) for name, n in self._rank.items()}
+        self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
+        self._unlisted: dict[Node, None] = {}
+        self._ready: list[tuple[int, Index, Node]] = []
+        self._values: dict[Node, Artifact] = {}
+        self._shaping = {t.name for t in graph.openers.values()}
+        self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
+        self.blocked: dict[str, tuple[Node, ...]] = {}
+        self._losses: list[Loss] = []
+        self._skipped_late: list[Node] = []
+        self._holder: Holder = inventory(store)
+        self.lay_out()
+        self._holder = store  # from now on others write
+        self._losses.clear()  # nothing was told of these nodes yet
+
+    def lay_out(self) -> list[Node]:
+        """Adds every node whose index is known by now, links every node whose inputs are; returns what is fresh at once."""
+        fresh: list[Node] = []
+        for task in self.graph.tasks:
+            if task.is_origin:
+                self._accept(task)
+                continue
+            for each in (task, *self.graph.behind(task)):  # what is read at a previous member may come later in the graph
+                self._list(each)
+            unlisted = [n for n in self._unlisted if n.task == task.name]
+            for node in unlisted:
+                self._link(self.entries[node])
+            fresh += self._settle_all(n for n in unlisted if n not in self._unlisted and not self.entries[n].waits)
+        return fresh
+
+    def _list(self, task: AnyTask) -> None:
+        indices, self.blocked[task.name] = self._layout.indices(task.over)
+        for node in (Node(task.name, index) for index in indices):
+            if node not in self.entries:
+                self.entries[node] = Entry(node, task, label(node, task.over))
+                self._unlisted[node] = None
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether everything is up to date, so that nothing has to be computed or stored."""
+        return all(entry.state == "fresh" for entry in self.entries.values()) and not any(self.blocked.values())
+
+    def ready(self) -> Iterator[Entry]:
+        """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next.
+
+        What little waits for goes last: it fills the time in which nothing else is ready.
+        """
+        while self._ready:
+            entry = self.entries[heapq.heappop(self._ready)[2]]
+            if entry.state == "stale":
+                entry.state = "running"
+                yield entry
+
+    def deepest(self) -> float | None:
+        """How deep in the graph the next ready node stands, 0 to 1; None where no node is ready."""
+        while self._ready and self.entries[self._ready[0][2]].state != "stale":
+            heapq.heappop(self._ready)
+        return self._rank[self._ready[0][2].task] / len(self._rank) if self._ready else None
+
+    def send(self, entry: Entry) -> list[Entry]:
+        """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
+
+        What little waits for does not travel with what much waits for, and a node whose task has a limit of time travels alone,
+        since time is taken of the whole piece.
+        An artifact of it that was found damaged is removed first, so that it is made again.
+        returns : these nodes, each after those of them that it reads
+        """
+        self._discard_damaged(entry)
+        parcel = [entry]
+        inside = {entry.node}
+        for member in parcel:
+            if not entry.node.at or entry.task.timeout is not None:
+                break
+            for node in self._dependents[member.node]:
+                other = self.entries[node]
+                here = node.at == entry.node.at and other.task.over == entry.task.over and other.task.timeout is None
+                if here and other.state == "waits" and node not in inside and self._goes_along(other, entry):
+                    if node not in self._unlisted and other.waits <= inside:
+                        inside.add(node)
+                        parcel.append(other)
+        parcel.sort(key=lambda e: self._rank[e.node.task])
+        for member in parcel:
+            member.state = "running"
+        return parcel
+
+    def _goes_along(self, other: Entry, first: Entry) -> bool:
+        return other.task.name not in self.graph.aside or first.task.name in self.graph.aside
+
+    def complete(self, node: Node, key: str, artifact: str, record: Record | None, *, ran: bool) -> list[Entry]:
+        """A node has its artifact: its dependents settle, what it opens is laid out; returns what turned out fresh."""
+        entry = self.entries[node]
+        entry.key, entry.artifact, entry.record = key, artifact, record
+        entry.state = "ran" if ran else "fresh"
+        fresh = self._settle_all(self._released(node))
+        if self._shaping & {node.task, *(n.task for n in fresh)}:
+            fresh += self.lay_out()
+        return [self.entries[n] for n in fresh if self.entries[n].state == "fresh"]
+
+    def fail(self, node: Node, cause: str) -> list[Node]:
+        """A node failed: everything that waits for it is skipped; returns what was."""
+        self.entries[node].state, self.entries[node].cause = "failed", cause
+        return self._skip_below(node)
+
+    def _skip_below(self, node: Node) -> list[Node]:
+        skipped: list[Node] = []
+        queue = deque([node])
+        while queue:
+            for dependent in self._dependents[queue.popleft()]:
+                entry = self.entries[dependent]
+                if entry.state not in ("skipped", "failed"):
+                    entry.state, entry.cause = "skipped", self._failure(node)
+                    skipped.append(dependent)
+                    queue.append(dependent)
+        return skipped
+
+    def put_back(self, node: Node) -> None:
+        """A node that was sent was not computed, since one it travelled with was not: it waits for that one again."""
+        if self.entries[node].state == "running":  # and not skipped by now
+            self.entries[node].state = "waits"
+
+    def mend(self, node: Node, artifact: str, what: str) -> list[tuple[Entry, State]] | None:
+        """A node could not read an input: whoever made it makes it again, and the node waits for that.
+
+        artifact : digest of the input; what : what is wrong with it
+        returns  : the nodes that are to run again, and what each was; None where that cannot be or was too often
+        raises   : StoreError where no node makes it
+        """
+        entry = self.entries[node]
+        makers = [n for n, other in self.entries.items() if other.artifact == artifact and not other.task.is_origin]
+        if not makers and any(other.artifact == artifact and other.task.is_linked for other in self.entries.values()):
+            self.store.discard(artifact)  # the graph that made it makes it again
+            return None
+        if not makers:
+            raise StoreError(f"{entry.label}: artifact {artifact[:12]} {what} and nothing here makes it")
+        if entry.state == "skipped":
+            return []
+        redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
+        if any(maker.redone >= MENDS for maker, _ in redone):
+            return None
+        for maker, _ in redone:
+            self._redo(maker.node, what)
+        entry.state = "waits"
+        entry.waits.update(makers)
+        for other in makers:
+            self._dependents[other][node] = None
+        return redone
+
+    def _discard_damaged(self, entry: Entry) -> None:
+        """Removes what was found damaged, unless another node that makes the same has mended it already."""
+        if entry.damaged is not None:
+            try:
+                self.store.read(entry.task.returns, entry.damaged).arrays()
+            except DamagedArtifactError:
+                self.store.discard(entry.damaged)
+            entry.damaged = None
+
+    def _redo(self, node: Node, what: str) -> None:
+        """A node's artifact turned out to be damaged: it runs again, and what was to read it waits for it again."""
+        entry = self.entries[node]
+        entry.redone += 1
+        self._values.pop(node, None)
+        entry.state, entry.reasons, entry.damaged = "stale", (Reason("artifact", what),), entry.artifact
+        heapq.heappush(self._ready, (-self._depth[node.task], node.at, node))
+
+    def value(self, node: Node) -> Artifact:
+        """The artifact of a node that has one, arrays read lazily."""
+        entry = self.entries[node]
+        if entry.task.is_origin and not entry.task.is_linked:
+            return self.given[node.task][node.at]
+        if entry.artifact is None:
+            raise KeyError(node)
+        if node not in self._values:
+            self._values[node] = self.store.read(entry.task.returns, entry.artifact)
+        return self._values[node]
+
+    def work(self, entry: Entry) -> Work:
+        """All that decides what a node with known inputs computes."""
+        inputs = [
+            {
+                "argument": argument.name,
+                "form": argument.form,
+                "nodes": [self.entries[n].label for n in nodes],
+                "artifacts": [self.entries[n].artifact for n in nodes],
+            }
+            for argument, nodes in entry.inputs or ()
+        ]
+        return Work(
+            self.params.get(entry.node.task, {}),
+            code_parts(entry.task.module, entry.task.name),
+            inputs,
+            self.asked_index(entry),
+        )
+
+    @staticmethod
+    def asked_index(entry: Entry) -> dict[str, int] | None:
+        """A node's index by dimension where its task asks for it, else None."""
+        return dict(zip(entry.task.over, entry.node.at, strict=True)) if entry.task.asks_index else None
+
+    def numbers(self, entry: Entry, argument: Argument, nodes: Sequence[Node]) -> tuple[int, ...] | None:
+        """The member numbers by which a task sees what it gathers, None where it does not see them."""
+        if argument.form != "mapping":
+            return None
+        place = self.graph.numbered(entry.task, argument)
+        return tuple(node.at[place] for node in nodes)
+
+    def dependents(self, node: Node) -> Sequence[Node]:
+        """The nodes that read this one or are laid out by it."""
+        return tuple(self._dependents[node])
+
+    def _accept(self, task: AnyTask) -> None:
+        for index, digest in self.links.get(task.name, {}).items():
+            node = Node(task.name, index)
+            made = Entry(node, task, label(node, task.over), state="fresh", inputs=(), artifact=digest)
+            self.entries.setdefault(node, made)
+        for index, artifact in self.given.get(task.name, {}).items():
+            node = Node(task.name, index)
+            if node not in self.entries:
+                entry = Entry(node, task, label(node, task.over), state="fresh", inputs=())
+                entry.artifact = artifact_digest(artifact)
+                self.entries[node] = entry
+
+    def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
+        """What an opener or a traversal answers, None while it is not there (or no longer readable)."""
+        entry = self.entries.get(node)
+        if entry is None or entry.state not in DONE:
+            return None
+        try:
+            return question(self.value(node))
+        except DamagedArtifactError as error:
+            self.lose(entry, error.what)
+            return None
+
+    def lose(self, entry: Entry, what: str) -> None:
+        """The artifact of a node that was done is not there any more: it runs again, or fails where it did too often."""
+        was, gives_up = entry.state, entry.redone >= MENDS
+        if not gives_up:
+            self._redo(entry.node, what)
+        self._losses.append(Loss(entry, was, what, tuple(self.fail(entry.node, what)) if gives_up else None))
+
+    def losses(self) -> list[Loss]:
+        """What was lost since this was asked last, in that order."""
+        found, self._losses = self._losses, []
+        return found
+
+    def skipped_late(self) -> list[Entry]:
+        """What was skipped as soon as it was laid out since this was asked last: a node that it reads had failed before."""
+        found, self._skipped_late = self._skipped_late, []
+        return [self.entries[node] for node in found]
+
+    def _link(self, entry: Entry) -> None:
+        """Lists what a node reads; while that cannot be known, it waits for the nodes that will tell."""
+        blocking: list[Node] = []
+        inputs: list[tuple[Argument, tuple[Node, ...]]] = []
+        for argument in entry.task.arguments:
+            nodes, blocked = self._layout.reads(entry.task, entry.node.at, argument)
+            inputs.append((argument, nodes))
+            blocking.extend(blocked)
+        wanted = blocking or [node for _, nodes in inputs for node in nodes]
+        entry.waits = {n for n in wanted if n not in self.entries or self.entries[n].state not in DONE}
+        for node in wanted:
+            self._dependents[node][entry.node] = None
+        if not blocking:
+            self._refuse_missing(entry, wanted)
+            entry.inputs = tuple(inputs)
+            del self._unlisted[entry.node]
+        failed = next((n for n in wanted if n in self.entries and self.entries[n].state in ("failed", "skipped")), None)
+        if failed is not None and entry.state != "skipped":
+            entry.state, entry.cause = "skipped", self._failure(failed)
+            self._skipped_late += [entry.node, *self._skip_below(entry.node)]
+
+    def _failure(self, node: Node) -> str:
+        """The label of the node whose failure is why `node` did not run."""
+        entry = self.entries[node]
+        return entry.cause if entry.state == "skipped" else entry.label
+
+    def _refuse_missing(self, entry: Entry, wanted: Sequence[Node]) -> None:
+        for node in wanted:
+            if node not in self.entries:
+                name = label(node, self.graph.by_name[node.task].over)
+                raise GraphError(f"{entry.label} ({entry.task.where}) reads {name}, which does not exist")
+
+    def _settle_all(self, nodes: Iterable[Node]) -> list[Node]:
+        """Settles nodes whose inputs are all there, and on from those that turn out fresh; returns these."""
+        fresh: list[Node] = []
+        queue = deque(nodes)
+        while queue:
+            node = queue.popleft()
+            if self.entries[node].state == "waits" and self._settle(self.entries[node]):
+                fresh.append(node)
+                queue.extend(self._released(node))
+        return fresh
+
+    def _released(self, node: Node) -> list[Node]:
+        """The dependents that waited for nothing but this node."""
+        released = []
+        for dependent in self._dependents[node]:
+            entry = self.entries[dependent]
+            entry.waits.discard(node)
+            if not entry.waits and dependent not in self._unlisted and entry.state == "waits":
+                released.append(dependent)
+        return released
+
+    def _settle(self, entry: Entry) -> bool:
+        """Computes a node's key and asks the store; True where the node is fresh."""
+        work = self.work(entry)
+        identity = [
+            [a.name, a.form, list(told["artifacts"]), self.numbers(entry, a, nodes)]
+            for (a, nodes), told in zip(entry.inputs or (), work.inputs, strict=True)
+        ]
+        index = entry.node.at if entry.task.asks_index else None
+        entry.key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
+        record = self._holder.record(entry.key)
+        if record is not None and not self._asked_again(entry, record) and self._holder.holds(record):
+            entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
+            return True
+        entry.state, entry.reasons = "stale", self._reasons(entry, work, record)
+        heapq.heappush(self._ready, (-self._depth[entry.node.task], entry.node.at, entry.node))
+        return False
+
+    def _asked_again(self, entry: Entry, record: Record) -> bool:
+        """Whether somebody wants this node computed anew though its result is up to date."""
+        return entry.node.task in self.force or self.distrusted(record) is not None
+
+    def _reasons(self, entry: Entry, work: Work, record: Record | None) -> tuple[Reason, ...]:
+        if record is not None and not self._holder.holds(record):
+            return (Reason("artifact", "missing or damaged"),)
+        if entry.node.task in self.force:
+            return (Reason("forced"),)
+        if record is not None and (versions := self.distrusted(record)):
+            return (Reason("made with", versions),)
+        then = self.recall(entry.label)
+        if then == "nothing":
+            return (never_ran(),)
+        if then == "lost":
+            return (Reason("artifact", "its record is missing or damaged"),)
+        return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)

@@ -1,0 +1,1 @@
+"""Parcels of nodes out to workers, results back."""

@@ -1,0 +1,307 @@
+"""Where parcels are computed on dask's distributed scheduler: workers of this machine, or any scheduler's address."""
+
+import asyncio
+import concurrent.futures
+import contextlib
+import importlib
+import logging
+import math
+import signal
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, get_worker, performance_report
+
+from kinetree.errors import ClusterError, ConfigError, LostWorkerError
+from kinetree.errors.small_text import small_json, small_text
+from kinetree.pipeline.running.execute import Result, execute
+from kinetree.pipeline.running.living_workers import FOLLOW_SECONDS, LivingWorkers
+from kinetree.pipeline.running.parcels import Demand
+from kinetree.pipeline.settings.config import Compute
+
+CONNECT_SECONDS = 10
+SCHEDULER_FILE_BYTES = 2**20
+ALLOWED_DEATHS = 1
+"""How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
+REPLACE_SECONDS = 30.0
+"""Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
+MEMORY = "memory"
+"""The resource of dask that says how many bytes a worker has for nodes."""
+
+
+@contextlib.contextmanager
+def local(compute: Compute) -> Iterator[Client]:
+    """Processes of this machine, one thread each, gone when the block ends, however it ends."""
+    workers, memory = compute.worker_count, compute.memory_bytes
+    with contextlib.ExitStack() as stack:
+        cluster = stack.enter_context(
+            LocalCluster(
+                n_workers=0,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=memory or 0,
+                resources={MEMORY: memory} if memory else {},
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
+            )
+        )
+        client = stack.enter_context(Client(cluster))
+        client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
+        cluster.scale(workers)
+        stack.enter_context(_kept_up(cluster, workers))
+        try:
+            yield client
+        except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
+            cluster.sync(_kill, cluster)
+            raise
+
+
+@contextlib.contextmanager
+def _kept_up(cluster: LocalCluster, workers: int) -> Iterator[None]:
+    """Replaces our own workers where none is left: one that dies while it starts is not started again by its nanny."""
+    keeping = asyncio.run_coroutine_threadsafe(_keep_up(cluster, workers), cluster.loop.asyncio_loop)
+    try:
+        yield
+    finally:
+        keeping.cancel()
+
+
+async def _keep_up(cluster: LocalCluster, workers: int) -> None:
+    empty = 0.0
+    while True:
+        await asyncio.sleep(FOLLOW_SECONDS)
+        empty = 0.0 if cluster.scheduler.workers else empty + FOLLOW_SECONDS
+        if empty > REPLACE_SECONDS:
+            empty = 0.0
+            cluster.scale(0)
+            while cluster.workers:  # names are given anew once their workers are gone
+                await asyncio.sleep(FOLLOW_SECONDS)
+            cluster.scale(workers)
+
+
+@contextlib.contextmanager
+def connected(compute: Compute, client: Client | None = None) -> Iterator[Client]:
+    """The client handed in, or one of the cluster that the configuration names; raises ClusterError, ConfigError."""
+    with _quiet(), contextlib.ExitStack() as stack:
+        if client is None and (compute.scheduler or compute.scheduler_file):
+            client = stack.enter_context(at(compute))
+        elif client is None and compute.cluster:
+            client = stack.enter_context(started(compute))
+        elif client is None:
+            client = stack.enter_context(local(compute))
+        if compute.performance_report is not None:
+            if find_spec("bokeh") is None:
+                raise ConfigError("--performance-report: bokeh is not installed; pip install 'kinetree[cluster]'")
+            stack.enter_context(client.as_current())
+            stack.enter_context(performance_report(filename=compute.performance_report))
+        yield client
+
+
+@contextlib.contextmanager
+def at(compute: Compute) -> Iterator[Client]:
+    """A scheduler that somebody else runs; raises ClusterError where nobody answers."""
+    asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
+    try:
+        client = Client(compute.scheduler or _left_address(Path(str(compute.scheduler_file))), timeout=CONNECT_SECONDS)
+    except (ValueError, KeyError, TypeError) as error:
+        raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
+    except (OSError, TimeoutError) as error:
+        raise ClusterError(
+            f"{asked}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
+            " check the address and that the scheduler runs (dask scheduler), or leave the option out"
+        ) from error
+    with client:
+        yield client
+
+
+def _left_address(file: Path) -> str:
+    """What a scheduler left in its file; raises OSError where the file is not there yet."""
+    file.stat()
+    held = small_json(small_text(file, ConfigError, SCHEDULER_FILE_BYTES), str(file), ConfigError)
+    return str(held["address"])
+
+
+@contextlib.contextmanager
+def started(compute: Compute) -> Iterator[Client]:
+    """Workers that a class of the configuration starts, gone when the block ends."""
+    with contextlib.ExitStack() as stack:
+        cluster = stack.enter_context(cluster_of(compute))
+        if compute.adapt is not None:
+            cluster.adapt(minimum=compute.adapt[0], maximum=compute.adapt[1])
+        else:
+            cluster.scale(compute.workers or 1)
+        yield stack.enter_context(Client(cluster))
+
+
+def cluster_of(compute: Compute) -> Any:
+    """The cluster that a configuration names by class and options; raises ConfigError, ClusterError."""
+    module, _, name = str(compute.cluster).partition(":")
+    try:
+        made = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise ConfigError(f"compute.cluster {compute.cluster}: {error}; pip install 'kinetree[cluster]'") from None
+    try:
+        return made(**compute.options)
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"compute.options: {compute.cluster} refuses them: {error}") from None
+    except (OSError, RuntimeError) as error:
+        raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
+
+
+@contextlib.contextmanager
+def followed(client: Client, compute: Compute, *, is_ours: bool = False) -> Iterator[LivingWorkers]:
+    """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not.
+
+    is_ours : whether they are started with the memory that the configuration names
+    """
+    wanted, seconds = compute.wanted_workers
+    workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0)
+    client.subscribe_topic(_topic(client), workers.hear_begun)
+    following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
+    try:
+        until = time.monotonic() + seconds
+        while workers.count < wanted or not workers.is_known:
+            if time.monotonic() > until and workers.is_known:
+                raise ClusterError(
+                    f"--wait-workers {wanted}: {workers.count} workers are there after {seconds:g} s; start more, or wait"
+                    " longer (--wait-workers N,SECONDS)"
+                )
+            if not workers.is_known:
+                workers.check()
+            time.sleep(0.02)
+        yield workers
+    finally:
+        following.cancel()
+
+
+async def _follow(client: Client, workers: LivingWorkers) -> None:
+    memory: dict[str, int] = {}
+    known: set[str] = set()
+    while True:
+        with contextlib.suppress(OSError, TimeoutError):  # a scheduler that does not answer is the client's to notice
+            threads = await client.scheduler.ncores()
+            if set(threads) != known:  # all that is known of many workers is much to send four times a second
+                told = (await client.scheduler.identity(n_workers=-1))["workers"]
+                memory = {a: int(w["resources"][MEMORY]) for a, w in told.items() if MEMORY in w["resources"]}
+                known = set(threads)
+            workers.hear(threads, memory)
+        await asyncio.sleep(FOLLOW_SECONDS)
+
+
+def dashboard(client: Client) -> str:
+    """Address of the dashboard; empty where its scheduler has none."""
+    return str(client.dashboard_link or "") if find_spec("bokeh") is not None else ""
+
+
+def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work: tuple[Any, ...]) -> "Remote":
+    """Sends a parcel; raises ClusterError where the client has lost its scheduler for good."""
+    topic = "" if demand.seconds is None else _topic(client)
+    memory = workers.ask(key, demand.memory)
+    options: dict[str, Any] = {"resources": {MEMORY: memory}} if memory else {}
+    try:
+        future = client.submit(computed, topic, *work, key=key, pure=False, **options)
+    except (OSError, RuntimeError) as error:
+        raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from error
+    return Remote.of(client, workers, future)
+
+
+def computed(topic: str, *work: Any) -> list[Result]:
+    """In a worker: computes a parcel; where it has a limit of time, the scheduler has heard before that it begins."""
+    if topic:
+        worker = get_worker()
+        told = {"key": worker.get_current_task(), "worker": worker.address}
+        asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=told), worker.loop.asyncio_loop).result()
+    return execute(*work)
+
+
+def _topic(client: Client) -> str:
+    return f"begun-{client.id}"
+
+
+@dataclass(frozen=True)
+class Remote:
+    """A future of distributed whose result is fetched as soon as it is there, in the background.
+
+    A result that dies with its worker before it is fetched is computed again, which the caller's thread must not wait for.
+    """
+
+    client: Client
+    workers: LivingWorkers
+    future: Any
+    outcome: "concurrent.futures.Future[Any]"
+
+    @staticmethod
+    def of(client: Client, workers: LivingWorkers, future: Any) -> "Remote":
+        """For a future of a client."""
+
+        async def fetched() -> Any:
+            try:
+                return await future
+            except KilledWorker as error:
+                raise LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory") from None
+
+        outcome = asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop)
+        outcome.add_done_callback(lambda _: workers.forget(future.key))
+        return Remote(client, workers, future, outcome)
+
+    def add_done_callback(self, call: Callable[["Remote"], None], /) -> None:
+        """Calls when the result was fetched."""
+        self.outcome.add_done_callback(lambda _: call(self))
+
+    def result(self) -> Any:
+        """The value, or raises."""
+        return self.outcome.result()
+
+    def cancel(self) -> None:
+        """Takes it back where it has not begun."""
+        self.future.cancel()
+
+    def seconds(self) -> float:
+        """How long a worker has been computing it; 0 where it has not begun, or has no limit of time."""
+        began, _ = self.workers.began.get(self.future.key, (math.inf, ""))
+        return max(0.0, time.monotonic() - began)
+
+    def give_up(self) -> str:
+        """Nobody waits for it any longer; the process of its worker is ended and started anew, if a nanny looks after it."""
+        _, worker = self.workers.began[self.future.key]
+        self.future.cancel()
+        asyncio.run_coroutine_threadsafe(_restart(self.client, worker), self.client.loop.asyncio_loop)
+        return f"worker {worker} is started anew, or goes on with it where no nanny looks after it"
+
+
+async def _restart(client: Client, worker: str) -> None:
+    """Ends the process of a worker, even one that does not answer; its other parcels are computed again elsewhere."""
+    with contextlib.suppress(OSError, TimeoutError, ValueError, RuntimeError):
+        await client.restart_workers([worker], raise_for_error=False)
+
+
+class _Deaf(WorkerPlugin):  # type: ignore[misc]
+    """Ctrl-C reaches every process of the terminal; what becomes of the workers is for the run to say."""
+
+    def setup(self, worker: Any) -> None:
+        """Called in a worker when it starts, and in one that takes its place."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+async def _kill(cluster: Any) -> None:
+    """Ends the workers at once; one that takes longer than it should to be gone is no fault of the run."""
+    await asyncio.gather(*(nanny.kill(timeout=0.1) for nanny in cluster.workers.values()), return_exceptions=True)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """A worker that was killed is our message to give, not a page of the library's log."""
+    loggers = [logging.getLogger(f"distributed{part}") for part in ("", ".client", ".nanny", ".scheduler")]
+    before: list[Any] = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)

@@ -1,0 +1,96 @@
+"""Where parcels go. In this process dask's synchronous executor computes them (a breakpoint inside a task works), or a pool of
+threads; on workers, distributed does. Everything is a future.
+"""
+
+import contextlib
+import secrets
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from dask.local import SynchronousExecutor
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.running.execute import Step, execute
+from kinetree.pipeline.running.parcels import Demand
+from kinetree.pipeline.running.pool import Pool
+from kinetree.pipeline.running.sight import Sight
+from kinetree.pipeline.settings.config import Compute
+
+
+class Future(Protocol):
+    """What the loop asks of a parcel under way."""
+
+    def add_done_callback(self, call: Callable[[Any], None], /) -> None:
+        """Calls when done."""
+
+    def result(self) -> Any:
+        """The value, or raises."""
+
+    def cancel(self) -> Any:
+        """Takes it back where it has not begun."""
+
+    def seconds(self) -> float:
+        """How long it has been computed; 0 where it has not begun, or nobody knows."""
+
+    def give_up(self) -> str:
+        """Nobody waits for it any longer; what computes it is ended where that can be. Says in words what becomes of it."""
+
+
+def _nothing() -> None:
+    """Nothing is to be looked after in this process."""
+
+
+@dataclass(frozen=True)
+class Launcher:
+    """Where parcels go: `submit(name, demand, store_url, steps, sight)` gives a future of their results."""
+
+    submit: Callable[[str, Demand, str, tuple[Step, ...], Sight], Future]
+    window: Callable[[], int]
+    """How many parcels may be out now: enough that no worker waits, few enough that the deepest go first."""
+    is_apart: bool = True
+    """Whether nodes run elsewhere than in the thread that runs the loop."""
+    is_elsewhere: bool = False
+    """Whether nodes run in other processes than the one that runs the loop."""
+    look_after: Callable[[], None] = _nothing
+    """Called now and then; raises ClusterError where nobody computes any more."""
+    dashboard: str = ""
+    """Address of dask's dashboard; empty where there is none."""
+
+
+@contextlib.contextmanager
+def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
+    """The launcher that a configuration asks for, or one on a `distributed.Client` handed in."""
+    if client is not None or compute.is_cluster:
+        from kinetree.pipeline.running import clusters
+
+        is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
+        with clusters.connected(compute, client) as found, clusters.followed(found, compute, is_ours=is_ours) as workers:
+            yield _on_client(found, workers, compute)
+        return
+    if compute.performance_report is not None:
+        raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")
+    with contextlib.ExitStack() as stack:
+        if compute.executor == "threads":
+            pool = Pool(compute.worker_count)
+            # an interrupted run does not wait for nodes that may take minutes: what they publish is whole or nothing
+            stack.callback(pool.close)
+            yield Launcher(lambda _, __, *work: pool.submit(execute, *work), lambda: 2 * compute.worker_count)
+        else:
+            here = SynchronousExecutor()
+            yield Launcher(lambda _, __, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
+
+
+def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:
+    from kinetree.pipeline.running import clusters
+
+    run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
+    expected = compute.workers or 1
+
+    def submit(name: str, demand: Demand, url: str, steps: tuple[Step, ...], sight: Sight) -> Future:
+        return clusters.sent(client, workers, f"{name}-{run}", demand, (url, steps, sight))
+
+    def window() -> int:
+        return 3 * max(expected, int(workers.threads))
+
+    return Launcher(submit, window, is_elsewhere=True, look_after=workers.check, dashboard=clusters.dashboard(client))

@@ -1,0 +1,55 @@
+"""Parcels as they travel: what a worker is told of each node, and no more; what whoever launches one is told."""
+
+from dataclasses import dataclass
+
+from kinetree.pipeline.node import Node
+from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.planning.schedule import Schedule
+from kinetree.pipeline.running.execute import Input, Ref, Step
+from kinetree.pipeline.running.memory import Needs
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What a parcel asks of whoever computes it."""
+
+    memory: int
+    """Bytes; 0 where nobody knows."""
+    seconds: float | None
+    """How long it may take; None where there is no limit."""
+
+    @staticmethod
+    def of(parcel: list[Entry], needs: Needs) -> "Demand":
+        """Of a parcel; one that has a limit of time is a single node."""
+        return Demand(needs.bytes(entry.task for entry in parcel), parcel[0].task.timeout)
+
+
+def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
+    """What is to be computed at each node of a parcel, in order."""
+    place = {entry.node: number for number, entry in enumerate(parcel)}
+    return tuple(
+        Step(
+            label=entry.label,
+            task=f"{entry.task.module}:{entry.task.name}",
+            index=dict(zip(entry.task.over, entry.node.at, strict=True)),
+            code=schedule.code[entry.node.task],
+            params=schedule.params.get(entry.node.task, {}),
+            inputs=tuple(
+                Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), schedule.numbers(entry, a, nodes))
+                for a, nodes in entry.inputs or ()
+            ),
+            key=entry.key if entry is parcel[0] else None,
+            force=entry.node.task in schedule.force or any(r.kind == "artifact" for r in entry.reasons),
+            distrusted=schedule.distrusted,
+        )
+        for entry in parcel
+    )
+
+
+def _ref(schedule: Schedule, place: dict[Node, int], node: Node) -> Ref:
+    entry = schedule.entries[node]
+    if node in place:
+        return Ref(entry.label, step=place[node])
+    if entry.task.is_origin and not entry.task.is_linked:
+        return Ref(entry.label, given=schedule.given[node.task][node.at])
+    return Ref(entry.label, artifact=entry.artifact)

@@ -1,0 +1,326 @@
+"""Runs schedules until nothing is left to run: parcels out, results in, the schedules told."""
+
+import itertools
+import queue
+import threading
+import time
+from collections import Counter, deque
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+from dataclasses import dataclass, field
+from functools import partial
+
+from kinetree.errors import (
+    ClusterError,
+    GraphError,
+    KinetreeError,
+    LateNodeError,
+    LostWorkerError,
+    StoreError,
+    StoreFullError,
+)
+from kinetree.pipeline.node import Node
+from kinetree.pipeline.planning.entry import DONE, Entry
+from kinetree.pipeline.planning.schedule import Schedule
+from kinetree.pipeline.running import sight as seeing
+from kinetree.pipeline.running.events import Watch
+from kinetree.pipeline.running.execute import Result, forget_reads
+from kinetree.pipeline.running.interrupts import interruptible
+from kinetree.pipeline.running.jobs import OPEN_AT_LEAST, Job, Jobs, Single, fairest
+from kinetree.pipeline.running.launch import Future, Launcher
+from kinetree.pipeline.running.memory import Needs
+from kinetree.pipeline.running.parcels import Demand, steps_of
+from kinetree.pipeline.running.sight import Sight
+from kinetree.pipeline.storage.store import Store
+
+LOOK_AGAIN = 0.1
+"""Seconds after which the run looks for new workers, and again for a record that was not there."""
+
+
+def run(schedule: Schedule, launch: Launcher, watch: Watch, needs: Needs | None = None) -> None:
+    """Runs one schedule until every node is done, failed or skipped; raises as `run_all`."""
+    if launch.dashboard:
+        watch.dashboard(launch.dashboard)
+    run_all(Single(Job(schedule, watch, needs or Needs())), schedule.store, launch)
+
+
+def run_all(jobs: Jobs, store: Store, launch: Launcher) -> None:
+    """Runs schedules over one store in one window until there are no more.
+
+    raises : StoreError, ClusterError where going on makes no sense; KeyboardInterrupt; either way the store is whole
+    """
+    forget_reads()
+    loop = _Loop(jobs, store, launch, Sight.of(store))
+    try:
+        with interruptible(loop.interrupt, is_apart=launch.is_apart):
+            while loop.send() or loop.out:
+                loop.receive()
+    except BaseException:
+        for future in loop.out.values():
+            future.cancel()
+        loop.out.clear()
+        raise
+    finally:
+        loop.sight.end(store)
+
+
+@dataclass
+class _Loop:
+    jobs: Jobs
+    store: Store
+    launch: Launcher
+    sight: Sight
+    out: dict[int, Future] = field(default_factory=dict)
+    _open: list[Job] = field(default_factory=list)
+    _parcels: dict[int, tuple[Job, list[Entry]]] = field(default_factory=dict)
+    _done: "queue.SimpleQueue[tuple[int, Future | None]]" = field(default_factory=queue.SimpleQueue)
+    _twins: dict[str, list[tuple[Job, Node]]] = field(default_factory=dict)
+    """Nodes that wait for a parcel under way which computes the same key."""
+    _numbers: Iterator[int] = field(default_factory=itertools.count)
+    _limits: dict[int, float] = field(default_factory=dict)
+    """Seconds that a parcel may take."""
+    _suspects: "deque[tuple[Job, Entry]]" = field(default_factory=deque)
+    """Nodes whose workers died or whose time was over; each is tried again when nothing else is out."""
+    _lost: "Counter[tuple[Job, Node]]" = field(default_factory=Counter)
+    _look_at: float = 0.0
+    _unseen: dict[int, float] = field(default_factory=dict)
+    """Since when the results of a parcel are looked for in the store."""
+
+    def send(self) -> bool:
+        """Sends ready nodes while the window has room; True if any went."""
+        sent = False
+        self._end_jobs()
+        while len(self.out) < self.launch.window() and self.jobs.may_send():
+            self._begin_jobs()
+            job = fairest(self._open)
+            if job is None:
+                break
+            entry = next(job.schedule.ready())
+            job.out += 1
+            if entry.key in self._twins:
+                self._twins[entry.key].append((job, entry.node))
+                continue
+            self._send(job, entry)
+            sent = True
+        if self._suspects and not self.out:
+            job, entry = self._suspects.popleft()
+            self._submit(job, [entry])
+            return True
+        return sent
+
+    def _end_jobs(self) -> None:
+        for job in [job for job in self._open if job.is_over]:
+            while self._take_back_lost(job) and job.is_over:
+                pass  # what was lost too often has failed by now
+            if job.is_over:
+                self._open.remove(job)
+                _refuse_rings(job.schedule)
+                self.jobs.end(job)
+
+    def _take_back_lost(self, job: Job) -> bool:
+        """What somebody removed from the store after it was seen there is computed again; True if there was any."""
+        done = [e for e in job.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
+        lost = seeing.missing(self.store, {(e.key or "", e.artifact or "") for e in done})
+        for entry in done:
+            if (entry.key, entry.artifact) in lost:
+                job.schedule.lose(entry, "it is missing")
+        _tell_losses(job)
+        return bool(lost)
+
+    def _begin_jobs(self) -> None:
+        """Begins schedules until enough are open and some node is ready, or there is none to begin."""
+        while len(self._open) < OPEN_AT_LEAST or fairest(self._open) is None:
+            begun = self.jobs.begin()
+            if begun is None:
+                return
+            self._open.append(begun)
+            self._end_jobs()
+
+    def interrupt(self, *_: object) -> None:
+        """Makes the loop stop at what it receives next; safe to call from a signal's handler."""
+        self._done.put((-1, None))
+
+    def receive(self) -> None:
+        """Waits for one parcel, for a while, and tells the schedule what became of it."""
+        if self.launch.is_elsewhere and time.monotonic() > self._look_at:
+            self.sight.confirm(self.store)
+            self.launch.look_after()
+            self._look_at = time.monotonic() + LOOK_AGAIN
+        if self._give_up_late():
+            return
+        try:
+            number, future = self._done.get(timeout=LOOK_AGAIN if self.launch.is_elsewhere or self._limits else None)
+        except queue.Empty:
+            return
+        if future is None:
+            raise KeyboardInterrupt
+        if number not in self._parcels:  # given up meanwhile
+            return
+        job, parcel = self._parcels[number]
+        try:
+            results: list[Result] = future.result()
+        except CancelledError:
+            raise ClusterError("the scheduler cancelled the work; was it stopped? Run again to go on") from None
+        except Exception as error:  # the workers died under it, or none can even load the work
+            self._forget(number)
+            self._lose(job, parcel, error)
+            return
+        if self._all_seen(number, parcel, results, future):
+            self._forget(number)
+            self._tell_all(job, parcel, results)
+
+    def _give_up_late(self) -> bool:
+        """Nobody waits any longer for nodes that take longer than their task allows; True if there was any."""
+        late = [(number, limit) for number, limit in self._limits.items() if self.out[number].seconds() > limit]
+        for number, limit in late:
+            future = self.out[number]
+            job, parcel = self._parcels[number]
+            _refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
+            what = future.give_up()
+            self._forget(number)
+            tries = self._lost[job, parcel[0].node] + 1
+            times = f", each of {tries} times that it was tried" if tries > 1 else ""
+            told = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
+            self._lose(job, parcel, LateNodeError(told))
+        return bool(late)
+
+    def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:
+        """Nothing came back of a parcel. Its first node is tried again, alone, since another may have killed its workers."""
+        first, *rest = parcel
+        for entry in rest:
+            job.schedule.put_back(entry.node)
+        self._lost[job, first.node] += 1
+        if isinstance(error, LostWorkerError | LateNodeError) and self._lost[job, first.node] <= first.task.retries:
+            self._suspects.append((job, first))
+        else:
+            self._tell_all(job, [first], [Result("failed", error=type(error).__name__, message=str(error) or repr(error))])
+
+    def _tell_all(self, job: Job, parcel: list[Entry], results: list[Result]) -> None:
+        twins = self._twins.pop(parcel[0].key or "", [])
+        job.out -= 1
+        for entry, result in zip(parcel, results, strict=True):
+            self._tell(job, entry, result)
+        for other, node in twins:
+            other.out -= 1
+            self._tell(other, other.schedule.entries[node], _twin(results[0]))
+
+    def _all_seen(self, number: int, parcel: list[Entry], results: list[Result], future: Future) -> bool:
+        """Whether what a worker says it stored is there for this process too; where not, it is looked for again soon.
+
+        raises : StoreError where it was not there for too long
+        """
+        for entry, result in zip(parcel, results, strict=True):
+            is_stored = result.status in ("ran", "fresh")
+            if is_stored and not seeing.sees(self.store, result.key, result.artifact):
+                since = self._unseen.setdefault(number, time.monotonic())
+                if time.monotonic() - since > seeing.SEEN_WITHIN:
+                    raise seeing.unseen(self.store, entry.label, result.record)
+                later = threading.Timer(LOOK_AGAIN, self._note, (number, future))
+                later.daemon = True
+                later.start()
+                return False
+        return True
+
+    def _forget(self, number: int) -> None:
+        del self.out[number], self._parcels[number]
+        self._unseen.pop(number, None)
+        self._limits.pop(number, None)
+
+    def _send(self, job: Job, entry: Entry) -> None:
+        parcel = job.schedule.send(entry)
+        self._twins[entry.key or ""] = []
+        for member in parcel:
+            job.watch.start(member)
+        self._submit(job, parcel)
+
+    def _submit(self, job: Job, parcel: list[Entry]) -> None:
+        number, first = next(self._numbers), parcel[0]
+        tasks = "+".join(dict.fromkeys(entry.node.task for entry in parcel))
+        name = f"{tasks}-{'-'.join(map(str, first.node.at))}-{(first.key or '')[:8]}-{number}"
+        demand = Demand.of(parcel, job.needs)
+        future = self.launch.submit(name, demand, self.store.url, steps_of(job.schedule, parcel), self.sight)
+        self._parcels[number] = job, parcel
+        self.out[number] = future
+        if demand.seconds is not None and self.launch.is_apart:
+            self._limits[number] = demand.seconds
+        future.add_done_callback(partial(self._note, number))
+
+    def _note(self, number: int, future: Future) -> None:
+        """Called from whatever thread the executor likes."""
+        self._done.put((number, future))
+
+    def _tell(self, job: Job, entry: Entry, result: Result) -> None:
+        schedule = job.schedule
+        if result.status in ("ran", "fresh"):
+            if entry.state in DONE:
+                return
+            before = len(schedule.entries)
+            fresh = schedule.complete(entry.node, result.key, result.artifact, result.record, ran=result.status == "ran")
+            if len(schedule.entries) != before:
+                job.watch.layout(schedule.entries.values())
+            if result.record is not None:
+                job.needs.learn(result.record)
+            job.watch.finish(entry, result)
+            job.watch.fresh(fresh)
+            job.watch.skip(schedule.skipped_late())
+            _tell_losses(job)
+        elif result.status == "failed":
+            skipped = schedule.fail(entry.node, result.message)
+            job.watch.fail(entry, result, [schedule.entries[n] for n in skipped])
+        elif result.status == "damaged":
+            self._mend(job, entry, result)
+        elif result.status == "undone":
+            schedule.put_back(entry.node)
+        else:
+            raise (StoreFullError if result.error == "StoreFullError" else _refusal(result))(result.message)
+
+    def _mend(self, job: Job, entry: Entry, result: Result) -> None:
+        """An input could not be read: whoever made it makes it again, then this node runs."""
+        redone = job.schedule.mend(entry.node, result.artifact, result.message)
+        if redone is None:
+            self._tell(job, entry, _beyond_repair(result.artifact, result.message))
+            return
+        for maker, was in redone:
+            job.watch.damaged(maker, was, result.message)
+
+
+def _tell_losses(job: Job) -> None:
+    """What could not be read while more of the graph was laid out, or was not there in the end."""
+    for loss in job.schedule.losses():
+        job.watch.damaged(loss.entry, loss.was, loss.what)
+        if loss.skipped is not None:
+            failed = _beyond_repair(loss.entry.artifact or "", loss.what)
+            job.watch.fail(loss.entry, failed, [job.schedule.entries[n] for n in loss.skipped])
+
+
+def _refuse_to_wait_for(entry: Entry, limit: float, *, is_elsewhere: bool) -> None:
+    """A node that has this process to itself and does not come back would keep all others waiting."""
+    if entry.task.threads > 1 and not is_elsewhere:
+        raise ClusterError(
+            f"{entry.label} takes longer than the {limit:g} s that its task allows, and has this process to itself (@task("
+            f"threads={entry.task.threads})), where it cannot be ended; run again on workers (--executor processes)"
+        )
+
+
+def _refuse_rings(schedule: Schedule) -> None:
+    """A traversal that some artifact orders in a ring leaves nodes that wait for themselves."""
+    left = [entry for entry in schedule.entries.values() if entry.state == "waits"]
+    if left:
+        raise GraphError(
+            f"{len(left)} nodes wait for each other, {left[0].label} ({left[0].task.where}) among them: the traversal that"
+            f" {left[0].task.along.__name__ if left[0].task.along else 'an artifact above'} orders goes in a ring"
+        )
+
+
+def _beyond_repair(artifact: str, what: str) -> Result:
+    told = f"artifact {artifact[:12]} {what}, again after it was computed again; check the disk"
+    return Result("failed", error="DamagedArtifactError", message=told)
+
+
+def _twin(result: Result) -> Result:
+    """What became of a node whose twin was computed: the same, without having run."""
+    return Result("fresh", result.key, result.artifact, 0.0, result.record) if result.status == "ran" else result
+
+
+def _refusal(result: Result) -> type[KinetreeError]:
+    return StoreError if result.error == "StoreError" else ClusterError

@@ -1,0 +1,35 @@
+"""Workers for several loops, one after the other: started when there is something to compute, and once."""
+
+import contextlib
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # what computes nothing does without dask
+    from kinetree.pipeline.running.jobs import Jobs
+    from kinetree.pipeline.running.launch import Launcher
+    from kinetree.pipeline.settings.config import Compute
+    from kinetree.pipeline.storage.store import Store
+
+
+class Workers:
+    """A context that ends what it started."""
+
+    def __init__(self, compute: "Compute", client: Any = None) -> None:
+        self._compute, self._client = compute, client
+        self._stack = contextlib.ExitStack()
+        self._launch: Launcher | None = None
+
+    def __enter__(self) -> "Workers":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._stack.__exit__(kind, error, trace)
+
+    def run(self, jobs: "Jobs", store: "Store") -> None:
+        """Runs schedules until there are no more; raises as `run_all`."""
+        from kinetree.pipeline.running.launch import launcher
+        from kinetree.pipeline.running.run import run_all
+
+        if self._launch is None:
+            self._launch = self._stack.enter_context(launcher(self._compute, self._client))
+        run_all(jobs, store, self._launch)
