@@ -29,6 +29,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.refit import Refit
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.topology.extrema import Extrema, ExtremaParams
@@ -53,6 +54,7 @@ from kinetree.tasks.paper_2009.similarity import similarity
 from kinetree.tasks.registration.alignment import alignment
 from kinetree.tasks.registration.deformation_graph import deformation_graph
 from kinetree.tasks.registration.recovery import recovery
+from kinetree.tasks.registration.take_entries import take_entries
 from kinetree.tasks.registration.tracking_order import tracking_order
 from kinetree.tasks.topology.extrema import extrema
 from kinetree.tasks.topology.geodesics import geodesics
@@ -120,8 +122,9 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     place = GraphSkeletonParams(joints="edges" if letter else "centres")
     carried = {t: graph_alignment(m) for t, m in motion.items()}
     reference = graph_reference(one, runs)
-    nodes, tracked = followed(reference, one, motion, mesh)
-    aligned = carried if letter else aligned_by(reference, nodes, tracked, mesh)
+    entries = take_entries(ends, reference)
+    nodes, tracked = followed(reference, entries, one, motion, mesh)
+    aligned = carried if letter else aligned_by(reference, entries, nodes, tracked, mesh)
     tree = graph_skeleton(one, motion, aligned, mesh, place)
     touching = contact_kinds(one, motion, runs)
     return Volumetric(
@@ -131,11 +134,11 @@ def volumetric(*, letter: bool = False) -> Volumetric:
 
 
 def followed(
-    reference: Reference, one: IntegratedStructure, motion: dict[int, GraphMotion], mesh: dict[int, Mesh]
+    reference: Reference, entries: TakeEntries, one: IntegratedStructure, motion: dict[int, GraphMotion], mesh: dict[int, Mesh]
 ) -> tuple[DeformationGraph, dict[int, Tracking]]:
     """The deformation graph of the default, and the surface bent onto every frame, in the order of the traversal."""
     nodes = deformation_graph(reference, DeformationGraphParams(nodes=150))
-    order = tracking_order(reference, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"))
+    order = tracking_order(reference, entries, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"))
     done: dict[int, Tracking] = {}
     for frame in sorted(one.frames, key=lambda t: abs(t - one.frame)):
         last = order.previous(frame)
@@ -145,10 +148,10 @@ def followed(
 
 
 def aligned_by(
-    reference: Reference, nodes: DeformationGraph, tracked: dict[int, Tracking], mesh: dict[int, Mesh]
+    reference: Reference, entries: TakeEntries, nodes: DeformationGraph, tracked: dict[int, Tracking], mesh: dict[int, Mesh]
 ) -> dict[int, Alignment]:
     """The surface as it was tracked, without the passes of the shelf registration."""
-    usual = recovery(nodes, tracked, mesh)
+    usual = recovery(nodes, entries, tracked, mesh)
     poses = {t: Refit(rotation=at.rotation, translation=at.translation) for t, at in tracked.items()}
     return {t: alignment(mesh[t], reference, nodes, usual, (at,)) for t, at in poses.items()}
 

@@ -103,7 +103,7 @@ def test_object_that_changes_or_goes_under_a_run_fails_its_frame_alone(pipeline,
     snapshot, account = there.inspect(until=["mesh"]), Account()
     place.put("frame_2.off", off(1.3).encode())
     place.remove("frame_9.off")
-    there._go(snapshot.schedule, Watch((account,)), None)
+    there._go(snapshot, Watch((account,)), None)
     told = {failure["node"]: failure["message"] for failure in account.failures}
     assert sorted(told) == ["mesh[frame=2]", "mesh[frame=9]"]
     assert told["mesh[frame=2]"] == "frame_2.off: the file changed while the run was under way; run again"
