@@ -38,8 +38,11 @@ class Owned:
         """Lists what a run is about to write, so that the next run knows it again even if this one is killed.
 
         paths  : relative to the folder; what lies in a folder in it is listed by that folder
-        raises : StoreError where something is there that no run has left, or where the list cannot be written
+        raises : StoreError where the folder is a file or something is there that no run has left, or where the list cannot be
+                 written
         """
+        if self.folder.is_file():
+            raise StoreError(f"output folder {self.folder}: this is a file; name another folder with --output")
         wanted = {path.partition("/")[0] for path in paths}
         was_lost = self.names is None
         if self.names is None:
