@@ -50,6 +50,17 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
     return pipeline
 
 
+@pytest.mark.parametrize("format_", ["trc", "c3d", "usd", "tables"])
+def test_formats_on_request_have_files_of_every_take(run: Pipeline, format_: str) -> None:
+    if format_ == "c3d":
+        pytest.importorskip("ezc3d", reason="ezc3d writes C3D")
+    exported = run.computed(format_).artifact(format_)
+    walk, wave = (sorted(n for n in exported.names if f"-{take}." in n) for take in ("walk", "wave"))
+    assert [name.replace("-walk.", "-wave.") for name in walk] == wave
+    assert sorted(exported.names) == sorted(walk + wave)
+    assert exported.content.size < 2**20, "no empty frames between the takes"
+
+
 def test_one_skeleton_has_the_frames_of_all_takes(run: Pipeline) -> None:
     skeleton = run.artifact(Skeleton)
     assert skeleton.frames == (*range(FRAMES), *range(TAKE, TAKE + FRAMES))

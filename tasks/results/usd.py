@@ -7,6 +7,7 @@ from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.placement import upright_rotation
 from kinetree.tasks.results.formats.placement import placed, placement, renamed
+from kinetree.tasks.results.formats.takes import of_takes
 from kinetree.tasks.results.formats.usd import usd as usd_text
 
 
@@ -16,4 +17,5 @@ def usd(skeleton: CompleteSkeleton, joint_names: JointNames, up_direction: UpDir
     known = placement(skeleton, up_direction, params.up, params.scale)
     up = "z" if known.up == "z" else "y"
     body = placed(renamed(skeleton, joint_names), upright_rotation(known.up, up), 1.0)
-    return Usd.of({"skeleton.usda": usd_text(body, up, known.metres)}, **known._asdict())
+    files = {f"skeleton{name}.usda": usd_text(own, up, known.metres) for name, own in of_takes(body).items()}
+    return Usd.of(files, **known._asdict())
