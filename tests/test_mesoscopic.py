@@ -16,7 +16,7 @@ ANEW = {"figure": "human", "frames": 10, "vertices": 1000}
 
 
 def pipeline_of(output: Path, synth: dict[str, Any], **blocks: Any) -> Pipeline:
-    quick = {"geodesics": {"bases": 40}, "report": {"frames": 6, "views": 1}, "compute": {"executor": "sync"}}
+    quick = {"geodesics": {"bases": 40}, "excerpt": {"frames": 6, "views": 1}, "compute": {"executor": "sync"}}
     return Pipeline.of({"output": str(output), "source": {"synth": synth}, **quick, **blocks})
 
 
@@ -52,7 +52,7 @@ def test_second_run_runs_nothing_and_touches_nothing(output: Path) -> None:
 
 @pytest.mark.parametrize(
     ("block", "alone"),
-    [({"report": {"frames": 6, "views": 1, "title": "another"}}, "report"), ({"glb": {"up": "z"}}, "glb")],
+    [({"report": {"title": "another"}}, "report"), ({"glb": {"up": "z"}}, "glb")],
     ids=["title", "up"],
 )
 def test_option_of_one_result_makes_that_result_alone(output: Path, block: dict[str, Any], alone: str) -> None:
