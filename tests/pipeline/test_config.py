@@ -67,7 +67,7 @@ def test_chain_of_files_is_followed_to_its_end(write):
     write("a.yaml", "sequence: {fps: 1, unit: a}\nmesh: {merge: 0.01}")
     write("sub/b.yaml", "extends: ../a.yaml\nsequence: {fps: 2}")
     config = of(write("c.yaml", "extends: sub/b.yaml\nmesh: {component_share: 0.5}"))
-    assert config.params["sequence"].model_dump() == {"fps": 2.0, "unit": "a"}
+    assert config.params["sequence"].model_dump() == {"fps": 2.0, "unit": "a", "learn_from": ":"}
     assert config.params["mesh"].model_dump() == {"merge": 0.01, "component_share": 0.5}
 
 
