@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+from results.plain_names import plain
 from results.rigged_bodies import spider
 
 from kinetree.pipeline import views
@@ -65,7 +66,7 @@ def test_a_long_gap_stays_open() -> None:
 
 def test_the_file_names_them() -> None:
     found = completed(4)
-    told = json.loads(bytes(skeleton_json(found, UpDirection(up="y", confidence=1.0)).content))
+    told = json.loads(bytes(skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0)).content))
     assert told["interpolated"] == [{"frame": WHOLE.frames[4], "cause": "missing", "reason": ""}]
     assert told["frames"] == list(WHOLE.frames)
 
@@ -77,7 +78,7 @@ def test_every_take_has_files_of_its_own_with_the_same_bones() -> None:
     sequence = Sequence(frames=frames, fps=None, unit=None, takes=("walk", "run"))
     found = complete_skeleton(skeleton, sequence, CompleteSkeletonParams())
     assert found.frames == frames
-    made = skeleton_json(found, UpDirection(up="y", confidence=1.0))
+    made = skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0))
     assert made.names == ("skeleton-walk.json", "skeleton-run.json")
     walk, run = (json.loads(part) for part in views.files(made, ()).values())
     assert (walk["frames"], run["frames"][0]) == (list(range(half)), 3)
