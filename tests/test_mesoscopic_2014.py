@@ -80,7 +80,7 @@ def test_second_run_runs_nothing(human: Pipeline) -> None:
 
 def test_exports_are_those_of_every_method(human: Pipeline) -> None:
     out = Path(human.config.output)
-    assert json.loads((out / "skeleton.json").read_text())["format"] == "kinetree.skeleton/1"
+    assert json.loads((out / "skeleton.json").read_text())["format"] == "kinetree.skeleton/2"
     assert (out / "skeleton.glb").is_file()
     assert (out / "skeleton.bvh").is_file()
     assert (out / "segmentation.zarr").is_dir()
