@@ -72,12 +72,12 @@ def _kept_up(cluster: LocalCluster, workers: int) -> Iterator[None]:
 
 
 async def _keep_up(cluster: LocalCluster, workers: int) -> None:
-    empty = 0.0
+    empty, times = 0.0, 0
     while True:
         await asyncio.sleep(FOLLOW_SECONDS)
-        empty = 0.0 if cluster.scheduler.workers else empty + FOLLOW_SECONDS
-        if empty > REPLACE_SECONDS:
-            empty = 0.0
+        empty, times = (0.0, 0) if cluster.scheduler.workers else (empty + FOLLOW_SECONDS, times)
+        if empty > REPLACE_SECONDS * 2**times:  # longer each time: a busy machine may start them slowly
+            empty, times = 0.0, times + 1
             cluster.scale(0)
             while cluster.workers:  # names are given anew once their workers are gone
                 await asyncio.sleep(FOLLOW_SECONDS)

@@ -16,7 +16,7 @@ class JointNamesParams(Params):
     """How joints are named in files and tables; the skeleton itself keeps its own names."""
 
     style: Literal["kinetree", "mixamo", "smpl", "openpose", "vrm", "isb", "none"] = "kinetree"
-    """Whose names: kinetree's are pelvis, spine, chest, neck, head, shoulder_l …; none keeps root, spine_1, limb_a_1 …"""
+    """Whose names: kinetree has pelvis, spine, chest, neck, head, shoulder_l …; none keeps root, limb_a_1 and so on."""
     front: Axis | None = None
     """Direction of the coordinates that the body faces in the reference frame; None finds it. Left and right follow from it."""
     side_suffixes: tuple[str, str] = ("_l", "_r")

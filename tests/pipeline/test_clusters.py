@@ -1,6 +1,7 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
 
 import json
+import threading
 import time
 
 import pytest
@@ -120,9 +121,11 @@ def test_a_report_of_dask_needs_workers(toys, tmp_path):
 
 
 def test_our_own_workers_are_replaced_where_none_is_left(monkeypatch):
-    monkeypatch.setattr(clusters, "REPLACE_SECONDS", 1.0)
     with clusters.local(Compute(workers=1)) as client:
         assert client.submit(abs, -1).result(timeout=60) == 1
+        monkeypatch.setattr(clusters, "REPLACE_SECONDS", 1.0)  # a worker that takes longer to start is none yet
+        while not client.cluster.workers:  # the cluster lists a worker after the scheduler does
+            threading.Event().wait(0.01)
         (nanny,) = client.cluster.workers.values()
         client.cluster.sync(nanny.close)
         assert client.submit(abs, -2).result(timeout=60) == 2

@@ -13,6 +13,7 @@ from kinetree.schemas.array import Artifact, Params
 from kinetree.schemas.dims import Dim
 from kinetree.schemas.results.comparison import Comparison
 from kinetree.tasks import METHODS
+from kinetree.tasks.methods import DATA_SETS
 
 FILES = sorted(p for p in Path(dims.__file__).parent.glob("*/*.py") if p.stem != "__init__")
 MODULES = [importlib.import_module(f"kinetree.schemas.{p.parent.name}.{p.stem}") for p in FILES]
@@ -25,7 +26,7 @@ ARTIFACTS = [m for m in MODELS if issubclass(m, Artifact) and not m.__subclasses
 ANSWERS = {Comparison}
 """What functions of `tasks/` return and no task writes."""
 SETTINGS = [m for m in MODELS if issubclass(m, Params)]
-TASKS = {task.name: task for graph in METHODS.values() for task in graph.tasks}
+TASKS = {task.name: task for graph in (DATA_SETS, *METHODS.values()) for task in graph.tasks}
 UNITS = {"1", "length", "length²", "length³", "°", "radian"}
 """What arrays are measured in, each written in one way."""
 DIMS = {dim.name: dim for dim in vars(dims).values() if isinstance(dim, Dim)}
@@ -84,9 +85,9 @@ def test_task_artifact_and_params_share_one_stem(name):
     place, _, stem = task.module.removeprefix("kinetree.tasks.").partition(".")
     assert name == stem or name.endswith(f"_{stem}"), "a later pass of an operation is named first_refit, second_refit, …"
     default = METHODS["mesoscopic"]
-    if name not in default.by_name and task.returns in default.writers:  # another method's way to the same artifact
-        assert task.returns.__module__.endswith(f".{default.writers[task.returns].name}")
-    else:
+    ways = {graph.writers[task.returns].name for graph in METHODS.values() if task.returns in graph.writers} - {name}
+    is_another = any(task.returns.__module__.endswith(f".{way}") for way in ways)
+    if not (name not in default.by_name and is_another):  # another method's way to the same artifact has a name of its own
         assert artifact.lower() == name.replace("_", "")
         assert task.returns.__module__ == f"kinetree.schemas.{place}.{stem}"
     if task.params is not None:
