@@ -13,7 +13,7 @@ from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.numerics.paper_2009 import graph_tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import at_rest
 from kinetree.tasks.numerics.registration.tracking import Tracking as Tracked
-from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
+from kinetree.tasks.registration.pose import fit_settings, graph, pose, stored_tracking, target
 
 
 @task(over="frame", along=TrackingOrder)
@@ -39,14 +39,4 @@ def graph_tracking(
         fitted = numerics.graph_tracking(body, carried, last, frame, fit_settings(params), previous.usual)
         usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
     earlier = last or fitted.pose
-    return Tracking(
-        steps=steps,
-        rotation=fitted.pose.rotation,
-        translation=fitted.pose.translation,
-        uncovered=fitted.uncovered,
-        usual=usual,
-        attempt=fitted.attempt,
-        fitting=params,
-        earlier_rotation=earlier.rotation,
-        earlier_translation=earlier.translation,
-    )
+    return stored_tracking(fitted, earlier, steps, usual, params)

@@ -14,7 +14,7 @@ from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
-from kinetree.tasks.numerics.registration import deformation, roll_candidates
+from kinetree.tasks.numerics.registration import deformation, roll_candidates, tracking
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
 
@@ -24,11 +24,11 @@ def pose(stored: Pose) -> deformation.Pose:
     return deformation.Pose(np.array(stored.rotation), np.array(stored.translation))
 
 
-def tracked_pose(tracking: Tracking, recovery: Recovery, frame: int) -> deformation.Pose:
+def tracked_pose(tracked: Tracking, recovery: Recovery, frame: int) -> deformation.Pose:
     """The pose of a frame before the first pass: recovered where tracking failed, else tracked."""
     row = recovery.row(frame)
     if row is None:
-        return pose(tracking)
+        return pose(tracked)
     return deformation.Pose(np.array(recovery.rotation[row]), np.array(recovery.translation[row]))
 
 
@@ -50,6 +50,23 @@ def rolled_pose(
 def fit_settings(params: TrackingParams) -> deformation.FitSettings:
     """How a frame is fitted in tracking."""
     return deformation.FitSettings(**params.model_dump())
+
+
+def stored_tracking(
+    fitted: tracking.Tracking, earlier: deformation.Pose, steps: int, usual: float, params: TrackingParams
+) -> Tracking:
+    """A fitted frame, with the pose before it, its place in the chain and how it was fitted."""
+    return Tracking(
+        steps=steps,
+        rotation=fitted.pose.rotation,
+        translation=fitted.pose.translation,
+        uncovered=fitted.uncovered,
+        usual=usual,
+        attempt=fitted.attempt,
+        fitting=params,
+        earlier_rotation=earlier.rotation,
+        earlier_translation=earlier.translation,
+    )
 
 
 def target(mesh: Mesh, stored: DeformationGraph) -> Target:

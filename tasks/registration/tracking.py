@@ -11,7 +11,7 @@ from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
+from kinetree.tasks.registration.pose import fit_settings, graph, pose, stored_tracking, target
 
 
 @task(over="frame", along=TrackingOrder)
@@ -27,7 +27,7 @@ def tracking(
     body = graph(deformation_graph)
     if previous is None:
         rest = at_rest(body)
-        return _stored(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
+        return stored_tracking(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
     is_entry = index[0] in take_entries.frames
@@ -36,25 +36,10 @@ def tracking(
     fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
-    return _stored(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)
+    return stored_tracking(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)
 
 
 def _moved(pose: Pose, entries: TakeEntries, row: int) -> Pose:
     """A pose where the body stands in the take that is entered."""
     R, shift = np.array(entries.rotation[row]), np.array(entries.shift[row])
     return Pose(R @ pose.rotation, pose.translation @ R.T + shift)
-
-
-def _stored(fitted: numerics.Tracking, earlier: Pose, steps: int, usual: float, params: TrackingParams) -> Tracking:
-    """A fitted frame, with the pose before it, its place in the chain and how it was fitted."""
-    return Tracking(
-        steps=steps,
-        rotation=fitted.pose.rotation,
-        translation=fitted.pose.translation,
-        uncovered=fitted.uncovered,
-        usual=usual,
-        attempt=fitted.attempt,
-        fitting=params,
-        earlier_rotation=earlier.rotation,
-        earlier_translation=earlier.translation,
-    )
