@@ -38,19 +38,18 @@ def local(compute: Compute) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends."""
     workers, memory = compute.worker_count, compute.memory_bytes
     with contextlib.ExitStack() as stack:
-        cluster = stack.enter_context(
-            LocalCluster(
-                n_workers=0,
-                threads_per_worker=1,
-                processes=True,
-                memory_limit=memory or 0,
-                resources={MEMORY: memory} if memory else {},
-                dashboard_address="127.0.0.1:0",
-                silence_logs=logging.CRITICAL,
-                scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
-            )
+        made = LocalCluster(
+            n_workers=0,
+            threads_per_worker=1,
+            processes=True,
+            memory_limit=memory or 0,
+            resources={MEMORY: memory} if memory else {},
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+            scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
         )
-        client = stack.enter_context(Client(cluster))
+        cluster = stack.enter_context(_closed(made))
+        client = stack.enter_context(_closed(Client(cluster)))
         client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
         cluster.scale(workers)
         stack.enter_context(_kept_up(cluster, workers))
@@ -59,6 +58,16 @@ def local(compute: Compute) -> Iterator[Client]:
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
             cluster.sync(_kill, cluster)
             raise
+
+
+@contextlib.contextmanager
+def _closed(opened: Any) -> Iterator[Any]:
+    """Closes a client or a cluster; one that does not stop in time ends with this process and is no fault of the run."""
+    try:
+        yield opened
+    finally:
+        with contextlib.suppress(OSError, RuntimeError, TimeoutError):
+            opened.close()
 
 
 @contextlib.contextmanager
@@ -115,7 +124,7 @@ def at(compute: Compute) -> Iterator[Client]:
             f"{asked}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
             " check the address and that the scheduler runs (dask scheduler), or leave the option out"
         ) from error
-    with client:
+    with _closed(client):
         yield client
 
 
@@ -130,12 +139,12 @@ def _left_address(file: Path) -> str:
 def started(compute: Compute) -> Iterator[Client]:
     """Workers that a class of the configuration starts, gone when the block ends."""
     with contextlib.ExitStack() as stack:
-        cluster = stack.enter_context(cluster_of(compute))
+        cluster = stack.enter_context(_closed(cluster_of(compute)))
         if compute.adapt is not None:
             cluster.adapt(minimum=compute.adapt[0], maximum=compute.adapt[1])
         else:
             cluster.scale(compute.workers or 1)
-        yield stack.enter_context(Client(cluster))
+        yield stack.enter_context(_closed(Client(cluster)))
 
 
 def cluster_of(compute: Compute) -> Any:

@@ -188,6 +188,18 @@ def test_a_queue_that_starts_its_workers_late_is_waited_for(toys, late):
     assert len(toys.executions()) == 40
 
 
+def test_a_cluster_that_does_not_stop_in_time_is_no_fault_of_the_run(toys, monkeypatch):
+    close = LocalCluster.close
+
+    def slow(self, *given, **named):
+        close(self, *given, **named)
+        raise TimeoutError("join timed out")
+
+    monkeypatch.setattr(LocalCluster, "close", slow)
+    compute = {"cluster": "distributed:LocalCluster", "options": INSIDE, "workers": 1}
+    assert toys.run(until=("total",), compute=compute).told["status"] == "done"
+
+
 def test_a_queue_that_never_starts_a_worker_is_given_up_in_words(toys, late):
     given_up = pytest.raises(
         ClusterError, match=r"no worker for 0\.6 s; .* give a queue more time \(--wait-workers N,SECONDS\)"
