@@ -1,6 +1,6 @@
 """What a run says when its workers, its scheduler, its store or itself are killed, stopped, filled up or taken away.
 
-    python benchmarks/faults.py [--moments 20] [--only WORD …] [--seed 0] [--markdown]
+    python benchmarks/faults.py [--moments 20] [--only WORD …] [--seed 0] [--log FILE]
 
 One line for every cell of executor and fault, each tried at so many random moments of a run. A try is right if the run
 called itself done and every artifact equals that of a run nobody disturbed, or if it ended with a documented exit code (or was
@@ -14,6 +14,7 @@ cells are left out and the table says so.
 import argparse
 import contextlib
 import itertools
+import json
 import os
 import random
 import shutil
@@ -34,7 +35,6 @@ BOUND = 240.0
 """Seconds in which a disturbed run must be over; a service that answers 503 is asked again for three minutes."""
 STOPPED_SECONDS = 30.0
 EXECUTORS = ("sync", "threads", "processes", "scheduler")
-DOCUMENTED = {1: "nodes failed", 2: "the store", 3: "the cluster"}
 TOY = """
 import hashlib
 from collections.abc import Mapping
@@ -128,6 +128,8 @@ class Try:
     lasting: "Lasting | None" = None
     """A cluster that serves many tries."""
     cluster: "Cluster | None" = None
+    codes: tuple[int, ...] = (1, 2, 3)
+    """Exit codes that are right for this fault."""
     ends: contextlib.ExitStack = field(default_factory=contextlib.ExitStack)
 
     def begin(self) -> None:
@@ -316,6 +318,7 @@ def failing_service(status: int, share: float) -> Callable[[Try], None]:
         one.begin()
         one.wait()
         service.status, service.share = status, share
+        one.codes = (3,) if status >= 500 else (2,)
         _over(one)
         service.share = 0.0
 
@@ -359,31 +362,60 @@ def main() -> None:
     options.add_argument("--moments", type=int, default=20, help="tries of each cell; those that take minutes have fewer")
     options.add_argument("--only", nargs="*", default=[], help="cells whose fault or executor has one of these words")
     options.add_argument("--seed", type=int, default=0)
+    options.add_argument("--log", type=Path, help="file of tries, one a line, to which this run adds")
     options.add_argument("--keep", type=Path, help="folder for the runs of tries that were wrong")
     chosen = options.parse_args()
     print("| fault | executor | tries | done and equal | stopped, by exit code | equal after one more run | wrong |")
     print("|---|---|---|---|---|---|---|", flush=True)
-    wrong = 0
+    cells = [(name, fault, e, most) for name, fault, executors, most in CELLS for e in executors]
+    cells = [c for c in cells if not chosen.only or any(word in f"{c[0]} {c[2]}" for word in chosen.only)]
+    tries = Tries(chosen.log)
     with tempfile.TemporaryDirectory() as top, contextlib.closing(Lasting(Path(top) / "cluster")) as lasting:
-        cells = [(name, fault, e, most) for name, fault, executors, most in CELLS for e in executors]
-        cells = [c for c in cells if not chosen.only or any(word in f"{c[0]} {c[2]}" for word in chosen.only)]
-        expected, seconds = _calm(Path(top), [e for e in EXECUTORS if e == "sync" or any(c[2] == e for c in cells)])
+        if chosen.moments:
+            needed = [e for e in EXECUTORS if e == "sync" or any(c[2] == e for c in cells)]
+            expected, seconds = _calm(Path(top), needed)
         numbers = itertools.count()
         for name, fault, executor, most in cells:
             if os.geteuid() and fault in (fill_disk, other_folder):
                 print(f"| {name} | {executor} | needs root | | | | |", flush=True)
                 continue
-            found: Counter[str] = Counter()
-            rng = random.Random(f"{chosen.seed} {name} {executor}")
+            found = tries.of(name, executor)
+            moments = random.Random(f"{chosen.seed} {name} {executor} {found['tries']}")
             while found["tries"] < min(chosen.moments, most or chosen.moments):
-                one = Try(Path(top) / f"try{next(numbers)}", executor, rng, seconds[executor], lasting=lasting)
+                one = Try(Path(top) / f"try{next(numbers)}", executor, moments, seconds[executor], lasting=lasting)
                 with contextlib.suppress(OverError):
-                    found += _tried(one, fault, expected, chosen.keep)
-            wrong += found["wrong"]
-            codes = ", ".join(f"{n} × {c.removeprefix('exit ')}" for c, n in sorted(found.items()) if c.startswith("exit "))
-            row = (name, executor, found["tries"], found["done"], codes or "–", found["again"], found["wrong"])
-            print(f"| {' | '.join(map(str, row))} |", flush=True)
-    raise SystemExit(bool(wrong))
+                    tries.add(name, executor, _tried(one, fault, expected, chosen.keep))
+            if found["tries"]:
+                print(_row(name, executor, found), flush=True)
+    raise SystemExit(any(found["wrong"] for found in tries.found.values()))
+
+
+def _row(name: str, executor: str, found: Counter[str]) -> str:
+    codes = ", ".join(f"{n} × {c.removeprefix('exit ')}" for c, n in sorted(found.items()) if c.startswith("exit "))
+    row = (name, executor, found["tries"], found["done"], codes or "–", found["again"], found["wrong"])
+    return f"| {' | '.join(map(str, row))} |"
+
+
+class Tries:
+    """What became of tries, by fault and executor, and the file in which they are noted."""
+
+    def __init__(self, log: Path | None) -> None:
+        self.log = log
+        self.found: dict[tuple[str, str], Counter[str]] = {}
+        for line in log.read_text().splitlines() if log is not None and log.exists() else []:
+            name, executor, outcome = json.loads(line)
+            self.of(name, executor).update(outcome)
+
+    def of(self, name: str, executor: str) -> Counter[str]:
+        """The tries of one cell; they grow as tries are added."""
+        return self.found.setdefault((name, executor), Counter())
+
+    def add(self, name: str, executor: str, outcome: Counter[str]) -> None:
+        """Counts one try and notes it."""
+        self.of(name, executor).update(outcome)
+        if self.log is not None:
+            with self.log.open("a") as file:
+                file.write(json.dumps([name, executor, outcome]) + "\n")
 
 
 def _calm(top: Path, executors: list[str]) -> tuple[dict[str, str | None], dict[str, float]]:
@@ -420,7 +452,7 @@ def _tried(one: Try, fault: Callable[[Try], None], expected: dict[str, str | Non
             found["done" if _artifacts(one) == expected else "wrong"] += 1
         elif code == -signal.SIGKILL and fault is kill_run:
             found["exit killed"] += 1
-        elif code in DOCUMENTED and message.startswith("faulty: ") and "Traceback" not in message:
+        elif code in one.codes and message.startswith("faulty: ") and "Traceback" not in message:
             found[f"exit {code}"] += 1
         else:
             found["wrong"] += 1

@@ -9,7 +9,8 @@ KinetreeError
 │   │   └── DisconnectedMeshError   a distance between two components was asked for
 │   ├── HullError             silhouettes or a volume of one frame make no body
 │   ├── StoreError            the folder is not a store, or cannot be read or written
-│   │   └── StoreFullError    no space is left on the device
+│   │   ├── StoreFullError    no space is left on the device
+│   │   └── ServiceError      the service that has a bucket does not answer; exit code 3, the same command may succeed later
 │   └── UnknownNodeError      no such task, node, run or artifact
 ├── ClusterError              the scheduler or the workers are not there; exit code 3, the same command may succeed later
 ├── GraphError                the declarations do not make a graph; raised at import
@@ -63,6 +64,10 @@ class StoreError(InputError):
 
 class StoreFullError(StoreError):
     """No space is left where the store lies."""
+
+
+class ServiceError(StoreError):
+    """The service of a bucket, of the store or of the input, does not answer or failed; the same command may succeed later."""
 
 
 class UnknownNodeError(InputError):

@@ -23,13 +23,15 @@ SECRET = "the-secret-of-the-test"
 
 
 class Between(ThreadingHTTPServer):
-    """Passes requests on, each after a pause; every so many are answered 503 instead."""
+    """Passes requests on, each after a pause; every so many are answered `status` instead."""
 
     daemon_threads = True
 
     def __init__(self, port):
         super().__init__(("127.0.0.1", 0), Passing)
-        self.behind, self.pause, self.refuse_every = port, 0.0, 0
+        self.behind, self.pause, self.refuse_every, self.status = port, 0.0, 0, 503
+        self.refuse_from = None
+        """The request from which on all are refused."""
         self.count = itertools.count(1)
         self.refused = self.requests = 0
         self.asked = Counter()
@@ -44,9 +46,10 @@ class Passing(BaseHTTPRequestHandler):
         server.requests += 1
         server.asked["LIST" if "list-type" in self.path else self.command] += 1
         time.sleep(server.pause)
-        if server.refuse_every and next(server.count) % server.refuse_every == 0:
+        is_out = server.refuse_from is not None and server.requests >= server.refuse_from
+        if is_out or (server.refuse_every and next(server.count) % server.refuse_every == 0):
             server.refused += 1
-            self.answer(503, [("Content-Length", "0")], b"")
+            self.answer(server.status, [("Content-Length", "0")], b"")
             return
         behind = http.client.HTTPConnection("127.0.0.1", server.behind)
         behind.request(self.command, self.path, body, dict(self.headers))

@@ -25,11 +25,11 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError
+from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError, ServiceError
 from kinetree.pipeline.application import Application, Command, Shortcut
 from kinetree.pipeline.command_line.printable import printable, quoted
 
-EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 the cluster failed, try again · 130 interrupted"
+EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 cluster or service failed, try again · 130 interrupted"
 ENVIRONMENT = (
     errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.ENAMETOOLONG, errno.EIO, errno.EMFILE,
     errno.ENFILE, errno.ELOOP, errno.ENOTDIR, errno.ESTALE, errno.ENOMEM,
@@ -124,12 +124,12 @@ def main(application: Application) -> NoReturn:
         with application.active():
             # the command returns the code of a typer.Exit
             code = int(command_line(application)(prog_name=name, standalone_mode=False) or 0)
+    except (ClusterError, ServiceError) as error:
+        _print_error(name, error)
+        code = 3
     except InputError as error:
         _print_error(name, error)
         code = 2
-    except ClusterError as error:
-        _print_error(name, error)
-        code = 3
     except KinetreeError as error:
         _print_error(name, error)
         code = 1

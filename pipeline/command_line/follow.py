@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from kinetree.errors import InputError
+from kinetree.errors import InputError, ServiceError
 from kinetree.pipeline.identity.key import artifact_digest
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.origins import found
@@ -36,7 +36,8 @@ def follow(
     tell    : hears why nothing is computed yet, in words, each reason once
     pause   : waits for so many seconds
     returns : how often it computed; also after an interruption while nothing was under way
-    raises  : InputError where nothing was computed because the input was wrong; KeyboardInterrupt out of a run
+    raises  : InputError where nothing was computed because the input was wrong; ServiceError where a bucket's service failed to
+              the end; KeyboardInterrupt out of a run
     """
     settling, waited, rounds = Settling(), 0.0, 0
     last: Content | None = None
@@ -59,8 +60,10 @@ def follow(
         except InputError as error:
             if str(error) != str(wrong):
                 tell(f"waiting: {error}")
+            if isinstance(error, ServiceError):  # nothing new is needed to try again
+                last = None
             wrong = error
-    if wrong is not None and not rounds:
+    if wrong is not None and (not rounds or isinstance(wrong, ServiceError)):
         raise wrong
     return rounds
 

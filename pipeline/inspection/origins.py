@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from kinetree.errors import InputError
+from kinetree.errors import InputError, ServiceError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import parse
@@ -18,7 +18,7 @@ def found(graph: Graph, config: Config, files: Files, history: History) -> tuple
 
     Where an output folder was named and its input is not to be found, as after a move, what its last run found is taken:
     a task that reads it checks that the bytes are the same.
-    raises : InputError of an origin, where nothing of it is on record
+    raises : InputError of an origin, where nothing of it is on record; ServiceError
     """
     given: dict[str, Mapping[Index, Artifact]] = {}
     notes: list[str] = []
@@ -28,6 +28,8 @@ def found(graph: Graph, config: Config, files: Files, history: History) -> tuple
         try:
             listed = task(params=config.params[task.name], files=files)
             given[task.name] = {(member,): value for member, value in listed.items()} if task.over else {(): listed}
+        except ServiceError:  # it is there and cannot be asked now
+            raise
         except InputError as error:
             recorded = _recorded(graph, task, config, history) if config.is_left else {}
             if not recorded:

@@ -16,6 +16,7 @@ from kinetree.errors import (
     KinetreeError,
     LateNodeError,
     LostWorkerError,
+    ServiceError,
     StoreError,
     StoreFullError,
 )
@@ -272,7 +273,7 @@ class _Loop:
         elif result.status == "undone":
             schedule.put_back(entry.node)
         else:
-            raise (StoreFullError if result.error == "StoreFullError" else _refusal(result))(result.message)
+            raise _refusal(result)
 
     def _mend(self, job: Job, entry: Entry, result: Result) -> None:
         """An input could not be read: whoever made it makes it again, then this node runs."""
@@ -322,5 +323,7 @@ def _twin(result: Result) -> Result:
     return Result("fresh", result.key, result.artifact, 0.0, result.record) if result.status == "ran" else result
 
 
-def _refusal(result: Result) -> type[KinetreeError]:
-    return StoreError if result.error == "StoreError" else ClusterError
+def _refusal(result: Result) -> KinetreeError:
+    """The error with which a worker refused to go on, by its name."""
+    kinds = {kind.__name__: kind for kind in (StoreError, StoreFullError, ServiceError)}
+    return kinds.get(result.error, ClusterError)(result.message)

@@ -14,7 +14,7 @@ import time
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from kinetree.errors import StoreError
+from kinetree.errors import ServiceError, StoreError
 from kinetree.pipeline.storage.place import Place
 from kinetree.pipeline.storage.store import Record, Store, artifact_path
 
@@ -62,6 +62,8 @@ class Sight:
             return
         try:
             problem = self._problem(Store.at(store_url).place)
+        except ServiceError:
+            raise
         except StoreError as error:
             problem = str(error)
         if problem:

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from typing import Any, TypeVar
 
-from kinetree.errors import StoreError
+from kinetree.errors import ServiceError, StoreError
 from kinetree.pipeline.storage.place import Listed
 
 T = TypeVar("T")
@@ -23,6 +23,9 @@ ASKED_AT_ONCE = 16
 """Requests under way where many objects are wanted: a service answers each after tens of milliseconds."""
 RETRIES: Any = {"max_retries": 8, "retry_timeout": timedelta(minutes=3)}
 """A service that answers 503 is asked again, after pauses that grow."""
+_STATUS = re.compile(r"non-2xx status code: (\d{3})")
+_OVERLOADED = ("408", "429")
+"""Statuses below 500 that say nothing of the request: too slow, too many."""
 
 
 class Bucket:
@@ -154,6 +157,12 @@ class Bucket:
         except StoreError:
             raise
         except Exception as error:  # obstore raises one kind per service and cause
+            failure = _failure_of_service(error)
+            if failure:
+                raise ServiceError(
+                    f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {failure}, also when asked again; check"
+                    " AWS_ENDPOINT_URL, then run again to go on"
+                ) from None
             raise StoreError(
                 f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {_short(error)}; check the address, and"
                 " AWS_ENDPOINT_URL, AWS_REGION and the credentials in the environment"
@@ -169,6 +178,19 @@ def _client_options() -> Any:
     names = ("AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT_URL", "AWS_ENDPOINT")
     endpoint = next((os.environ[name] for name in names if os.environ.get(name)), "")
     return {"allow_http": endpoint.startswith("http://")}
+
+
+def _failure_of_service(error: Exception) -> str:
+    """What a service said that is no refusal of what was asked, in words; empty where it refused.
+
+    obstore has one kind of error for all of it; the first line of its text is the request and what came of it.
+    """
+    told = str(error).partition("\n")[0]
+    status = _STATUS.search(told)
+    if status is None:
+        return "the service does not answer" if "HTTP error: " in told else ""
+    is_failure = status[1].startswith("5") or status[1] in _OVERLOADED
+    return f"the service answers {status[1]}" if is_failure else ""
 
 
 def _short(error: Exception) -> str:

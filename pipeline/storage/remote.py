@@ -21,7 +21,7 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from kinetree.errors import InputError, StoreError
+from kinetree.errors import InputError, ServiceError, StoreError
 from kinetree.schemas.array import Artifact
 
 if TYPE_CHECKING:
@@ -174,6 +174,8 @@ def _asked(question: Callable[[], T]) -> T:
     """An answer of the service; what is wrong with it is wrong with the input and not with a store."""
     try:
         return question()
+    except ServiceError:
+        raise
     except StoreError as error:
         raise InputError(str(error)) from None
 

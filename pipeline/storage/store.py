@@ -234,6 +234,8 @@ def _loader(group: Packed, digest: str, name: str, spec: Array | None, expected:
         try:
             files = group.read([path for path in group.spans if path.startswith(f"{name}/")])
             array = decoded({path.removeprefix(f"{name}/"): data for path, data in files.items()}, spec)
+        except StoreError:  # what cannot be reached is not damaged
+            raise
         except (ForeignArrayError, DamagedZipError) as error:
             raise DamagedArtifactError(digest, f"array {name}: {error}") from error
         except Exception as error:  # whatever a codec says of altered bytes

@@ -83,7 +83,7 @@ def test_help_names_every_command_and_the_exit_codes(kinetree):
     code, printed, _ = kinetree("--help")
     assert code == 0
     assert all(f" {command} " in printed for command in COMMANDS)
-    codes = "0 done · 1 nodes failed · 2 the input is wrong · 3 the cluster failed, try again · 130 interrupted"
+    codes = "0 done · 1 nodes failed · 2 the input is wrong · 3 cluster or service failed, try again · 130 interrupted"
     assert codes in " ".join(printed.split())
 
 

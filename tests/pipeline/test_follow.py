@@ -1,10 +1,11 @@
 """A run that follows its input: complete files are computed, growing ones wait, and it ends when it is told to."""
 
+import contextlib
 import os
 
 import pytest
 
-from kinetree.errors import SourceError
+from kinetree.errors import ServiceError, SourceError
 from kinetree.pipeline.command_line.follow import follow
 from kinetree.pipeline.storage.files import Settling
 
@@ -90,6 +91,25 @@ def test_input_that_is_wrong_to_the_end_is_refused(empty):
     with pytest.raises(SourceError, match="no frames in"):
         camera.follow(idle=2.0, poll=1.0)
     assert len(camera.told) == 1
+
+
+@pytest.mark.parametrize("failures", [1, 9])
+def test_service_that_failed_is_asked_again_without_anything_new(empty, failures):
+    def compute(settling):
+        nonlocal failures
+        failures -= 1
+        if failures >= 0:
+            raise ServiceError("store s3://b: the service answers 503")
+        plain(settling)
+
+    empty.write(10)
+    camera = Camera(empty, [None] * 9)
+    plain, camera.compute = camera.compute, compute
+    with contextlib.nullcontext() if failures == 1 else pytest.raises(ServiceError, match="answers 503"):
+        assert camera.follow(idle=4.0, poll=1.0) == 1
+    assert camera.told == ["waiting: store s3://b: the service answers 503"]
+    assert camera.ran == ([["points-10"]] if len(camera.ran) else [])
+    assert len(camera.ran) == (failures < 0)
 
 
 def test_an_interruption_while_nothing_is_under_way_is_the_end(empty):

@@ -6,8 +6,9 @@ import shutil
 import pytest
 import yaml
 
-from kinetree.errors import KinetreeError
+from kinetree.errors import KinetreeError, ServiceError
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.storage.files import Files
 
 
 def moved(toys, to):
@@ -96,6 +97,16 @@ def test_run_without_its_input_is_read_from_its_own_record(toys, tmp_path):
     assert summary["notes"] == [f"source: no frames in {tmp_path / 'frames'}; what the last run found there is used"]
     assert named(toys, there, "smooth.grain=20").run()["status"] == "done"
     assert not {told for told in toys.executions() if told.startswith("points")}
+
+
+def test_frames_on_record_do_not_stand_for_input_that_cannot_be_asked_for_now(toys, monkeypatch):
+    def complete(*_):
+        raise ServiceError("input s3://scans: the service answers 503")
+
+    toys.run()
+    monkeypatch.setattr(Files, "complete", complete)
+    with pytest.raises(ServiceError, match="answers 503"):
+        named(toys, toys.output).plan()
 
 
 def test_frames_on_record_are_only_used_for_the_input_they_were_found_in(toys, tmp_path):
