@@ -2,7 +2,9 @@
 
     python benchmarks/amdahl.py [OUTPUT_FOLDER | --frames 36 --vertices 6000] [--times 3] [--until skeleton]
 
-Prints the speedup by number of workers, the longest path through the graph by task, and the seconds of every task. Without a
+Prints the speedup by number of workers, the longest path through the graph by task, and the seconds of every task. With
+`--path` it also prints, for some numbers of workers, the nodes that the end waited for, each sent when the one before was done,
+by task, and how long workers had nothing to do meanwhile. Without a
 folder it computes a generated human first, in one thread, and counts processor seconds, which no other program disturbs; the
 records of a run hold seconds by the clock.
 
@@ -31,6 +33,7 @@ from kinetree.pipeline.running import execute
 from kinetree.pipeline.task import Space
 
 WORKERS = (1, 2, 4, 8, 16, 64)
+PATHS = (2, 8, 64)
 AT_WORKER, IN_LOOP = 0.003, 0.002
 """Seconds that a node takes beside those on record, at its worker and in the process that sends all of them."""
 FRAME = "frame"
@@ -53,6 +56,16 @@ class Job:
 Jobs = dict[Node, Job]
 
 
+@dataclass(frozen=True)
+class Parcel:
+    """Nodes that travel together: from when to when, and after which other it was sent."""
+
+    nodes: tuple[Node, ...]
+    begin: float
+    end: float
+    sent_after: "Parcel | None"
+
+
 def main() -> None:
     """Prints the tables."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -60,6 +73,7 @@ def main() -> None:
     options.add_argument("--frames", type=int, default=36, help="of the generated human")
     options.add_argument("--vertices", type=int, default=6000, help="of the generated human")
     options.add_argument("--times", type=int, default=1, help="how many times as long the sequence is to be")
+    options.add_argument("--path", type=int, nargs="*", metavar="WORKERS", help="what so many workers wait for (2 8 64)")
     options.add_argument("--until", nargs="+", default=(), help="only these tasks and those they need")
     chosen = options.parse_args()
     with tempfile.TemporaryDirectory() as beside:
@@ -74,6 +88,8 @@ def main() -> None:
     path = longest_path(jobs)
     print(f"\nlongest path: {sum(job.seconds for job in path):.1f} s in {len(path)} nodes")
     _print_tasks(path)
+    for workers in chosen.path or (PATHS if chosen.path is not None else ()):
+        _print_path(jobs, workers)
     print("\nall nodes")
     _print_tasks(jobs.values())
 
@@ -127,8 +143,13 @@ def stretched(jobs: Jobs, times: int) -> Jobs:
 
 
 def makespan(jobs: Jobs, workers: int) -> float:
-    """Seconds until the last node is done, if every free worker takes the deepest node that is ready, with its parcel, and what
-    is aside last.
+    """Seconds until the last node is done."""
+    return max(parcel.end for parcel in scheduled(jobs, workers))
+
+
+def scheduled(jobs: Jobs, workers: int) -> list[Parcel]:
+    """All parcels in the order of their ends, if every free worker takes the deepest node that is ready, with its parcel, and
+    what is aside last.
     """
     waits = {node: set(job.before) for node, job in jobs.items()}
     after: defaultdict[Node, list[Node]] = defaultdict(list)
@@ -138,23 +159,25 @@ def makespan(jobs: Jobs, workers: int) -> float:
     ready = [(job.is_aside, -job.depth, node.at, node) for node, job in jobs.items() if not job.before]
     heapq.heapify(ready)
     sent: set[Node] = set()
-    under_way: list[tuple[float, int, list[Node]]] = []
+    under_way: list[tuple[float, int, float, list[Node], Parcel | None]] = []
     now = 0.0
     numbers = itertools.count()
+    done: list[Parcel] = []
     while ready or under_way:
         while ready and len(under_way) < workers:
             parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[3])
             sent.update(parcel)
             took = sum(jobs[node].seconds + AT_WORKER for node in parcel)
-            heapq.heappush(under_way, (now + took, next(numbers), parcel))
-        done, _, parcel = heapq.heappop(under_way)
-        now = max(done, now) + IN_LOOP * len(parcel)
+            heapq.heappush(under_way, (now + took, next(numbers), now, parcel, done[-1] if done else None))
+        end, _, begin, parcel, sent_after = heapq.heappop(under_way)
+        now = max(end, now) + IN_LOOP * len(parcel)
+        done.append(Parcel(tuple(parcel), begin, now, sent_after))
         for node in parcel:
             for later in after[node]:
                 waits[later].discard(node)
                 if not waits[later] and later not in sent:
                     heapq.heappush(ready, (jobs[later].is_aside, -jobs[later].depth, later.at, later))
-    return now
+    return done
 
 
 def longest_path(jobs: Jobs) -> list[Job]:
@@ -207,6 +230,26 @@ def _copy(job: Job, times: int, number: int) -> Node:
 def _agree(space: Space, node: Node, other_space: Space, other: Node) -> bool:
     shared = tuple(dim for dim in space if dim in other_space)
     return project(node.at, space, shared) == project(other.at, other_space, shared)
+
+
+def _print_path(jobs: Jobs, workers: int) -> None:
+    """By task, how long the end waited for its nodes, and how many seconds workers had nothing to do meanwhile."""
+    parcels = scheduled(jobs, workers)
+    waited: defaultdict[str, list[float]] = defaultdict(lambda: [0.0, 0.0, 0.0])
+    parcel: Parcel | None = parcels[-1]
+    while parcel is not None:
+        took = parcel.end - parcel.begin
+        busy = sum(max(min(p.end, parcel.end) - max(p.begin, parcel.begin), 0.0) for p in parcels)
+        computing = sum(jobs[node].seconds for node in parcel.nodes)
+        for node in parcel.nodes:
+            share = jobs[node].seconds / computing if computing else 1.0 / len(parcel.nodes)
+            row = waited[node.task]
+            row[:] = row[0] + 1, row[1] + share * took, row[2] + share * (workers * took - busy)
+        parcel = parcel.sent_after
+    print(f"\nwhat {workers} workers waited for")
+    print(f"{'task':<24}{'nodes':>8}{'seconds':>10}{'idle':>10}")
+    for task, (nodes, seconds, idle) in sorted(waited.items(), key=lambda row: -row[1][2]):
+        print(f"{task:<24}{nodes:>8.0f}{seconds:>10.2f}{idle:>10.2f}")
 
 
 def _in_order(jobs: Jobs) -> Iterable[Node]:
