@@ -15,6 +15,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec, GzipCodec, ShardingCodec, ZstdC
 from kinetree.errors import StoreError
 from kinetree.pipeline.storage import groups
 from kinetree.pipeline.storage.groups import ForeignArrayError, decoded, group_files, user_arrays
+from kinetree.schemas.dims import Dim
 
 NAMES = ("vertices", "fps", "unit")
 
@@ -212,6 +213,53 @@ def test_stored_group_with_a_codec_that_is_not_ours_is_not_decoded():
     own["zarr.json"] = own["zarr.json"].replace(b'"zstd"', b'"evil"')
     with pytest.raises(ForeignArrayError, match="codecs bytes, evil"):
         decoded(own, Spec)
+
+
+class Numbers:
+    """What a schema would say of an array of any dtype and rank."""
+
+    def __init__(self, array):
+        self.dtype, self.unit, self.dims = str(array.dtype), "1", tuple(Dim(f"d{n}") for n in range(array.ndim))
+
+
+def own_files(array):
+    """The files of one array, as `group_files` writes them."""
+    files = group_files({}, {"x": array}, {"x": Numbers(array)})
+    return {path.removeprefix("x/"): data for path, data in files.items() if path.startswith("x/")}
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (7,), (4, 3), (2, 3, 4), (0, 3)])
+@pytest.mark.parametrize("dtype", ["bool", "uint8", "int32", "float32", "float64"])
+def test_array_of_one_chunk_is_unpacked_as_zarr_unpacks_it_and_without_zarr(monkeypatch, shape, dtype):
+    array = np.random.default_rng(0).integers(0, 2, shape).astype(dtype)
+    files = own_files(array)
+    by_zarr = groups._read(files)
+    monkeypatch.delattr(groups, "_read")
+    found = decoded(files, Numbers(array))
+    assert (found.dtype, found.shape, found.tobytes()) == (by_zarr.dtype, by_zarr.shape, by_zarr.tobytes())
+
+
+def test_array_of_many_chunks_is_read_by_zarr(monkeypatch):
+    monkeypatch.setattr(groups, "CHUNK_BYTES", 64)
+    array = np.arange(60.0).reshape(20, 3)
+    files = own_files(array)
+    assert len(files) > 2
+    np.testing.assert_array_equal(decoded(files, Numbers(array)), array)
+
+
+def test_big_endian_chunk_is_read_as_what_it_is():
+    array = np.arange(6.0)
+    files = own_files(array)
+    files["zarr.json"] = files["zarr.json"].replace(b'"little"', b'"big"')
+    np.testing.assert_array_equal(decoded(files, Numbers(array)), array.astype("<f8").view(">f8"))
+
+
+@pytest.mark.parametrize("held", [5, 7])
+def test_chunk_of_another_size_than_its_array_is_refused(held):
+    files = own_files(np.arange(6.0))
+    files["c/0"] = own_files(np.arange(float(held)))["c/0"]
+    with pytest.raises(ForeignArrayError, match=f"a chunk holds {8 * held} bytes, expected 48"):
+        decoded(files, None)
 
 
 def test_limits_are_those_of_the_documentation():
