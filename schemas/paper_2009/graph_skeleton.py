@@ -15,3 +15,9 @@ class GraphSkeletonParams(KinematicTreeParams):
     removal_cost: float = Field(default=0.0025, gt=0)
     """Motion of the aligned surface left unexplained without a cluster, where joints are rotation centres; share of the root of
     the area."""
+    second_ends: bool = True
+    """Whether the last part of a limb also ends where it stands out beside its tip, as a foot does at the heel; not used where
+    joints are edges."""
+    root: Literal["limbs", "surface"] = "limbs"
+    """limbs: the root lies amid the joints of the limbs that hang on it, if the body goes on in a trunk beside them; surface:
+    amid its own surface. Not used where joints are edges."""

@@ -63,9 +63,10 @@ def _centres(
     label = rigid_clusters(V, F, x, confidence, area, np.array(s.label), params.removal_cost)
     part = part_motions(V, x, confidence, area, label, params.removal_cost)
     leaves = np.array(s.leaf_vertex)
+    settings = tree_settings(params)._replace(second_ends=params.second_ends, root_amid_limbs=params.root == "limbs")
     return numerics.kinematic_tree(
         V, F, x, area, part.label, part.R, part.t, part.residual, leaves, confidence, evidence,
-        settings=tree_settings(params),
+        settings=settings,
     )  # fmt: skip
 
 

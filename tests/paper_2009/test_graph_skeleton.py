@@ -1,11 +1,14 @@
 """Contract of graph_skeleton: joints of the body, lengths held, in both ways of placing them."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from volumetric import volumetric
 
 from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.paper_2009.graph_skeleton import graph_skeleton
 
 
@@ -50,3 +53,17 @@ def test_joints_follow_the_aligned_surface_and_not_the_nodes() -> None:
     true = {t: a.model_copy(update={"vertices": here.body.x[t]}) for t, a in here.alignment.items()}
     tree = graph_skeleton(here.integrated_structure, here.graph_motion, true, here.mesh, GraphSkeletonParams())
     assert away(tree).max() < 0.5 * errors(letter=False).max()
+
+
+def test_second_ends_and_the_root_follow_their_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
+    here, asked = volumetric(), []
+
+    def noted(*given: Any, settings: Any, **named: Any) -> Any:
+        asked.append((settings.second_ends, settings.root_amid_limbs))
+        return whole(*given, settings=settings, **named)
+
+    whole = numerics.kinematic_tree
+    monkeypatch.setattr(numerics, "kinematic_tree", noted)
+    for chosen in (GraphSkeletonParams(), GraphSkeletonParams(second_ends=False, root="surface")):
+        graph_skeleton(here.integrated_structure, here.graph_motion, here.alignment, here.mesh, chosen)
+    assert asked == [(True, True), (False, False)]

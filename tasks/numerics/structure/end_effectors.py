@@ -29,7 +29,7 @@ def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) 
     for part in range(len(parents)):
         tips = [int(v) for v in leaves if label[v] == part]
         bare = part > 0 and not (parents == part).any()
-        far = _from_border(V, edge, label, part) if bare or len(tips) > 1 else np.zeros(len(V))
+        far = from_border(V, edge, label, part) if bare or len(tips) > 1 else np.zeros(len(V))
         if bare and not tips:
             tips = [int(np.argmax(far))]
         ends += [(part, v) for v in sorted(tips, key=lambda v: (-far[v], *V[v]))]
@@ -49,7 +49,7 @@ def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer
     return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
 
 
-def _from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
+def from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
     """(vertex,) distance along the part's own edges from its border, mesh unit; 0 elsewhere or where there is no path."""
     edge = edge[label[edge[:, 0]] == part]
     inside = label[edge[:, 1]] == part

@@ -17,7 +17,9 @@ from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.pruning import Dropped, Pruned, PruningSettings, pruned
+from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
 
 
@@ -45,6 +47,10 @@ class KinematicTreeSettings(NamedTuple):
     Not recorded. Joints move by 0.1 % of the height at most when it is halved or doubled."""
     rigid_weight: float = 0.75
     """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
+    second_ends: bool = False
+    """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
+    root_amid_limbs: bool = False
+    """Whether the root lies amid the limbs that hang on it, see `root_place`, and not amid its surface."""
 
 
 class KinematicTree(NamedTuple):
@@ -148,6 +154,8 @@ def kinematic_tree(
     share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
     support = (np.minimum(share, share[:, above]) >= FramePosesSettings().seen).sum(axis=0)
+    if chosen.second_ends:
+        leaves = np.concatenate([leaves, second_ends(V, F, label, tree.parents, leaves)])
     ends = end_effectors(V, F, label, tree.parents, leaves)
     body, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, drift, support, chosen)
     return body, _derivation(left, used, given, body, order, R, t)
@@ -229,7 +237,7 @@ def _border_degrees(tree: PartTree) -> Floats:
 def _joints(
     V: Floats, area: Floats, label: Ints, W: Floats, left: Pruned, chosen: KinematicTreeSettings
 ) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected amid their border or on centre lines, and their drift; the root's is its middle."""
+    """Joints in the tree's order, expected amid their border or on centre lines, and their drift."""
     parts, tree, met = left.parts, left.part_tree.tree, left.part_tree.borders
     rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
@@ -241,6 +249,8 @@ def _joints(
     prior = RotationCentresSettings(chosen.spread, chosen.frames_alike, chosen.far)
     joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], residual, parts.confidence, prior)
     rest[1:], drift[1:] = joints.rest, joints.drift
+    if chosen.root_amid_limbs:
+        rest[0] = root_amid_limbs(rest, tree.parents, rest[0])
     return rest, drift
 
 

@@ -3,18 +3,28 @@
 import numpy as np
 import pytest
 import trimesh
-from articulated import Known, chain, swings, three_arms
+from articulated import Known, chain, moved, swings, three_arms
 from limbs import bent, rotation
 from shipped import PARTS, TREE
 
-from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.kinematic_tree import (
+    Derivation,
+    KinematicTree,
+    KinematicTreeSettings,
+    kinematic_tree,
+)
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 
 
-def both(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> tuple[KinematicTree, Derivation]:
+def both(
+    body: Known,
+    leaves: tuple[int, ...] = (),
+    confidence: np.ndarray | None = None,
+    settings: KinematicTreeSettings = TREE,
+) -> tuple[KinematicTree, Derivation]:
     tips = np.array(leaves, dtype=np.int64)
     known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
-    return kinematic_tree(*known, tips, confidence, settings=TREE)
+    return kinematic_tree(*known, tips, confidence, settings=settings)
 
 
 def of(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> KinematicTree:
@@ -188,3 +198,22 @@ def test_lengths_before_they_are_held_are_those_of_bones_that_parts_share() -> N
     assert derivation.free_length[bones] == pytest.approx(12, abs=1.0)
     assert derivation.free_deviation.max() < 0.005 * 12
     assert derivation.free_length[0] == 0.0
+
+
+def test_a_last_part_that_forks_has_a_second_end_where_asked_for() -> None:
+    arms = three_arms()
+    longer = arms.V + np.maximum(arms.V[:, :1] - 12.0, 0.0) * [4.0, 0.0, 0.0]  # so that the fork is not the root
+    fork = moved(longer, arms.F, np.eye(2)[np.where(arms.label == 1, 0, 1)], arms.joints[:2], np.array([-1, 0]), swings(24, 2))
+    prong = int(np.argmin(arms.V[:, 1]))
+    ends = [both(fork, (prong,), None, TREE._replace(second_ends=s))[0].names for s in (False, True)]
+    assert ends == [("root", "limb_a_1", "limb_a_end"), ("root", "limb_a_1", "limb_a_end_1", "limb_a_end_2")]
+
+
+def test_root_amid_its_limbs_moves_no_other_joint(monkeypatch: pytest.MonkeyPatch) -> None:
+    body = three_arms()
+    place = np.array([1.0, -2.0, 0.5])
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.kinematic_tree.root_amid_limbs", lambda *_: place)
+    before, after = (both(body, (), None, TREE._replace(root_amid_limbs=s))[0] for s in (False, True))
+    assert np.linalg.norm(before.rest[0] - place) > 1.0
+    np.testing.assert_allclose(after.rest[0], place)
+    np.testing.assert_allclose(after.positions[:, 1:], before.positions[:, 1:], atol=1e-6)
