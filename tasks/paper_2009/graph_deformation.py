@@ -15,7 +15,6 @@ from kinetree.schemas.paper_2009.perg import Perg
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.paper_2009 import model_fit as numerics
 from kinetree.tasks.numerics.paper_2009.graph_deformation import Forces
-from kinetree.tasks.numerics.paper_2014.alignment_quality import alignment_quality
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.articulated_frame import SkinnedBody
 
@@ -51,17 +50,17 @@ def deformed_model(
     tree = numerics.Model(**of_tree, size=model.size)
     body = _body(*(np.asarray(getattr(model, name)).tobytes() for name in of_body))
     pose = numerics.at_rest(tree)
-    V, F = np.array(mesh.vertices), mesh.faces.astype(np.int64)
+    surface = Target.of(np.array(mesh.vertices), mesh.faces, model.size, params.samples)
     if previous is not None:
         last = numerics.ModelPose(np.array(previous.position), np.array(previous.rotation), 0.0)
         target = _target_graph(perg, model, leaves, frame)
         pose = numerics.drawn(tree, last, target, _forces(params), branches=params.branches)
         if params.surface:
-            surface = Target.of(V, F, model.size, params.samples)
             pose = numerics.best_laid(tree, body, [pose, last], surface, params.hold)
     x = numerics.posed_surface(tree, body, pose)
-    quality = alignment_quality(body.V, x, body.F, V, F, model.size, tracked=False)
-    return {**pose._asdict(), "vertices": x, **quality._asdict()}
+    quality = numerics.model_quality(body, x, surface)
+    of_surface = {name: getattr(quality, name) for name in ("residual", "stretch", "confidence", "uncovered")}
+    return {**pose._asdict(), "vertices": x, **of_surface}
 
 
 def _forces(params: GraphDeformationParams) -> Forces:

@@ -8,14 +8,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.paper_2009.graph_deformation import Forces, along_branches, deformed_graph, least_turns
-from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.correspondence import Target, local_matches
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed
-from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, joints
+from kinetree.tasks.numerics.registration.vertex_confidence import VertexConfidence, vertex_confidence
+from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, joints, surface
 from kinetree.tasks.numerics.structure.surface_fit import SurfaceFitSettings, fitted_to_surface
-from kinetree.tasks.numerics.structure.surface_matches import searched, uncovered
+from kinetree.tasks.numerics.structure.surface_matches import Matches, uncovered
 
 UNCOVERED = 0.08
 """Share of a frame's surface that a fit may leave uncovered before another start is tried. Chosen on carved humans, where good
@@ -100,12 +103,31 @@ def best_laid(model: Model, body: SkinnedBody, starts: list[ModelPose], frame: T
     for start in starts:
         fit = laid_on(model, body, start, frame, hold)
         pose = FramePose(fit.rotation, fit.position[0])
-        left = float(uncovered(body, frame, searched(body, pose, frame)).mean())
+        left = uncovered_share(body, pose, frame)
         if left < least:
             best, least = fit, left
         if least <= UNCOVERED:
             break
     return best
+
+
+def uncovered_share(body: SkinnedBody, pose: FramePose, frame: Target) -> float:
+    """Share of a frame's samples that a pose of the body leaves uncovered, 0 to 1.
+
+    Only the frame's samples are matched with the body: the other way takes most of `surface_matches.searched`.
+    """
+    x, n = surface(body, pose)
+    V, N, s = frame.V[frame.sample], frame.N[frame.sample], body.sample
+    tree = cKDTree(np.hstack([x[s], frame.beta * n[s]]), balanced_tree=False)
+    nearest = s[tree.query(np.hstack([V, frame.beta * N]))[1]]
+    backward = local_matches(V, N, nearest, x, n, body.start, body.ring, frame.beta)
+    none = np.zeros(0, np.int64)
+    return float(uncovered(body, frame, Matches(x, n, none, none > 0, backward)).mean())
+
+
+def model_quality(body: SkinnedBody, x: Floats, frame: Target) -> VertexConfidence:
+    """How well the model's surface x (vertex, xyz) lies on a frame; that much is uncovered does not lower its confidence."""
+    return vertex_confidence(body.V, x, smoothed_normals(x, body.F), body.F, frame, usual=1.0)
 
 
 def posed_surface(model: Model, body: SkinnedBody, pose: ModelPose) -> Floats:

@@ -10,7 +10,8 @@ from kinetree.tasks.numerics.paper_2009.graph_loops import end_branches
 from kinetree.tasks.numerics.paper_2009.perg import perg
 from kinetree.tasks.numerics.paper_2009.reeb_graph import reeb_graph
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.articulated_frame import SkinnedBody
+from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody
+from kinetree.tasks.numerics.structure.surface_matches import searched, uncovered
 
 
 def test_tube_that_bends_is_followed_by_forces_and_laid_on_its_surface() -> None:
@@ -31,6 +32,9 @@ def test_tube_that_bends_is_followed_by_forces_and_laid_on_its_surface() -> None
     off = [np.linalg.norm(model_fit.posed_surface(model, skin, p) - W, axis=1).mean() for p in (rest, drawn, laid)]
     assert off[2] < 0.5 * off[1] < 0.5 * off[0]
     assert off[2] < 0.1
+    pose = FramePose(laid.rotation, laid.position[0])
+    frame = Target.of(W, F, skin.size, 500)
+    assert model_fit.uncovered_share(skin, pose, frame) == uncovered(skin, frame, searched(skin, pose, frame)).mean()
     mirrored = drawn._replace(position=drawn.position * [1.0, -1.0, 1.0])
     best = model_fit.best_laid(model, skin, [mirrored, drawn], Target.of(W, F, skin.size), 0.02)
     assert np.linalg.norm(model_fit.posed_surface(model, skin, best) - W, axis=1).mean() < 0.15
