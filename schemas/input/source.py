@@ -34,6 +34,8 @@ class SourceParams(Params):
     """The frames wanted, as start:stop:step over the numbers of the frames, which are those in the files' names: 10:60:2."""
     on_bad_frame: Literal["drop", "fail"] = "drop"
     """Meshes that cannot be read, or stand out in size, place or pieces: drop goes on without them, fail refuses the run."""
+    other_body: Literal["drop", "keep"] = "drop"
+    """Frames from which on the volume says another body: drop counts them as bad frames, keep takes them for the same body."""
     bad_share: float = Field(default=0.2, ge=0, lt=1)
     """Largest share of the frames that is dropped; with more of them the run is refused."""
 

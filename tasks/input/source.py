@@ -17,7 +17,14 @@ from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import BadFrame, Kind, Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
-from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad, refuse_other_bodies
+from kinetree.tasks.numerics.input.bad_frames import (
+    FrameMeasures,
+    bad_frames,
+    frame_measures,
+    frames_of_other_bodies,
+    refuse_bad,
+    refuse_other_bodies,
+)
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
 from kinetree.tasks.numerics.input.formats import suffixes as mesh_suffixes
@@ -35,7 +42,7 @@ from kinetree.tasks.numerics.input.source import (
 )
 from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
 
-REMOTE = "content and measures/1"
+REMOTE = "content and measures/2"
 """How the memory of files calls what is read of a mesh in a bucket."""
 
 
@@ -80,7 +87,11 @@ def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -
 
     raises : SourceError where there are more of them than may be dropped
     """
-    bad = bad_frames(_measured(sources, files))
+    measured = _measured(sources, files)
+    bad = bad_frames(measured)
+    if params.other_body == "drop":
+        usable = {t: m for t, m in measured.items() if t not in bad and not isinstance(m, str)}
+        bad = dict(sorted((bad | frames_of_other_bodies(usable)).items()))
     refuse_bad(bad, len(sources), params.bad_share if params.on_bad_frame == "drop" else None)
     good = [t for t in sources if t not in bad]
     if bad and len(good) < 2:
@@ -97,7 +108,7 @@ def _measured(sources: Mapping[int, Source], files: Files) -> dict[int, FrameMea
     kinds = {s.kind for s in sources.values()}
     if kinds <= {"npz", "zarr"}:
         path, kind = next(iter(sources.values())).path, kinds.pop()
-        held = files.parts(path, f"{kind}/measures/1", lambda where: _measures_of_parts(where, kind))
+        held = files.parts(path, f"{kind}/measures/2", lambda where: _measures_of_parts(where, kind))
         return {t: _parsed(held[s.part or 0]) for t, s in sources.items()}
     if kinds == {"file"}:
         return {t: _parsed(_measures(s.path, files)) for t, s in sources.items()}
@@ -108,7 +119,7 @@ def _measures(path: str, files: Files) -> str:
     """The measures of one mesh file, or why it cannot be read, as JSON."""
     if files.is_remote(path):
         return files.parts(path, REMOTE, _content_and_measures)[1]
-    return files.parts(Path(path), "measures/1", _measures_of_file)[0]
+    return files.parts(Path(path), "measures/2", _measures_of_file)[0]
 
 
 def _content_and_measures(path: Path) -> Sequence[str]:
@@ -136,8 +147,8 @@ def _parsed(text: str) -> FrameMeasures | str:
     held = json.loads(text)
     if isinstance(held, str):
         return held
-    area, size, (x, y, z), vertices, pieces = held
-    return FrameMeasures(area, size, (x, y, z), vertices, pieces)
+    area, size, (x, y, z), vertices, pieces, volume = held
+    return FrameMeasures(area, size, (x, y, z), vertices, pieces, volume)
 
 
 def _found(where: str, files: Files) -> dict[int, Source]:

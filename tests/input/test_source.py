@@ -5,6 +5,7 @@ import shutil
 
 import numpy as np
 import pytest
+import trimesh
 import zarr
 
 from kinetree.errors import MeshError, SourceError
@@ -42,8 +43,8 @@ def files(tmp_path):
 def found(files, tmp_path):
     """The frames at a path below the test's folder."""
 
-    def find(where, frames=":"):
-        return source(SourceParams(input=str(tmp_path / where), frames=frames), files)
+    def find(where, frames=":", **params):
+        return source(SourceParams(input=str(tmp_path / where), frames=frames, **params), files)
 
     return find
 
@@ -171,6 +172,21 @@ def test_packed_frame_of_another_size_is_dropped(found, tmp_path, where, write):
     frames = found(where)
     assert list(frames) == [0, 1, 3, 4, 5]
     assert [bad.frame for bad in frames[1].dropped] == [2]
+
+
+def test_second_body_numbered_on_in_the_folder_is_refused_dropped_or_kept_as_wished(found, tmp_path):
+    box = trimesh.creation.box((1, 2, 5))
+    for t in range(16):
+        heavier = 1.05 if t >= 10 else 1.0
+        trimesh.Trimesh(box.vertices * heavier + [0.1 * t, 0, 0], box.faces).export(tmp_path / f"frame_{t:03d}.off")
+    with pytest.raises(SourceError, match=r"^6 of 16 frames cannot be used .*: frames 10 to 15 show another body: "):
+        found(tmp_path)
+    kept = found(tmp_path, bad_share=0.4)
+    assert list(kept) == list(range(10))
+    assert [bad.frame for bad in kept[9].dropped] == list(range(10, 16))
+    assert len(found(tmp_path, other_body="keep")) == 16
+    with pytest.raises(SourceError, match="set source.on_bad_frame=drop"):
+        found(tmp_path, on_bad_frame="fail", bad_share=0.4)
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────

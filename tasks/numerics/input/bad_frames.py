@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats
 from kinetree.tasks.numerics.geometry.normals import face_areas
+from kinetree.tasks.numerics.input.body_changes import body_changes, other_bodies
 
 
 class BadFrameSettings(NamedTuple):
@@ -30,23 +31,29 @@ class BadFrameSettings(NamedTuple):
     tail: float = 0.05
     """Share of the area at either end of each axis that size and centre leave out, so that debris does not count."""
     takes: float = 1.3
-    """Factor between the median areas of two takes of one body; between two frames of one body it is at most 1.08."""
+    """Factor between the median areas or volumes of two takes; between two frames of one body at most 1.08 and 1.16."""
+    open: float = 0.05
+    """Length of the mean normal, weighted by area, from which on a surface encloses no volume; 0 where it is closed."""
     least: int = 3
     """Frames from which on there is a median to compare with."""
 
 
 class FrameMeasures(NamedTuple):
-    """What one frame's surface is like: area length², size length, centre (xyz), vertices, pieces of 5 % of the area."""
+    """What one frame's surface is like.
+
+    Area length², size length, centre (xyz), vertices, pieces of 5 % of the area, volume length³ or 0 where the surface is open.
+    """
 
     area: float
     size: float
     centre: tuple[float, float, float]
     vertices: int
     pieces: int
+    volume: float
 
 
 def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
-    """Area, size and centre without debris, vertices in faces and large pieces of a surface.
+    """Area, size and centre without debris, vertices in faces, large pieces and volume of a surface.
 
     V, F : (vertex, xyz) mesh unit · (face, corner)
     """
@@ -65,7 +72,8 @@ def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
     _, piece = connected_components(links, directed=False)
     shares = np.bincount(piece[G[:, 0]], weight) / weight.sum()
     x, y, z = map(float, mid)
-    return FrameMeasures(total * scale**2, float(np.linalg.norm(high - low)), (x, y, z), n, int((shares >= tail).sum()))
+    volume = _volume(X, F, total) * scale**3
+    return FrameMeasures(total * scale**2, float(np.linalg.norm(high - low)), (x, y, z), n, int((shares >= tail).sum()), volume)
 
 
 def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSettings | None = None) -> dict[int, str]:
@@ -74,7 +82,7 @@ def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSe
     measured : by frame number, ascending; a text says why a frame cannot be read
     """
     limit = settings or BadFrameSettings()
-    bad = {t: m for t, m in measured.items() if isinstance(m, str)}
+    bad: dict[int, str] = {t: m for t, m in measured.items() if isinstance(m, str)}
     surfaces = {t: m for t, m in measured.items() if not isinstance(m, str)}
     bad |= {t: "its faces have no area" for t, m in surfaces.items() if not 0 < m.area < np.inf}
     good = {t: m for t, m in surfaces.items() if t not in bad}
@@ -85,30 +93,56 @@ def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSe
     return dict(sorted(bad.items()))
 
 
+def frames_of_other_bodies(measured: Mapping[int, FrameMeasures]) -> dict[int, str]:
+    """Frames of another body than most, where a sequence goes on with one of another size, each with the reason.
+
+    measured : by frame number, ascending; the frames that are not bad
+    """
+    volume = np.array([m.volume for m in measured.values()])
+    begins = body_changes(np.array([m.area for m in measured.values()]), volume)
+    if not len(begins):
+        return {}
+    frames = np.array(list(measured))
+    is_other = other_bodies(volume, begins)
+    usual = float(np.median(volume[~is_other & (volume > 0)]))
+    reasons: dict[int, str] = {}
+    for rows in np.split(np.arange(len(frames)), begins):
+        own = volume[rows][volume[rows] > 0]
+        reason = (
+            f"frames {frames[rows[0]]} to {frames[rows[-1]]} show another body: their volume is {np.median(own):.4g},"
+            f" that of the others {usual:.4g}; compute them by themselves, or set source.other_body=keep"
+        )
+        reasons |= {int(t): reason for t in frames[rows[is_other[rows]]]}
+    return reasons
+
+
 def refuse_bad(bad: Mapping[int, str], count: int, share: float | None) -> None:
     """Refuses a sequence with bad frames, or with more of them than a share; None allows none. Raises SourceError."""
     if not bad or (share is not None and len(bad) <= share * count):
         return
-    named = "; ".join(f"frame {t}: {reason}" for t, reason in list(bad.items())[:3])
-    more = f"; and {len(bad) - 3} more" if len(bad) > 3 else ""
+    told = list(dict.fromkeys(text if text.startswith("frames ") else f"frame {t}: {text}" for t, text in bad.items()))
+    named = "; ".join(told[:3])
+    more = f"; and {len(told) - 3} more" if len(told) > 3 else ""
     remedy = "set source.on_bad_frame=drop to go on without them" if share is None else f"source.bad_share allows {share:g}"
     raise SourceError(f"{len(bad)} of {count} frames cannot be used ({remedy}): {named}{more}")
 
 
 def refuse_other_bodies(measured: Mapping[str, Sequence[FrameMeasures]], settings: BadFrameSettings | None = None) -> None:
-    """Refuses takes whose surfaces are not as large as those of the first; raises SourceError.
+    """Refuses takes whose bodies are not as large as that of the first, by area or volume; raises SourceError.
 
     measured : by name of the take, in their order; takes that are no meshes yet have none
     """
     limit = (settings or BadFrameSettings()).takes
-    area = {name: float(np.median([m.area for m in frames])) for name, frames in measured.items() if frames}
-    first = next(iter(area), "")
-    for name, value in area.items():
-        if not area[first] / limit <= value <= area[first] * limit:
-            raise SourceError(
-                f"take {name} is not of the same body as take {first}: the median area of its frames is {value:.4g}, not"
-                f" {area[first]:.4g}; is it in another unit? Compute it by itself, or leave it out"
-            )
+    for what in ("area", "volume"):
+        usual = {name: float(np.median([getattr(m, what) for m in frames])) for name, frames in measured.items() if frames}
+        usual = {name: value for name, value in usual.items() if value > 0}
+        first = next(iter(usual), "")
+        for name, value in usual.items():
+            if not usual[first] / limit <= value <= usual[first] * limit:
+                raise SourceError(
+                    f"take {name} is not of the same body as take {first}: the median {what} of its frames is {value:.4g}, not"
+                    f" {usual[first]:.4g}; is it in another unit? Compute it by itself, or leave it out"
+                )
 
 
 def _of_another_size(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> dict[int, str]:
@@ -143,6 +177,15 @@ def _elsewhere(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> di
         if distance > allowed:
             bad[t] = f"it lies {distance / size:.3g} sizes of the body away from the frames around it"
     return bad
+
+
+def _volume(V: Floats, F: Faces, area: float) -> float:
+    """The volume that a nearly closed surface encloses; 0 where it is open, or turned over in places."""
+    X = V - V[F].mean(axis=(0, 1))
+    doubled = np.cross(X[F[:, 1]] - X[F[:, 0]], X[F[:, 2]] - X[F[:, 0]])
+    if float(np.linalg.norm(doubled.sum(axis=0))) > 2 * BadFrameSettings().open * area:
+        return 0.0
+    return abs(float(np.einsum("ij,ij->", X[F[:, 0]], doubled))) / 6
 
 
 def _quantiles(values: Floats, weight: Floats, shares: tuple[float, ...]) -> list[float]:

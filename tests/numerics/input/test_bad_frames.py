@@ -5,7 +5,14 @@ import pytest
 import trimesh
 
 from kinetree.errors import SourceError
-from kinetree.tasks.numerics.input.bad_frames import FrameMeasures, bad_frames, frame_measures, refuse_bad, refuse_other_bodies
+from kinetree.tasks.numerics.input.bad_frames import (
+    FrameMeasures,
+    bad_frames,
+    frame_measures,
+    frames_of_other_bodies,
+    refuse_bad,
+    refuse_other_bodies,
+)
 
 BOX = trimesh.creation.box((1, 2, 5)).subdivide().subdivide()
 V, F = np.array(BOX.vertices), np.array(BOX.faces)
@@ -24,6 +31,13 @@ def test_measures_of_a_box():
     assert m.centre == pytest.approx((0, 0, 0), abs=0.5)
     assert 0.8 * np.sqrt(30) < m.size <= np.sqrt(30) + 1e-9
     assert (m.vertices, m.pieces) == (len(V), 1)
+    assert m.volume == pytest.approx(10)
+
+
+def test_volume_of_an_open_surface_is_not_known():
+    assert frame_measures(V, F[BOX.triangles_center[:, 2] < 2.4]).volume == 0  # a box without its lid
+    assert frame_measures(V, F[1:]).volume == pytest.approx(10, rel=0.02)  # a small hole
+    assert frame_measures(V + 1e4, F[:, ::-1]).volume == pytest.approx(10)
 
 
 @pytest.mark.parametrize("step", [0.0, 0.3, 40.0])
@@ -84,10 +98,32 @@ def test_share_decides_what_is_refused():
         refuse_bad(bad, 20, None)
 
 
+def walk_on(*scales):
+    """Measures of a box that walks, of these sizes by frame."""
+    return {t: frame_measures(V * scale + [0.3 * t, 0, 0], F) for t, scale in enumerate(scales)}
+
+
+def test_frames_from_which_on_a_larger_body_walks_are_named():
+    assert frames_of_other_bodies(walk_on(*[1.0] * 16)) == {}
+    bad = frames_of_other_bodies(walk_on(*[1.0] * 10, *[1.03] * 6))
+    assert list(bad) == list(range(10, 16))
+    (reason,) = set(bad.values())
+    assert reason.startswith("frames 10 to 15 show another body: their volume is 10.93, that of the others 10; compute them by")
+    with pytest.raises(
+        SourceError, match=r"^6 of 16 frames cannot .*allows 0\.2\): frames 10 to 15 show another body: .*=keep$"
+    ):
+        refuse_bad(bad, 16, 0.2)
+
+
 def test_a_take_whose_body_is_larger_is_refused_by_name():
-    def take(area):
-        return [FrameMeasures(area * (1 + 0.01 * t), 2.0, (0.0, 0.0, 0.0), 500, 1) for t in range(5)]
+    def take(area, volume=1.0):
+        return [FrameMeasures(area * (1 + 0.01 * t), 2.0, (0.0, 0.0, 0.0), 500, 1, volume) for t in range(5)]
 
     refuse_other_bodies({"a": take(4.0), "b": take(4.3), "c": [], "d": take(3.6)})
     with pytest.raises(SourceError, match="take c is not of the same body as take a: .* is 8.16, not 4.08"):
         refuse_other_bodies({"a": take(4.0), "b": take(4.3), "c": take(8.0)})
+    refuse_other_bodies({"a": take(4.0), "b": take(4.0, 1.2), "c": take(4.0, 0.0)})
+    with pytest.raises(
+        SourceError, match="take b is not of the same body as take a: the median volume of its frames is 1.4, not 1"
+    ):
+        refuse_other_bodies({"a": take(4.0), "b": take(4.0, 1.4)})
