@@ -108,6 +108,8 @@ def _run(found: "Dataset", chosen: dict[str, Any], *, quiet: bool, as_json: bool
     if not as_json and not quiet:
         for note in told["notes"] if out.is_terminal else ():
             err.print(printable(note), markup=False)
+    if "metrics_error" in told and not as_json:
+        err.print(printable(told["metrics_error"]), markup=False)
     if told["status"] == "failed":
         if not as_json:
             _print_failures(told)

@@ -25,6 +25,7 @@ from kinetree.pipeline.dataset import dataset_config
 from kinetree.pipeline.dataset.dataset_config import DatasetConfig
 from kinetree.pipeline.dataset.dataset_plan import DatasetPlan, PlannedSequence, planned, rate
 from kinetree.pipeline.dataset.lease import Leases, holder
+from kinetree.pipeline.dataset.metrics import Metrics
 from kinetree.pipeline.dataset.night import Night, input_changed, now
 from kinetree.pipeline.dataset.rotation import RotatingLog
 from kinetree.pipeline.dataset.sequences import chosen
@@ -154,6 +155,7 @@ class Dataset:
         Owned.of(self.config.root).claim([SUMMARY, LOG, OUTCOME])
         log = RotatingLog(self.config.root / LOG, bytes_of(self.config.retention.log_size), self.config.retention.logs)
         told: dict[str, Any] = {"format": FORMAT, "file": self.config.file, "status": "stopped", "started": began}
+        metrics = Metrics.of(self.config.metrics, self.application.name) if self.config.metrics is not None else None
         until = None if max_hours is None else time.monotonic() + 3600 * max_hours
         with contextlib.closing(log), Leases() as leases, Workers(self.config.compute, client) as workers:
             summing = Summing.of(self.config, self.application, self.store)
@@ -162,7 +164,7 @@ class Dataset:
                 dict(self.config.inputs),
                 summing.linked if summing is not None else (),
                 leases,
-                (log, *listeners),
+                (log, *([metrics] if metrics is not None else []), *listeners),
                 lambda: until is not None and time.monotonic() >= until,
             )
             try:
@@ -181,6 +183,8 @@ class Dataset:
                 raise
             finally:
                 told |= {"ended": now(), "seconds": round(time.perf_counter() - started, 3), **self._described(night)}
+                if metrics is not None:
+                    told |= metrics.write(told)
                 self._leave(told)
         return told
 

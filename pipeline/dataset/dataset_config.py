@@ -5,8 +5,8 @@ name: "{stem}"              how a name is made of a path
 output: results/{name}
 store: results/store        shared
 overrides: {walk_07: {task: {parameter: value}}, "dance_*": …}
-compute, on_failure, retention, and the blocks of tasks, which all sequences share; in their paths {name} and {input} stand
-for each sequence's name and path
+compute, on_failure, metrics, retention, and the blocks of tasks, which all sequences share; in their paths {name} and {input}
+stand for each sequence's name and path
 """
 
 import os
@@ -26,7 +26,7 @@ from kinetree.pipeline.settings.config import RUN_KEYS, Compute, Config, Origins
 from kinetree.pipeline.storage.sizes import bytes_of
 from kinetree.pipeline.suggest import nearest
 
-KEYS = ("sequences", "name", "overrides", "on_failure", "retention")
+KEYS = ("sequences", "name", "overrides", "on_failure", "metrics", "retention")
 """The keys that a data set has beside those of a single run."""
 OUTPUT = f"results/{NAME}"
 STORE = "store"
@@ -78,6 +78,8 @@ class DatasetConfig:
     compute: Compute
     on_failure: tuple[str, ...] = ()
     """A program and its arguments; the path of the summary is added as the last."""
+    metrics: Path | None = None
+    """The file to which a run writes its metrics; None writes none."""
     retention: Retention = field(default_factory=Retention)
     notes: tuple[str, ...] = ()
     """What is to be known, e.g. that a pattern matches nothing."""
@@ -127,7 +129,8 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
     retention = checked(Retention, given.get("retention") or {}, "retention", Origins(where, frozenset(given), {}))
     hook = _hook(given.get("on_failure"), where)
-    return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, retention, tuple(notes))
+    metrics = _metrics(given.get("metrics"), base, where)
+    return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, metrics, retention, tuple(notes))
 
 
 def with_compute(config: DatasetConfig, compute: Compute) -> DatasetConfig:
@@ -194,6 +197,14 @@ def _hook(given: Any, where: str) -> tuple[str, ...]:
             " shell reads it"
         )
     return tuple(given)
+
+
+def _metrics(given: Any, base: Path, where: str) -> Path | None:
+    if given is None:
+        return None
+    if not isinstance(given, str) or not given or "://" in given:
+        raise ConfigError(f"{where}: metrics: expected the path of a file, e.g. metrics: results/metrics.prom, got {given!r}")
+    return base / Path(given).expanduser()
 
 
 def _refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:
