@@ -50,7 +50,7 @@ class Metrics:
         registry = CollectorRegistry()
         of_set = {"data_set": Path(told["file"]).name}
 
-        def gauge(name: str, what: str, rows: Mapping[tuple[str, ...], float], *labels: str) -> None:
+        def gauge(name: str, what: str, rows: Mapping[Any, float], *labels: str) -> None:
             made = Gauge(f"{self.prefix}_{name}", what, (*of_set, *labels), registry=registry)
             for values, value in rows.items():
                 made.labels(*of_set.values(), *values).set(value)
