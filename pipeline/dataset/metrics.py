@@ -62,7 +62,7 @@ class Metrics:
         counts = {(state,): count for state, count in told["counts"].items()}
         gauge("dataset_sequences", "Sequences by what the last run did with them.", counts, "state")
         failed = {(name,): 1 for name, row in told["sequences"].items() if row["state"] == "failed"}
-        gauge("dataset_sequence_failed", "1 for each sequence that failed in the last run.", failed, "sequence")
+        gauge("dataset_sequence_failed", "1 for each sequence that failed in the last run.", failed, "name")
         gauge("dataset_nodes", "Nodes of the last run by what became of them.", self.nodes, "task", "outcome")
         seconds = {(task,): took for task, took in self.seconds.items()}
         gauge("dataset_node_seconds", "Seconds of computing in the last run.", seconds, "task")
