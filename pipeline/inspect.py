@@ -35,6 +35,7 @@ from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.settings import config as configuration
 from kinetree.pipeline.settings.config import Config
 from kinetree.pipeline.storage.files import Files, Settling
+from kinetree.pipeline.storage.gc import advising
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.array import Artifact
 
@@ -167,19 +168,20 @@ class Pipeline:
         started = time.perf_counter()
         files = Files.of(self.store, settling)
         there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
-        session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
-        files.save()
-        status: Status = "interrupted"
-        try:
-            self._go(there, session.watch, client)
-            status = session.leave()
-        except Exception:
-            status = "stopped"
-            raise
-        finally:
-            summed = session.close(status)
-        session.write_pages(summed)
-        return summed
+        with advising(self.store):
+            session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
+            files.save()
+            status: Status = "interrupted"
+            try:
+                self._go(there, session.watch, client)
+                status = session.leave()
+            except Exception:
+                status = "stopped"
+                raise
+            finally:
+                summed = session.close(status)
+            session.write_pages(summed)
+            return summed
 
     def described(self) -> dict[str, Any]:
         """The graph and the configuration, for a page about a run."""

@@ -520,7 +520,7 @@ def test_disk_that_is_truly_full(kinetree, scans, tmp_path):
         code, _, complained = kinetree("run", "-i", "scans", "-o", "tiny/out", "--until", "mesh", "--executor", "sync", "-q")
         assert code == 2
         assert "no space left while writing" in complained
-        assert "nothing stored is lost: free some space (kinetree gc) and run again" in complained
+        assert "nothing stored is lost: free some space and run again" in complained
         subprocess.run(["mount", "-o", "remount,size=4m", str(tiny)], check=True)
         code, printed, _ = kinetree("run", "-i", "scans", "-o", "tiny/out", "--until", "mesh", "--json")
         assert code == 0

@@ -39,7 +39,7 @@ from kinetree.pipeline.running.events import Listener
 from kinetree.pipeline.running.workers import Workers
 from kinetree.pipeline.settings.config import Compute
 from kinetree.pipeline.storage.files import Files
-from kinetree.pipeline.storage.gc import collect
+from kinetree.pipeline.storage.gc import advising, collect
 from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.sizes import bytes_of
 from kinetree.pipeline.storage.store import Store
@@ -157,7 +157,8 @@ class Dataset:
         told: dict[str, Any] = {"format": FORMAT, "file": self.config.file, "status": "stopped", "started": began}
         metrics = Metrics.of(self.config.metrics, self.application.name) if self.config.metrics is not None else None
         until = None if max_hours is None else time.monotonic() + 3600 * max_hours
-        with contextlib.closing(log), Leases() as leases, Workers(self.config.compute, client) as workers:
+        workers_of_all = Workers(self.config.compute, client)
+        with contextlib.closing(log), Leases() as leases, workers_of_all as workers, advising(self.store):
             summing = Summing.of(self.config, self.application, self.store)
             night = Night(
                 {name: self[name] for name in selected},

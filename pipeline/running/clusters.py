@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, get_worker, performance_report
+from distributed import Client, KilledWorker, LocalCluster, Security, WorkerPlugin, get_worker, performance_report
 
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 from kinetree.errors.small_text import small_json, small_text
@@ -29,6 +29,8 @@ ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
 REPLACE_SECONDS = 30.0
 """Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
+_FILES = ("_file", "_cert", "_key")
+"""How the arguments of distributed.Security end that name files."""
 MEMORY = "memory"
 """The resource of dask that says how many bytes a worker has for nodes."""
 
@@ -47,6 +49,7 @@ def local(compute: Compute) -> Iterator[Client]:
             dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
             scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
+            **secured(compute),
         )
         cluster = stack.enter_context(_closed(made))
         client = stack.enter_context(_closed(Client(cluster)))
@@ -116,7 +119,8 @@ def at(compute: Compute) -> Iterator[Client]:
     """A scheduler that somebody else runs; raises ClusterError where nobody answers."""
     asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
     try:
-        client = Client(compute.scheduler or _left_address(Path(str(compute.scheduler_file))), timeout=CONNECT_SECONDS)
+        address = compute.scheduler or _left_address(Path(str(compute.scheduler_file)))
+        client = Client(address, timeout=CONNECT_SECONDS, **secured(compute, asked))
     except (ValueError, KeyError, TypeError) as error:
         raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
     except (OSError, TimeoutError) as error:
@@ -126,6 +130,32 @@ def at(compute: Compute) -> Iterator[Client]:
         ) from error
     with _closed(client):
         yield client
+
+
+def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
+    """The argument of dask's classes that secures their connections, if the configuration names one; raises ConfigError.
+
+    scheduler : how the configuration names one that somebody else runs; empty where the run starts its own
+    """
+    wanted = compute.security
+    if not wanted:
+        return {}
+    if wanted == "temporary":
+        if scheduler:
+            raise ConfigError(
+                f"compute.security temporary: {scheduler} has certificates of its own; name them: tls_ca_file, tls_client_cert,"
+                " tls_client_key"
+            )
+        try:
+            return {"security": Security.temporary()}
+        except ImportError:
+            raise ConfigError("compute.security temporary: cryptography is not installed; pip install cryptography") from None
+    if missing := [f"{key} {path}" for key, path in wanted.items() if key.endswith(_FILES) and not Path(path).is_file()]:
+        raise ConfigError(f"compute.security: {missing[0]}: there is no such file")
+    try:
+        return {"security": Security(require_encryption=True, **wanted)}
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"compute.security: {error}") from None
 
 
 def _left_address(file: Path) -> str:
@@ -155,7 +185,7 @@ def cluster_of(compute: Compute) -> Any:
     except (ImportError, AttributeError) as error:
         raise ConfigError(f"compute.cluster {compute.cluster}: {error}; pip install 'kinetree[cluster]'") from None
     try:
-        return made(**compute.options)
+        return made(**{**secured(compute), **compute.options})
     except (TypeError, ValueError) as error:
         raise ConfigError(f"compute.options: {compute.cluster} refuses them: {error}") from None
     except (OSError, RuntimeError) as error:

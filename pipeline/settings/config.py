@@ -56,6 +56,9 @@ class Compute(BaseModel):
     """What that class is called with."""
     adapt: tuple[int, int] | None = None
     """Fewest and most workers of that class, which come and go with the work; None takes as many as `workers` says."""
+    security: Literal["temporary"] | dict[str, str] = {}
+    """TLS between client, scheduler and workers: arguments of distributed.Security such as tls_ca_file, tls_client_cert and
+    tls_client_key, or temporary: certificates of workers that the run starts itself. By default what dask is configured to."""
     performance_report: str | None = Field(default=None, exclude=True)
     """File for dask's own report on a run."""
 

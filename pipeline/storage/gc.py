@@ -1,16 +1,20 @@
 """Frees what no kept run needs: records, artifacts, and what writers that died left half-written."""
 
+import contextlib
 import time
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from kinetree.errors import KinetreeError, StoreFullError
 from kinetree.pipeline.storage.heartbeat import lives
 from kinetree.pipeline.storage.place import Listed
 from kinetree.pipeline.storage.run_records import list_path, run_path
 from kinetree.pipeline.storage.store import Store, artifact_path
 
 DAY_SECONDS = 24 * 3600.0
+_WORTH_SAYING = 2**16
+"""Bytes below which freeing them helps nobody."""
 LEFTOVER_SECONDS = DAY_SECONDS
 """After this nobody is writing what lies half-written."""
 
@@ -97,6 +101,20 @@ def _last(runs: dict[str, dict[str, Any]], count: int) -> list[str]:
         if run["list"]:
             by_output.setdefault(run["output"], []).append(name)
     return [name for names in by_output.values() for name in (names[-count:] if count else ())]
+
+
+@contextlib.contextmanager
+def advising(store: Store) -> Iterator[None]:
+    """Where the disk is full, says what a collection would free, if it would free anything."""
+    try:
+        yield
+    except StoreFullError as error:
+        freed = 0
+        with contextlib.suppress(KinetreeError, OSError):
+            freed = collect(store, dry=True).bytes
+        if freed < _WORTH_SAYING:
+            raise
+        raise StoreFullError(f"{error}; kinetree gc would free {freed / 2**20:.1f} MiB of the store") from error
 
 
 def _latest(runs: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:

@@ -221,7 +221,7 @@ class Folder:
             if error.errno in (errno.ENOSPC, errno.EDQUOT):
                 raise StoreFullError(
                     f"{self._name} {self.url}: no space left while writing {path}; nothing stored is lost:"
-                    " free some space (kinetree gc) and run again"
+                    " free some space and run again"
                 ) from error
             raise StoreError(
                 f"{self._name} {self.url}: cannot write {path}: {error.strerror}; check its permissions or name another"

@@ -5,8 +5,9 @@ import signal
 
 import pytest
 
-from kinetree.errors import UnknownNodeError
-from kinetree.pipeline.storage.gc import collect
+from kinetree.errors import StoreFullError, UnknownNodeError
+from kinetree.pipeline.storage import gc
+from kinetree.pipeline.storage.gc import advising, collect
 from kinetree.pipeline.storage.store import Store
 
 
@@ -159,3 +160,24 @@ def test_run_of_a_part_of_the_graph_does_not_give_the_rest_away(toys):
     collect(store(toys))
     assert {record.key for record in store(toys).records.all()} == whole
     assert toys.run().ran == set()
+
+
+def test_on_a_full_disk_a_collection_is_advised_only_where_it_frees_something(toys, monkeypatch):
+    def advice():
+        with pytest.raises(StoreFullError) as refused, advising(store(toys)):
+            raise StoreFullError("no space left")
+        return str(refused.value)
+
+    monkeypatch.setattr(gc, "_WORTH_SAYING", 1)
+    toys.run()
+    assert advice() == "no space left"
+    toys.run(points={"scale": 1.3})
+    freed = collect(store(toys), dry=True).bytes
+    assert advice() == f"no space left; kinetree gc would free {freed / 2**20:.1f} MiB of the store"
+    collect(store(toys))
+    assert advice() == "no space left"
+
+
+def test_advice_needs_no_store(tmp_path):
+    with pytest.raises(StoreFullError, match=r"^no space left$"), advising(Store.at(tmp_path / "none")):
+        raise StoreFullError("no space left")

@@ -84,7 +84,7 @@ def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSe
     limit = settings or BadFrameSettings()
     bad: dict[int, str] = {t: m for t, m in measured.items() if isinstance(m, str)}
     surfaces = {t: m for t, m in measured.items() if not isinstance(m, str)}
-    bad |= {t: "its faces have no area" for t, m in surfaces.items() if not 0 < m.area < np.inf}
+    bad |= {t: "its faces have no area; export the frame again" for t, m in surfaces.items() if not 0 < m.area < np.inf}
     good = {t: m for t, m in surfaces.items() if t not in bad}
     if len(good) < limit.least:
         return dict(sorted(bad.items()))

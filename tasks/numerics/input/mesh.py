@@ -117,7 +117,10 @@ def clean(
     faces = whole_faces(X, first[F], component_share)
     G, area = first[F[faces.origin]], faces.area
     if not area.sum() > 0:
-        raise MeshError(f"{name}: its {len(F)} faces have no area; the corners of each lie in one point or on one line")
+        raise MeshError(
+            f"{name}: its {len(F)} faces have no area, the corners of each lie in one point or on one line; export the frame"
+            " again with more digits, or leave it out"
+        )
     turned, component = oriented(X, G)
     G = np.where(turned[:, None], G[:, [0, 2, 1]], G)
     shares = np.bincount(component, weights=area) / area.sum()
@@ -161,11 +164,16 @@ def _relative(V: Floats, F: Faces, name: str) -> tuple[Floats, float]:
     raises : MeshError if there is no face or the diagonal is no length
     """
     if not len(F):
-        raise MeshError(f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud")
+        raise MeshError(
+            f"{name}: no faces, only {len(V)} vertices; a surface is needed, not a point cloud: mesh the points first"
+        )
     corners = V[F.ravel()]
     diagonal = float(np.hypot.reduce(corners.max(axis=0) / 2 - corners.min(axis=0) / 2)) * 2
     if not _SMALLEST_DIAGONAL < diagonal < 1 / _SMALLEST_DIAGONAL:
-        raise MeshError(f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged")
+        raise MeshError(
+            f"{name}: its bounding box has a diagonal of {diagonal:.3g}; the coordinates are damaged:"
+            " export the frame again, or leave it out"
+        )
     with np.errstate(over="ignore"):
         return np.clip((V - corners.min(axis=0)) / diagonal, -_FARTHEST, _FARTHEST), diagonal
 

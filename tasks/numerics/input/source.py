@@ -20,6 +20,8 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked, suffixes
 
+_PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
+"""Suffixes of files that must be unpacked before they can be read."""
 AnyPath = TypeVar("AnyPath", bound=PurePath)
 ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
 UNPACKED_BYTES = 256 * 2**20
@@ -67,6 +69,7 @@ def one_format(files: Sequence[AnyPath], where: str, folder: Path | None = None)
     """
     kinds = Counter(p.suffix.lower() for p in files)
     meshes = {kind: n for kind, n in sorted(kinds.items()) if kind in suffixes()}
+    _refuse_packed(files, where)
     if not meshes:
         others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
         known = " ".join(suffixes())
@@ -77,6 +80,16 @@ def one_format(files: Sequence[AnyPath], where: str, folder: Path | None = None)
         example = f"*{likely}" if folder is None else folder / f"*{likely}"
         raise SourceError(f"{where}: meshes of several formats ({counts}); choose by a pattern such as {example}")
     return sorted((p for p in files if p.suffix.lower() in meshes), key=lambda p: [natural_order(q) for q in p.parts])
+
+
+def _refuse_packed(files: Sequence[PurePath], where: str) -> None:
+    """Refuses packed meshes that do not lie there unpacked as well: leaving one out would be a frame that vanishes."""
+    there = {p.name for p in files}
+    packed = sorted(p.name for p in files if p.suffix.lower() in _PACKED and p.stem not in there)
+    packed = [name for name in packed if PurePath(name).with_suffix("").suffix.lower() in suffixes()]
+    if packed:
+        more = f" (and {len(packed) - 1} more)" if len(packed) > 1 else ""
+        raise SourceError(f"{where}: {packed[0]}{more} is packed; unpack it first, for instance with gunzip or unzip")
 
 
 @dataclass(frozen=True)

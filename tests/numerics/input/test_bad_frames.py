@@ -81,7 +81,7 @@ def test_debris_and_seams_do_not_make_a_frame_bad():
 
 def test_frame_without_area_or_that_cannot_be_read_is_named():
     measures = walk(vertices=V * 0) | {7: "f7.ply: the file is empty"}
-    assert bad_frames(measures) == {5: "its faces have no area", 7: "f7.ply: the file is empty"}
+    assert bad_frames(measures) == {5: "its faces have no area; export the frame again", 7: "f7.ply: the file is empty"}
 
 
 def test_two_frames_say_nothing_about_each_other():

@@ -189,7 +189,9 @@ def test_pipe_is_refused_instead_of_waited_for(tmp_path):
 
 @pytest.mark.parametrize(("name", "make"), [("a.ply", ply), ("a.obj", obj), ("a.off", off)])
 def test_point_cloud_is_refused(tmp_path, name, make):
-    assert "no faces, only 5 vertices; a surface is needed, not a point cloud" in refusal(written(tmp_path, name, make(F=[])))
+    assert "no faces, only 5 vertices; a surface is needed, not a point cloud: mesh the points first" in refusal(
+        written(tmp_path, name, make(F=[]))
+    )
 
 
 @pytest.mark.parametrize(("name", "make"), [("a.ply", ply), ("a.off", off)])
@@ -264,6 +266,66 @@ def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_
         "scenes": [{"nodes": list(range(n))}],
     }
     assert "its scene unfolds to 59940000 vertices" in refusal(written(tmp_path, "a.glb", glb(header, body)))
+
+
+# ── what is wrong and would pass in silence ─────────────────────────────────────────────────────────────────────────
+
+
+def rows(text, old, new):
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.ply", ply(form="ascii").replace(b"face 4", b"face 3"), "1 more line after the 8 that its header claims"),
+        ("a.ply", ply(form="ascii").replace(b"vertex 5", b"vertex 4"), "1 more line after the 8 that its header claims"),
+        ("a.ply", ply().replace(b"face 4", b"face 3"), "PLY is unexpected length"),
+        ("a.off", off().replace(b"5 4 0", b"5 3 0"), "1 more line after the 8 that it claims"),
+        ("a.off", rows(off(), b"3 0 2 1", b"1000000000 0 2 1"), "face 0 claims 1000000000 corners and has 3"),
+        ("a.off", rows(off(), b"3 0 2 1", b"4 0 2 1"), "face 0 claims 4 corners and has 3"),
+        ("a.off", rows(off(), b"3 0 1 3", b"2 0 1"), "face 1 has 2 corners"),
+        ("a.off", rows(off(), b"3 0 1 3", b"-1 0 1"), "face 1 claims -1 corners"),
+        ("a.obj", obj() + b"f 1 2\n", "face 4 has 2 corners"),
+        ("a.obj", obj() + b"f \n", "face 4 has 0 corners"),
+        ("a.ply", rows(ply(form="ascii"), b"3 0 2 1", b"4 0 2 1"), "face 0 is '4 0 2 1', which is not what its header says"),
+        ("a.ply", rows(ply(form="ascii"), b"3 0 2 1", b"3 0 2 1 4"), "face 0 is '3 0 2 1 4'"),
+        ("a.ply", rows(ply(form="ascii"), b"3 0 2 1", b"3 0 2 0.5"), "face 0 is '3 0 2 0.5'"),
+        ("a.ply", rows(ply(form="ascii"), b"3 0 2 1", b"-1 0 2 1"), "face 0 is '-1 0 2 1'"),
+        ("a.ply", rows(ply(form="ascii"), b"1.0 0.0 0.0", b"1.0 0.0 0.0 9"), "vertex 1 is '1.0 0.0 0.0 9'"),
+        ("a.ply", rows(ply(form="ascii"), b"1.0 0.0 0.0", b"1.0 x 0.0"), "vertex 1 is '1.0 x 0.0'"),
+        ("a.ply", ply(F=[[0, 1], [0, 2]], form="ascii"), "face 0 is '2 0 1'"),
+        ("a.ply", rows(ply(), b"list uchar int", b"list uchar float"), "its faces are numbers of type float32"),
+        ("a.ply", ply()[:-13] + b"\2" + ply()[-12:], "face 3 has 2 corners where the first has 3"),
+    ],
+)
+def test_what_a_file_claims_and_what_it_holds_must_agree(tmp_path, name, content, words):
+    message = refusal(written(tmp_path, name, content))
+    assert words in message
+    assert any(remedy in message for remedy in ("export it again", "the file is damaged", "triangulate it"))
+
+
+@pytest.mark.parametrize(("form", "name"), [("ascii", "a.ply"), ("off", "a.off")])
+def test_blank_lines_and_comments_are_no_rows(tmp_path, form, name):
+    content = ply(form="ascii") + b"\n \n" if form == "ascii" else off().replace(b"OFF\n", b"OFF\n# by hand\n\n") + b"\n\n"
+    assert len(read_mesh(written(tmp_path, name, content))[1]) == len(F)
+
+
+@pytest.mark.parametrize(
+    ("shift", "form", "fits"),
+    [(1e15, "d", False), (1e12, "d", True), (1e5, "f", False), (3e3, "f", True), (-1e15, "d", False)],
+)
+def test_body_too_far_from_the_origin_for_its_digits_is_refused_with_the_remedy(tmp_path, shift, form, fits):
+    X = V + [0, shift, 0]
+    content = ply(X if form == "d" else X.astype(np.float32).astype(float))
+    path = written(tmp_path, "a.ply", content)
+    if fits:
+        np.testing.assert_allclose(read_mesh(path)[0], X, atol=3e-4)
+    else:
+        message = refusal(path)
+        assert "move the body to the origin before it is saved" in message
+        assert "its coordinates reach" in message
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────

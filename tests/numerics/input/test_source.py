@@ -124,6 +124,22 @@ def test_single_file_is_refused_as_a_sequence(tmp_path):
         mesh_files(path)
 
 
+@pytest.mark.parametrize("packed", ["f1.ply.gz", "f1.PLY.GZ", "f1.obj.zip", "f1.off.xz"])
+def test_packed_mesh_is_refused_with_the_remedy_instead_of_passed_over(tmp_path, packed):
+    written(tmp_path, packed, b"")
+    for other in ((), ("f0.ply", "f2.ply")):
+        for name in other:
+            written(tmp_path, name, b"")
+        with pytest.raises(SourceError, match=f"{packed} is packed; unpack it first, for instance with gunzip or unzip"):
+            mesh_files(tmp_path)
+
+
+def test_packed_files_beside_their_unpacked_ones_and_other_archives_are_passed_over(tmp_path):
+    for name in ("f0.ply", "f0.ply.gz", "textures.zip", "notes.txt.gz"):
+        written(tmp_path, name, b"")
+    assert [path.name for path in mesh_files(tmp_path)] == ["f0.ply"]
+
+
 # ── reading ─────────────────────────────────────────────────────────────────────────────────────────────────────────
 
 

@@ -1,0 +1,99 @@
+"""The trust boundary: what this machine's workers listen on, and TLS where it is asked for."""
+
+import ipaddress
+import os
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from distributed import Client, LocalCluster, Security
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.running import clusters
+from kinetree.pipeline.settings.config import Compute
+
+_LISTENING = "0A"
+
+
+def family(process: int) -> Iterator[int]:
+    """A process and all that it started."""
+    yield process
+    for task in Path(f"/proc/{process}/task").glob("*/children"):
+        for child in task.read_text().split():
+            yield from family(int(child))
+
+
+def listening(process: int) -> set[str]:
+    """Addresses at which a process and its children accept TCP connections."""
+    inodes = set()
+    for one in family(process):
+        for handle in Path(f"/proc/{one}/fd").glob("*"):
+            try:
+                target = str(handle.readlink())
+            except OSError:
+                continue
+            if target.startswith("socket:["):
+                inodes.add(target[8:-1])
+    found = set()
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            words = line.split()
+            if words[3] == _LISTENING and words[9] in inodes:
+                raw = bytes.fromhex(words[1].partition(":")[0])
+                turned = b"".join(raw[i : i + 4][::-1] for i in range(0, len(raw), 4))
+                found.add(str(ipaddress.ip_address(turned)))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc")
+def test_workers_of_this_machine_listen_on_loopback_alone():
+    with clusters.local(Compute(workers=1)) as client:
+        assert client.submit(abs, -1).result(timeout=60) == 1
+        there = listening(os.getpid())
+    assert there
+    assert [address for address in there if not ipaddress.ip_address(address).is_loopback] == []
+
+
+def test_a_socket_for_everybody_would_be_noticed():
+    with socket.create_server(("0.0.0.0", 0)):
+        assert "0.0.0.0" in listening(os.getpid())
+
+
+def test_temporary_certificates_secure_the_workers_and_strangers_are_turned_away():
+    with clusters.local(Compute(workers=1, security="temporary")) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        assert client.submit(abs, -1).result(timeout=60) == 1
+        with pytest.raises((OSError, TimeoutError)):
+            Client(address, security=Security.temporary(), timeout=2)
+        with pytest.raises((OSError, TimeoutError)):
+            Client(address.replace("tls://", "tcp://"), timeout=2)
+
+
+def test_a_scheduler_with_certificates_is_reached_with_them(tmp_path):
+    kept = Security.temporary()
+    files = {}
+    for key in ("tls_ca_file", "tls_client_cert", "tls_client_key"):
+        (tmp_path / key).write_text(getattr(kept, key))
+        files[key] = str(tmp_path / key)
+    where = {"processes": False, "dashboard_address": "127.0.0.1:0"}
+    with (
+        LocalCluster(n_workers=1, security=kept, **where) as cluster,
+        clusters.at(Compute(scheduler=cluster.scheduler_address, security=files)) as client,
+    ):
+        assert client.submit(abs, -1).result(timeout=60) == 1
+
+
+@pytest.mark.parametrize(
+    ("security", "words"),
+    [
+        ({"tls_ca_file": "/nowhere/ca.pem"}, "compute.security: tls_ca_file /nowhere/ca.pem: there is no such file"),
+        ({"ca": "x"}, r"compute.security: Unknown parameters: \['ca'\]"),
+        ("temporary", "compute.security temporary: --scheduler tcp://127.0.0.1:1 has certificates of its own"),
+    ],
+)
+def test_security_that_cannot_be_is_refused_in_words(security, words):
+    compute = Compute(scheduler="tcp://127.0.0.1:1", security=security)
+    with pytest.raises(ConfigError, match=words), clusters.at(compute):
+        pass
