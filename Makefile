@@ -5,9 +5,10 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 
 DATA   ?=
+RUNS   ?= 1000000
 PROCESSES ?= 2
 
-.PHONY: demo test lint types tests coverage benchmarks faults accuracy clean
+.PHONY: demo test lint types tests coverage benchmarks faults fuzz accuracy clean
 
 demo: $(READY)
 	$(BIN)/kinetree demo --output demo-output
@@ -30,11 +31,16 @@ coverage: $(READY)
 	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder --cov --cov-report=term
 
 benchmarks: $(READY)
-	for file in $(filter-out benchmarks/accuracy.py benchmarks/names.py benchmarks/sensitivity.py benchmarks/faults.py benchmarks/flaky_service.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
+	for file in $(filter-out benchmarks/accuracy.py benchmarks/names.py benchmarks/sensitivity.py benchmarks/faults.py benchmarks/flaky_service.py benchmarks/fuzz.py benchmarks/robustness.py benchmarks/damage.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
 
 # runs whose workers, scheduler, store or own process are killed or taken away; an hour, and root for all of its cells
 faults: $(READY)
 	$(BIN)/python benchmarks/faults.py
+
+# a million executions over all parsers, guided by coverage; half an hour
+fuzz: $(READY)
+	$(BIN)/python -m pip install --quiet 'atheris>=3.0'
+	$(BIN)/python benchmarks/fuzz.py --runs $(RUNS) --work .fuzz
 
 # every sequence with a known skeleton in the folder DATA, generated ones too, in one table
 accuracy: $(READY)
@@ -49,4 +55,4 @@ $(READY): pyproject.toml
 	touch $@
 
 clean:
-	rm -rf $(VENV) demo-output build dist .coverage .mypy_cache .pytest_cache .ruff_cache *.egg-info
+	rm -rf .fuzz $(VENV) demo-output build dist .coverage .mypy_cache .pytest_cache .ruff_cache *.egg-info

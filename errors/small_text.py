@@ -84,6 +84,16 @@ class BoundedLoader(yaml.SafeLoader):
             raise yaml.composer.ComposerError(None, None, problem, mark)
         return node
 
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
+        """A whole number that a float can hold."""
+        value = int(super().construct_yaml_int(node))
+        if abs(value) >= 10**_DIGITS:
+            raise yaml.constructor.ConstructorError(None, None, f"a number of more than {_DIGITS} digits", node.start_mark)
+        return value
+
+
+BoundedLoader.add_constructor("tag:yaml.org,2002:int", BoundedLoader.construct_yaml_int)
+
 
 def small_yaml(text: str, where: str, error: type[InputError] = InputError, loader: type[BoundedLoader] = BoundedLoader) -> Any:
     """The plain value that a YAML text holds.

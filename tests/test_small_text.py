@@ -113,3 +113,10 @@ def test_what_json_cannot_hold_is_named(text: str, what: str) -> None:
     with pytest.raises(InputError, match=what):
         json_only(small_yaml(text, "a.yaml"), "a.yaml")
     assert json_only({"a": [1, 2.5, None, True, "b"]}, "a.yaml") == {"a": [1, 2.5, None, True, "b"]}
+
+
+@pytest.mark.parametrize("number", ["9" * 400, "-" + "9" * 400, "0x" + "f" * 300])
+def test_whole_number_that_no_float_holds_is_refused_in_yaml(number):
+    with pytest.raises(InputError, match="a.yaml, line 2: not valid YAML: a number of more than 308 digits"):
+        small_yaml(f"a: 1\nb: {number}", "a.yaml")
+    assert small_yaml(f"b: {10**307}", "a.yaml") == {"b": 10**307}

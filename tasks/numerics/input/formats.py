@@ -118,7 +118,7 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
     if not raw.startswith(b"ply") or not end:
         raise MeshError("no PLY header from 'ply' to 'end_header'; the file is damaged or something else")
     rows = elements(header)
-    claimed = {element.name: element.count for element in rows}
+    claimed = {element.name: element.rows for element in rows}
     for key, n in claimed.items():
         if not 0 <= n <= len(body):
             raise MeshError(f"its header claims {n} × {key} in {len(body)} bytes; the file is damaged or cut short")

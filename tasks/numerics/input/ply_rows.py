@@ -17,7 +17,7 @@ class Element(NamedTuple):
     """One kind of rows: its name, how many the header claims, and which of its properties are lists."""
 
     name: str
-    count: int
+    rows: int
     lists: tuple[bool, ...]
 
 
@@ -36,7 +36,7 @@ def elements(header: bytes) -> list[Element]:
 def refuse_wrong_rows(claimed: list[Element], body: bytes) -> None:
     """Refuses the text after the header if its lines are not the rows that the header claims; raises MeshError."""
     rows = [words for line in body.decode("utf-8", "replace").splitlines() if (words := line.split())]
-    count = sum(element.count for element in claimed)
+    count = sum(element.rows for element in claimed)
     if len(rows) < count:
         raise MeshError(f"its header claims {count} lines, {len(rows)} follow; the file is cut short")
     if len(rows) > count:
@@ -60,7 +60,7 @@ def refuse_wrong_faces(face: Mapping[str, Any]) -> None:
 
     face : the element as trimesh keeps it: its `data` has a list as a record of its length `f0` and its numbers `f1`
     """
-    data = face.get("data")
+    data: Any = face.get("data")
     for name in getattr(data, "dtype", np.dtype("f8")).names or ():
         record = data[name]
         if record.dtype.names is None:

@@ -9,6 +9,7 @@
 Nothing is unpickled, and every size a file claims is held against a bound before memory is taken.
 """
 
+import logging
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -179,6 +180,7 @@ def _nrrd(path: Path) -> tuple[Any, Any, Any]:
 
 
 def _tiff(path: Path) -> tuple[Any, Any, Any]:
+    logging.getLogger("tifffile").setLevel(logging.CRITICAL)  # what is wrong with a file is told once, as a refusal
     with tifffile.TiffFile(path) as file:
         _refuse_large(tuple(file.series[0].shape), path)
         pages = file.series[0].asarray()
