@@ -227,4 +227,4 @@ def test_every_method_makes_what_the_summary_of_a_data_set_reads() -> None:
 def test_artifact_that_nobody_reads_is_named() -> None:
     assert unread(Graph.of(INPUT)) == {"Connectivity"}
     without_report = [task for task in METHODS["mesoscopic"].tasks if task.name != "report"]
-    assert {"FrameConfidence", "StructureFigures"} <= unread(Graph.of(without_report))
+    assert {"StructureFigures", "Verdict"} <= unread(Graph.of(without_report))

@@ -22,11 +22,13 @@ from kinetree.tasks.results.sequence_table import sequence_table
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.structure_figures import structure_figures
+from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.tables import tables
 from kinetree.tasks.results.topology_figures import topology_figures
 from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.truth import truth
 from kinetree.tasks.results.usd import usd
+from kinetree.tasks.results.verdict import verdict
 
 RESULTS = (
     truth,
@@ -43,6 +45,8 @@ RESULTS = (
     blender,
     trc,
     c3d,
+    surface_error,
+    verdict,
     excerpt,
     coarse_mesh,
     topology_figures,

@@ -19,6 +19,7 @@ from kinetree.schemas.results.report import Report, ReportParams
 from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.results.topology_figures import TopologyFigures
+from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
@@ -26,10 +27,11 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.scene import Limits, scene
-from kinetree.tasks.results.page.warnings import WarningLimits, counted, warnings
+from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.views.results import evaluation_remarks
 from kinetree.tasks.views.topology import UNSURE
+from kinetree.tasks.views.verdict import headline
 
 VARIATION = "length varies by, %"
 
@@ -48,6 +50,7 @@ def report(
     evaluation: Evaluation,
     up_direction: UpDirection,
     frame_confidence: FrameConfidence,
+    verdict: Verdict,
     excerpt: Excerpt,
     coarse_mesh: Mapping[int, CoarseMesh],
     alignment: Mapping[int, Alignment],
@@ -63,7 +66,10 @@ def report(
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment_figures),
-        warnings=warnings(skeleton, sequence, intervals, leaves, frame_confidence, alignment_figures.skin_distance, mesh),
+        level=verdict.level,
+        headline=headline(verdict),
+        faults=faults(verdict),
+        notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
         scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis),
         sections=[
             Section("structure", "Joints and parts", structure),

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 from results.sample_derivation import parts_of, tree_of
 
@@ -33,7 +34,9 @@ from kinetree.tasks.results.page.scene import Limits, Scene, scene
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.structure_figures import structure_figures
+from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.topology_figures import topology_figures
+from kinetree.tasks.results.verdict import verdict
 
 UP = UpDirection(up="y", confidence=1.0)
 
@@ -106,6 +109,11 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     aligned = some("skeleton", "excerpt", "connectivity", "up_direction", "alignment")
     all_of_it["topology_figures"] = topology_figures(**topology)
     all_of_it["alignment_figures"] = alignment_figures(**aligned)
+    all_of_it["joint_names"] = changes.get("joint_names", plain(all_of_it["skeleton"]))
+    all_of_it["surface_error"] = {
+        frame: surface_error(**some("skeleton"), mesh=mesh, index=(frame,)) for frame, mesh in all_of_it["mesh"].items()
+    }
+    all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error"))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
     all_of_it["motion_figures"] = motion_figures(**some("skeleton"))
     return {argument.name: all_of_it[argument.name] for argument in report.arguments}
@@ -178,5 +186,11 @@ def halves(frames: tuple[int, ...]) -> Intervals:
 def page(title: str = "a walk", **more: object) -> str:
     """The whole page, what ran not yet told."""
     body = table(("joint", "turns"), [("arm", 50.5)])
-    arguments = {"facts": [("frames", "12")], "warnings": [], "scene": playing(), "sections": [Section("s", "Joints", body)]}
+    arguments = {
+        "level": "good",
+        "headline": "good",
+        "facts": [("frames", "12")],
+        "scene": playing(),
+        "sections": [Section("s", "Joints", body)],
+    }
     return document(Page(title=title, **{**arguments, **more}))  # type: ignore[arg-type]

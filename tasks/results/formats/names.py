@@ -1,8 +1,11 @@
-"""Names of joints for formats that allow only identifiers."""
+"""Names of joints for formats that allow only identifiers, and for people."""
 
 import re
 from collections.abc import Sequence
 
+from kinetree.schemas.structure.joint_names import JointNames
+
+SIDES = {"_l": "left ", "_r": "right "}
 NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_]")
 
 
@@ -20,3 +23,14 @@ def identifiers(names: Sequence[str]) -> list[str]:
             numbered, number = f"{plain}_{number}", number + 1
         unique.append(numbered)
     return unique
+
+
+def readable_names(joint_names: JointNames) -> tuple[str, ...]:
+    """(joint,) what people call each joint, such as left knee; its name in files where nothing was recognised."""
+    return tuple(_in_words(of) if of else name for of, name in zip(joint_names.anatomy, joint_names.names, strict=True))
+
+
+def _in_words(anatomy: str) -> str:
+    """Station and side, such as hind_knee_l, as words."""
+    side = SIDES.get(anatomy[-2:], "")
+    return side + (anatomy[:-2] if side else anatomy).replace("_", " ")

@@ -11,6 +11,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Literal
 
 from kinetree.schemas.results.report import RUN
+from kinetree.schemas.results.verdict import Level
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, SURFACE_LEAF
 from kinetree.tasks.results.page.scene import Scene
 from kinetree.tasks.results.plots.drawing import verbatim
@@ -18,6 +19,8 @@ from kinetree.tasks.results.plots.drawing import verbatim
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
+"""Beside the words of a verdict."""
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
 
@@ -31,13 +34,29 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """A sentence, with the frame and the joint to which it leads, where it is about one.
+
+    frame : source frame number
+    joint : number of the joint
+    """
+
+    text: str
+    frame: int | None = None
+    joint: int | None = None
+
+
+@dataclass(frozen=True)
 class Page:
-    """The content of a page: facts are names with values, warnings are sentences."""
+    """The content of a page: the verdict with its faults, notes that do not change it, and facts as names with values."""
 
     title: str
-    facts: Sequence[tuple[str, str]]
-    warnings: Sequence[str]
+    level: Level
+    headline: str
     scene: Scene
+    facts: Sequence[tuple[str, str]] = ()
+    faults: Sequence[Remark] = ()
+    notes: Sequence[Remark] = ()
     sections: Sequence[Section] = field(default_factory=tuple)
 
 
@@ -50,7 +69,8 @@ def document(page: Page) -> str:
         "style": page_file("style.css"),
         "nav": "".join(f'<a href="#{s.anchor}">{escape(s.heading)}</a> ' for s in sections),
         "facts": "".join(f"<li>{escape(name)} <b>{escape(value)}</b></li>" for name, value in page.facts),
-        "warnings": warnings(page.warnings),
+        "verdict": verdict(page),
+        "notes": notes(page.notes),
         "intervals": "".join(
             f'<option value="{i["at"]}">{n}: frames {i["begin"]}–{i["end"]}</option>'
             for n, i in enumerate(page.scene.description["intervals"])
@@ -74,12 +94,29 @@ def as_script(value: Any) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def warnings(sentences: Sequence[str]) -> str:
-    """The box of warnings as HTML; empty where there are none."""
-    if not sentences:
+def verdict(page: Page) -> str:
+    """The verdict with its reasons as HTML."""
+    heading = f'<h2 id="verdict"><span aria-hidden="true">{MARKS[page.level]}</span> {escape(page.headline)}</h2>'
+    return f'<section class="verdict {page.level}" aria-labelledby="verdict">{heading}{_remarks(page.faults)}</section>'
+
+
+def notes(remarks: Sequence[Remark]) -> str:
+    """Notes, folded, as HTML; empty where there are none."""
+    if not remarks:
         return ""
-    items = "".join(f"<li>{escape(text)}</li>" for text in sentences)
-    return f'<aside class="warnings" aria-labelledby="warnings"><h2 id="warnings">Warnings</h2><ul>{items}</ul></aside>'
+    heading = f"{len(remarks)} note{'s' * (len(remarks) != 1)} that do{'es' * (len(remarks) == 1)} not change this"
+    return f'<details class="notes"><summary>{heading}</summary>{_remarks(remarks)}</details>'
+
+
+def _remarks(remarks: Sequence[Remark]) -> str:
+    """A list; what is about a frame or a joint is a button that leads there."""
+    return f"<ul>{''.join(f'<li>{_remark(remark)}</li>' for remark in remarks)}</ul>" if remarks else ""
+
+
+def _remark(remark: Remark) -> str:
+    places = {"frame": remark.frame, "joint": remark.joint}
+    data = "".join(f' data-{name}="{number}"' for name, number in places.items() if number is not None)
+    return f'<button type="button" class="go"{data}>{escape(remark.text)}</button>' if data else escape(remark.text)
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

@@ -14,6 +14,19 @@ function wire(player) {
   new ResizeObserver(() => player.resize()).observe(byId("stage"));
 }
 
+// What the page says of a frame leads to that frame, or to the nearest that the player shows.
+function wireLinks(player) {
+  for (const link of document.querySelectorAll("button.go[data-frame]")) {
+    link.addEventListener("click", () => {
+      const wanted = Number(link.dataset.frame);
+      const away = player.scene.frames.map((frame) => Math.abs(frame - wanted));
+      player.play(false);
+      player.show(away.indexOf(Math.min(...away)));
+      byId("stage").scrollIntoView({ block: "nearest" });
+    });
+  }
+}
+
 // The record of the run is inserted into the page when the run has ended.
 function showRun(run) {
   const place = byId("ran");
@@ -53,6 +66,7 @@ async function begin() {
     return;
   }
   wire(player);
+  wireLinks(player);
   player.resize();
   player.show(0);
   window.kinetree = player;

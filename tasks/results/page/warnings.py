@@ -1,4 +1,4 @@
-"""What a person should know before relying on a result, in plain sentences."""
+"""What a person should know before relying on a result: the verdict's findings, and what else was noticed."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -8,46 +8,48 @@ import numpy as np
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
+from kinetree.schemas.results.verdict import Finding, Verdict
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.results.page.document import Remark
 from kinetree.tasks.views.input import sequence_remarks
 from kinetree.tasks.views.registration import frame_confidence_remarks
-from kinetree.tasks.views.structure import skeleton_remarks
 from kinetree.tasks.views.topology import leaf_losses
+from kinetree.tasks.views.verdict import NAMED, runs, sentence
 
 
 class WarningLimits(NamedTuple):
-    """Beyond which a report warns; not recorded what they were chosen on."""
+    """Beyond which a report says something; not recorded what they were chosen on."""
 
     short: int = 5
-    """Frames below which a sequence, an interval or the support of a joint is short."""
-    skin_distance: float = 0.015
-    """Root mean square distance between the skin and the aligned meshes, share of the body's diagonal, above which the
-    skeleton does not explain the motion."""
+    """Frames below which an interval is short."""
     confidence: float = 0.5
-    """Mean confidence below which a joint is named."""
-    named: int = 12
-    """Most joints or frames that one sentence names."""
+    """Mean confidence from which on a joint's interval is listed."""
 
 
-def warnings(
+def faults(verdict: Verdict) -> list[Remark]:
+    """What the verdict rests on, the most serious first; each leads to its first frame and joint."""
+    return [_remark(f, verdict) for f in verdict.findings if f.severity != "note"]
+
+
+def notes(
+    verdict: Verdict,
     skeleton: Skeleton,
     sequence: Sequence,
     intervals: Intervals,
     leaves: Leaves,
     frame_confidence: FrameConfidence,
-    skin_distance: float,
     meshes: Mapping[int, Mesh],
-) -> list[str]:
-    """All warnings of a report, the most serious first; none where everything is well.
+) -> list[Remark]:
+    """What does not change the verdict; equal kinds are one note.
 
-    skin_distance : between skin and aligned meshes, share of the body's diagonal
-    meshes        : by source frame number
+    meshes : by source frame number
     """
     return [
-        *_of_skeleton(skeleton, skin_distance),
-        *sequence_remarks(sequence),
+        *(_remark(f, verdict) for f in verdict.findings if f.severity == "note"),
+        *(Remark(text) for text in sequence_remarks(sequence)),
+        *_of_surface(skeleton),
         *_of_frames(intervals, leaves, frame_confidence, meshes),
     ]
 
@@ -57,29 +59,13 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _of_skeleton(skeleton: Skeleton, distance: float) -> Iterator[str]:
-    """Warnings about the joints and the surface."""
-    turning = [j for j, kind in enumerate(skeleton.kinds) if kind == "joint"]
-    if not turning:
-        yield from skeleton_remarks(skeleton)
-    if len(skeleton.frames) < WarningLimits().short:
-        yield f"only {counted(len(skeleton.frames), 'frame')}: joints are found by motion, more frames show more of them"
-    if distance > WarningLimits().skin_distance:
-        yield (
-            f"the skeleton does not explain the motion: its skin is {100 * distance:.2g} % of the body's diagonal away from the"
-            " aligned meshes; the body is not rigid there, or some of its joints are missing"
-        )
+def _of_surface(skeleton: Skeleton) -> Iterator[Remark]:
+    """That the surface closes a loop."""
     if (handles := _handles(skeleton)) > 0:
-        yield (
+        yield Remark(
             f"the surface has {counted(handles, 'handle')}, where limbs touch or the body forms a ring;"
             " a tree of joints cannot represent a closed loop"
         )
-    weak = [skeleton.names[j] for j in turning if skeleton.support[j] < WarningLimits().short]
-    if weak:
-        yield f"supported by fewer than {WarningLimits().short} frames: {_named(weak, 'joint')}"
-    low = [skeleton.names[j] for j in turning if float(skeleton.confidence[:, j].mean()) < WarningLimits().confidence]
-    if low:
-        yield f"low confidence: {_named(low, 'joint')}"
 
 
 def _handles(skeleton: Skeleton) -> int:
@@ -92,20 +78,33 @@ def _handles(skeleton: Skeleton) -> int:
 
 def _of_frames(
     intervals: Intervals, leaves: Leaves, frame_confidence: FrameConfidence, meshes: Mapping[int, Mesh]
-) -> Iterator[str]:
-    """Warnings about frames: alignment, leaves, intervals, removed components."""
-    yield from frame_confidence_remarks(frame_confidence)
-    yield from leaf_losses(leaves)
-    for number, (begin, end) in enumerate(zip(intervals.begin, intervals.end, strict=True)):
-        if end - begin + 1 < WarningLimits().short < len(intervals.frames):
-            first = intervals.frames[int(begin)]
-            yield f"interval {number} is short: {counted(end - begin + 1, 'frame')} from frame {first} on"
-    removed = [str(frame) for frame, m in meshes.items() if m.cleaning.components > m.cleaning.components_kept]
+) -> Iterator[Remark]:
+    """Notes about frames: alignment, leaves, intervals, removed components."""
+    inlier = np.asarray(frame_confidence.inlier)
+    partly = np.where(inlier, frame_confidence.unreliable, 0.0)
+    others = frame_confidence.model_copy(update={"inlier": np.ones_like(inlier), "unreliable": partly})
+    for text in frame_confidence_remarks(others):
+        yield Remark(text, frame_confidence.frames[int(np.argmax(partly))])
+    lost = leaf_losses(leaves)
+    if len(lost) > 1:
+        yield Remark(f"{len(lost)} leaves were lost for a time: {'; '.join(lost)}", leaves.frames[int(min(leaves.lost_begin))])
+    else:
+        yield from (Remark(text) for text in lost)
+    short = [
+        intervals.frames[int(begin)]
+        for begin, end in zip(intervals.begin, intervals.end, strict=True)
+        if end - begin + 1 < WarningLimits().short < len(intervals.frames)
+    ]
+    if short:
+        begins = ", ".join(map(str, short[:NAMED])) + (f" and {len(short) - NAMED} more" if len(short) > NAMED else "")
+        text = f"{counted(len(short), 'short interval')}, of fewer than {WarningLimits().short} frames: from frame {begins} on"
+        yield Remark(text, short[0])
+    removed = [frame for frame, m in meshes.items() if m.cleaning.components > m.cleaning.components_kept]
     if removed:
-        yield f"components apart from the body were removed in {_named(removed, 'frame')}"
+        yield Remark(f"components apart from the body were removed in {runs(removed, tuple(meshes))}", removed[0])
 
 
-def _named(names: list[str], noun: str) -> str:
-    """The names after their noun; those beyond the limit are only counted."""
-    more = f" and {len(names) - WarningLimits().named} more" if len(names) > WarningLimits().named else ""
-    return f"{noun}{'s' if len(names) > 1 else ''} {', '.join(names[: WarningLimits().named])}{more}"
+def _remark(found: Finding, verdict: Verdict) -> Remark:
+    """A finding in words, with the frame and the joint to look at."""
+    frame = found.frames[0] if found.frames else None
+    return Remark(sentence(found, verdict), frame, verdict.joints.index(found.joints[0]) if found.joints else None)

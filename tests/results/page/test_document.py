@@ -10,13 +10,13 @@ from results.sample_report import page
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID
-from kinetree.tasks.results.page.document import as_script, table
+from kinetree.tasks.results.page.document import Remark, as_script, table
 
 EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
 
 
 def test_words_from_outside_are_escaped_everywhere():
-    text = page(EVIL, facts=[(EVIL, EVIL)], warnings=[EVIL])
+    text = page(EVIL, headline=EVIL, facts=[(EVIL, EVIL)], faults=[Remark(EVIL, 3)], notes=[Remark(EVIL)])
     assert text.count("<script") == 5
     assert "alert(1)" in text
     assert "<script>alert" not in text
@@ -51,10 +51,18 @@ def test_what_ran_is_laid_into_the_page_harmlessly():
     assert json.loads(record.group(1)) == {"run": EVIL}
 
 
-def test_warnings_have_a_box_only_where_there_are_some():
-    assert 'class="warnings" aria' not in page()
-    text = page(warnings=["leaf 2 is lost"])
-    assert '<h2 id="warnings">Warnings</h2><ul><li>leaf 2 is lost</li></ul>' in text
+def test_verdict_stands_before_the_player_and_its_reasons_lead_to_frame_and_joint():
+    text = page(level="except", headline="good except for arm in frame 3", faults=[Remark("arm: wrong", 3, 1), Remark("short")])
+    assert text.index('class="verdict except"') < text.index('id="stage"')
+    assert "good except for arm in frame 3</h2>" in text
+    assert '<li><button type="button" class="go" data-frame="3" data-joint="1">arm: wrong</button></li><li>short</li>' in text
+
+
+def test_notes_are_folded_and_stand_only_where_there_are_some():
+    assert 'class="notes"' not in page()
+    text = page(notes=[Remark("leaf 2 is lost")])
+    assert '<details class="notes"><summary>1 note that does not change this</summary><ul><li>leaf 2 is lost</li>' in text
+    assert text.index('id="stage"') < text.index('class="notes"')
 
 
 def test_every_joint_kind_has_its_colour_in_the_legend():

@@ -11,6 +11,7 @@ from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import Report
+from kinetree.tasks.results.page.document import Remark
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -34,7 +35,9 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    report = Report(text=np.frombuffer(page("a <script>alert(1)</script> walk", warnings=["leaf 2"]).encode(), np.uint8))
+    report = Report(
+        text=np.frombuffer(page("a <script>alert(1)</script> walk", faults=[Remark("arm", 7, 1)]).encode(), np.uint8)
+    )
     out = tmp_path_factory.mktemp("page") / "report.html"
     out.write_bytes(views.page(report, RAN))
     return out
@@ -112,6 +115,11 @@ def test_keyboard_alone_steps_turns_and_plays(opened: Any) -> None:
 def test_interval_is_jumped_to(opened: Any) -> None:
     opened.select_option("#interval", index=2)
     assert opened.evaluate("kinetree.at") == 6
+
+
+def test_reason_of_the_verdict_leads_to_its_frame(opened: Any) -> None:
+    opened.click(".verdict button.go")
+    assert opened.evaluate("kinetree.scene.frames[kinetree.at]") == 7
 
 
 def test_nothing_is_wider_than_the_screen(opened: Any) -> None:

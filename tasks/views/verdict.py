@@ -1,0 +1,110 @@
+"""The verdict in plain sentences, for the command line, tables and the report."""
+
+from collections.abc import Callable, Sequence
+
+from kinetree.schemas.results.verdict import Finding, Level, Verdict
+
+WORDS: dict[Level, str] = {"good": "good", "except": "good except for", "unusable": "do not use"}
+"""What a verdict is called."""
+NAMED = 6
+"""Most joints that a sentence names one by one."""
+
+
+def headline(verdict: Verdict) -> str:
+    """The verdict in one sentence."""
+    if verdict.level == "good":
+        frames = f"all {len(verdict.frames)} frames"
+        return f"good: the skinned mesh follows the input in {frames}, every part to {_percent(verdict.worst)} or better"
+    most = verdict.findings[0].severity
+    named = [subject(found, verdict) for found in verdict.findings if found.severity == most]
+    more = f" and {len(named) - 3} more" if len(named) > 3 else ""
+    mark = " " if verdict.level == "except" else ": "
+    return f"{WORDS[verdict.level]}{mark}{'; '.join(named[:3])}{more}"
+
+
+def subject(found: Finding, verdict: Verdict) -> str:
+    """What a finding is about, in a few words."""
+    where = _frames(found, verdict)
+    joints = _joints(found, verdict)
+    words: dict[str, str] = {
+        "rigid": "no joints",
+        "unexplained": "the skeleton does not explain the motion",
+        "lost": f"wrong in {found.amount:.0%} of the frames",
+        "off": f"{joints} in {where}" if joints else where,
+        "outside": f"{joints} in {where}",
+        "uncertain": f"{joints} in {where}",
+        "weak": joints,
+        "asymmetric": f"the lengths at {joints}",
+        "short": f"only {found.amount:.0f} frame{'s' * (found.amount != 1)}",
+        "still": "hardly any motion",
+        "unpaired": joints,
+        "small": joints,
+    }
+    return words[found.kind]
+
+
+def sentence(found: Finding, verdict: Verdict) -> str:
+    """What was found, and what it means."""
+    return _SENTENCES[found.kind](found, _joints(found, verdict), _frames(found, verdict))
+
+
+def _off(found: Finding, joints: str, frames: str) -> str:
+    if not joints:
+        return f"alignment failed in {frames}: the body does not fit the input there"
+    return f"{joints}: wrong in {frames}, {_percent(found.amount)} away from the input"
+
+
+_SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
+    "rigid": lambda f, joints, frames: "no joints: no part of the body turns against another",
+    "unexplained": lambda f, joints, frames: (
+        f"the skeleton does not explain the motion: its skin is {_percent(f.amount)} away from the input in most frames;"
+        " the body is not rigid there, or joints are missing"
+    ),
+    "lost": lambda f, joints, frames: f"some part is wrong in {f.amount:.0%} of the frames",
+    "off": _off,
+    "outside": lambda f, joints, frames: f"{joints}: outside the body in {frames}, by up to {_percent(f.amount)}",
+    "uncertain": lambda f, joints, frames: f"{joints}: uncertain in {frames}, hidden or not fitting the input",
+    "weak": lambda f, joints, frames: f"{joints}: few frames support it (mean confidence {f.amount:.2f})",
+    "asymmetric": lambda f, joints, frames: f"{joints}: their bones differ in length by {_percent(f.amount)}",
+    "short": lambda f, joints, frames: (
+        f"only {f.amount:.0f} frame{'s' * (f.amount != 1)}: joints are found by motion, more frames show more of them"
+    ),
+    "still": lambda f, joints, frames: f"no joint turns by more than {f.amount:.0f}°: where they are is known badly",
+    "unpaired": lambda f, joints, frames: f"{joints}: not found on the other side, where it turns too little or was missed",
+    "small": lambda f, joints, frames: f"{joints}: turning by at most {f.amount:.0f}°, so that the place is known badly",
+}
+
+
+def runs(frames: Sequence[int], among: Sequence[int]) -> str:
+    """Frames in words: frame 3, or frames 3–5, 9.
+
+    frames : source frame numbers, ascending
+    among  : all frames of the sequence, by which frames are neighbours
+    """
+    place = {frame: t for t, frame in enumerate(among)}
+    spans: list[list[int]] = []
+    for frame in frames:
+        if spans and place[frame] == place[spans[-1][1]] + 1:
+            spans[-1][1] = frame
+        else:
+            spans.append([frame, frame])
+    shown = ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in spans[:NAMED])
+    more = f" and {len(spans) - NAMED} more intervals" if len(spans) > NAMED else ""
+    return f"frame{'s' * (len(frames) > 1)} {shown}{more}"
+
+
+def _frames(found: Finding, verdict: Verdict) -> str:
+    return runs(found.frames, verdict.frames) if found.frames else "all frames"
+
+
+def _joints(found: Finding, verdict: Verdict) -> str:
+    label = dict(zip(verdict.joints, verdict.labels, strict=True))
+    names = [label[name] for name in found.joints]
+    if found.kind == "asymmetric":
+        return " and ".join(names)
+    return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+
+
+def _percent(share: float) -> str:
+    """A share of the diagonal of the body's box in words."""
+    return f"{100 * share:.2g} % of the body's size"

@@ -1,0 +1,79 @@
+"""The verdict on a body in order and on spoilt ones, and what it is in words."""
+
+import numpy as np
+import pytest
+from results.plain_names import plain
+from results.rigged_bodies import spider
+from results.sample_report import artifacts, confident
+
+from kinetree.pipeline import views
+from kinetree.schemas.results.verdict import Finding, Verdict
+from kinetree.tasks.results.surface_error import surface_error
+from kinetree.tasks.results.verdict import verdict
+from kinetree.tasks.views.verdict import runs, sentence
+
+
+def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = ()) -> Verdict:
+    """The verdict on the spider; in some frames the hand of the input is moved away."""
+    body = spider()
+    anatomy = tuple("hand_end_l" if name == "hand" else "shoulder_l" if name == "arm" else "" for name in body.names)
+    content = artifacts()
+    errors = {}
+    for t, (frame, mesh) in enumerate(content["mesh"].items()):
+        V = np.array(mesh.vertices)
+        hand = np.linalg.norm(V - body.positions[t, body.names.index("hand")], axis=1) < 2.0
+        moved = mesh.model_copy(update={"vertices": V + (spoilt or {}).get(frame, 0.0) * np.outer(hand, [0, 0, 1.0])})
+        errors[frame] = surface_error(skeleton=body, mesh=moved, index=(frame,))
+    return verdict(
+        skeleton=body,
+        joint_names=plain(body, anatomy=anatomy),
+        frame_confidence=confident(body.frames, failed=failed),
+        surface_error=errors,
+    )
+
+
+def test_a_body_in_order_is_good() -> None:
+    found = of()
+    assert (found.level, [f.kind for f in found.findings]) == ("good", ["unpaired"])
+    (line,) = views.remarks(found)
+    assert line.startswith("good: the skinned mesh follows the input in all 12 frames, every part to ")
+
+
+def test_one_spoilt_frame_is_found_with_its_part_and_named() -> None:
+    found = of({7: 6.0})
+    assert found.level == "except"
+    assert [(f.kind, f.frames) for f in found.findings if f.severity == "fault"] == [("off", (7,))]
+    assert "arm" in found.findings[0].joints
+    headline, reason = views.remarks(found)
+    assert headline.startswith("good except for ")
+    assert "left shoulder" in headline
+    assert headline.endswith("in frame 7")
+    assert "wrong in frame 7" in reason
+
+
+def test_a_failed_alignment_is_found() -> None:
+    assert views.remarks(of(failed=(3, 4))) == (
+        "good except for frames 3–4",
+        "alignment failed in frames 3–4: the body does not fit the input there",
+    )
+
+
+def test_a_body_that_is_wrong_in_many_frames_is_not_to_be_used() -> None:
+    found = of(dict.fromkeys(range(6), 6.0))
+    assert found.level == "unusable"
+    assert views.remarks(found)[0] == "do not use: wrong in 50% of the frames"
+
+
+def test_frames_are_told_as_runs() -> None:
+    assert runs((3,), range(9)) == "frame 3"
+    assert runs((0, 1, 2, 5), range(9)) == "frames 0–2, 5"
+    assert runs((0, 10, 20), (0, 10, 20, 30)) == "frames 0–20"
+    assert runs(range(0, 40, 2), range(40)).endswith("and 14 more intervals")
+
+
+@pytest.mark.parametrize("kind", Finding.model_fields["kind"].annotation.__args__)  # type: ignore[union-attr]
+def test_every_kind_of_finding_has_its_sentence(kind: str) -> None:
+    found = Finding(kind=kind, severity="fault", frames=(1, 2), joints=("arm", "knee"), amount=0.05)  # type: ignore[arg-type]
+    text = sentence(found, of())
+    assert text[0].islower()
+    assert not text.endswith(".")
