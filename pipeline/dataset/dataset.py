@@ -28,7 +28,7 @@ from kinetree.pipeline.dataset.lease import Leases, holder
 from kinetree.pipeline.dataset.metrics import Metrics
 from kinetree.pipeline.dataset.night import Night, input_changed, now
 from kinetree.pipeline.dataset.rotation import RotatingLog
-from kinetree.pipeline.dataset.sequences import chosen
+from kinetree.pipeline.dataset.sequences import chosen, frames_taken_for_sequences
 from kinetree.pipeline.dataset.summing import Summing
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import Heads, History
@@ -129,7 +129,8 @@ class Dataset:
             else:
                 rows.append(planned(name, there, before[name], known))
         files.save()
-        return DatasetPlan(tuple(rows), self.config.notes)
+        refused = {row.name for row in rows if row.state == "refused"}
+        return DatasetPlan(tuple(rows), (*self.config.notes, *self._frames_hint(refused)))
 
     def run(
         self,
@@ -265,6 +266,10 @@ class Dataset:
         garbage = collect(self.store, last=policy.keep_last, days=policy.keep_days, size=size)
         return {"runs": len(garbage.runs), "artifacts": len(garbage.artifacts), "bytes": garbage.bytes}
 
+    def _frames_hint(self, refused: set[str]) -> list[str]:
+        """What is to be said where no sequence at all could be read."""
+        return frames_taken_for_sequences(self.config.inputs) if refused == set(self.config.inputs) else []
+
     def _described(self, night: Night) -> dict[str, Any]:
         sequences = {}
         for name, state in sorted(night.states.items()):
@@ -278,7 +283,9 @@ class Dataset:
             sequences[name] = row
         states = list(night.states.values())
         counts = {state: states.count(state) for state in ("ran", "fresh", "failed", "elsewhere", "left")}
-        return {"counts": counts, "sequences": sequences, "notes": list(self.config.notes)}
+        refused = {name for name, outcome in night.outcomes.items() if outcome.status == "failed" and not outcome.run}
+        notes = [*self.config.notes, *self._frames_hint(refused)]
+        return {"counts": counts, "sequences": sequences, "notes": notes}
 
     def _leave(self, told: dict[str, Any]) -> None:
         """Leaves dataset.json and, where something failed, hands its path to the program that is to hear of it."""

@@ -12,6 +12,7 @@ stand for each sequence's name and path
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -98,7 +99,9 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
         if key not in {*known, *RUN_KEYS, *KEYS}:
             raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), {*known, *RUN_KEYS, *KEYS})}")
     if "sequences" not in given:
-        raise ConfigError(f"{where}: sequences is missing: say which there are, e.g. sequences: takes/*")
+        meant = [key for key in get_close_matches("sequences", given, cutoff=0.8) if not isinstance(given[key], Mapping)]
+        hint = f"; did you mean it by {meant[0]!r}?" if meant else ", e.g. sequences: takes/*"
+        raise ConfigError(f"{where}: sequences is missing: say which there are{hint}")
     inputs, notes = sequences(given["sequences"], given.get("name", "{stem}"), base, where)
     template = _output(given.get("output", OUTPUT), where)
     shared = {key: value for key, value in given.items() if key not in KEYS}
@@ -204,7 +207,10 @@ def _metrics(given: Any, base: Path, where: str) -> Path | None:
         return None
     if not isinstance(given, str) or not given or "://" in given:
         raise ConfigError(f"{where}: metrics: expected the path of a file, e.g. metrics: results/metrics.prom, got {given!r}")
-    return base / Path(given).expanduser()
+    path = base / Path(given).expanduser()
+    if path.is_dir():
+        raise ConfigError(f"{where}: metrics: {path} is a folder; name a file in it, e.g. {path / 'metrics.prom'}")
+    return path
 
 
 def _refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:

@@ -54,6 +54,19 @@ def sequences(given: Any, template: Any, base: Path, where: str) -> tuple[dict[s
     return dict(sorted(named_paths.items())), [f"sequences: nothing matches {pattern}" for pattern in empty]
 
 
+def frames_taken_for_sequences(inputs: Mapping[str, str]) -> list[str]:
+    """A remark on sequences none of which could be read: they may be the frames of one.
+
+    inputs : path by name
+    """
+    folders = {Path(path).parent for path in inputs.values() if Path(path).is_file()}
+    if len(inputs) < 2 or len(folders) != 1 or not all(Path(path).is_file() for path in inputs.values()):
+        return []
+    folder = folders.pop()
+    taken = f"sequences: each of {len(inputs)} files in {folder} is taken for a sequence"
+    return [f"{taken}; if they are the frames of one, give the folder: sequences: [{folder}]"]
+
+
 def matches(path: Path, pattern: str) -> bool:
     """Whether a pattern, looked up in folders, would find this path."""
     return _match(path.parts, Path(pattern).parts)

@@ -8,6 +8,7 @@ import pytest
 from results.rigged_bodies import spider
 from results.sequence_tables import evaluated
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.dataset.dataset import Dataset
 from kinetree.pipeline.output.outcome import Outcome
@@ -69,3 +70,12 @@ def test_the_command_prints_the_plan_and_the_status(lab, capsys):
         with APPLICATION.active():
             command_line(APPLICATION)(["dataset", action, lab.config.file], standalone_mode=False)
         assert words in capsys.readouterr().out
+
+
+def test_the_block_sequence_is_not_taken_for_the_key_sequences(tmp_path):
+    (tmp_path / "lab.yaml").write_text("sequence: takes/*")
+    with pytest.raises(ConfigError, match="sequences is missing: say which there are; did you mean it by 'sequence'?"):
+        Dataset.of(tmp_path / "lab.yaml", application=APPLICATION)
+    (tmp_path / "lab.yaml").write_text("sequence: {fps: 25}")
+    with pytest.raises(ConfigError, match="sequences is missing: say which there are, e"):
+        Dataset.of(tmp_path / "lab.yaml", application=APPLICATION)

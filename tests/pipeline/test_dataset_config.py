@@ -72,6 +72,19 @@ def test_a_listed_sequence_that_is_gone_is_still_one_and_an_empty_pattern_is_not
     assert found.config.notes == (f"sequences: nothing matches {load.home}/late/*",)
 
 
+def test_files_of_one_folder_none_of_which_can_be_read_may_be_frames_of_one_sequence(load):
+    load("takes/a")
+    for number in range(3):
+        (load.home / "takes" / "a" / f"frame_{number}.bin").write_text("x")
+    (note,) = load(sequences="takes/a/*.bin").plan().notes
+    folder = load.home / "takes" / "a"
+    assert note.startswith(
+        f"sequences: each of 3 files in {folder} is taken for a sequence; if they are the frames of one, give"
+    )
+    assert load(sequences="takes/a/*.bin").run()["notes"] == [note]
+    assert load(sequences="takes/*").plan().notes == ()
+
+
 def test_an_option_reaches_all_sequences(load):
     found = load("takes/a", "takes/b", sets=["points.scale=7"], overrides={"b": {"points": {"scale": 8}}})
     assert [found[name].config.params["points"].scale for name in found] == [7.0, 8.0]
@@ -85,7 +98,7 @@ def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"sequences": None}, "sequences is missing"),
+        ({"sequences": None}, r"sequences is missing: say which there are, e\.g\. sequences: takes/\*"),
         ({"sequences": "none/*"}, r"sequences: nothing matches .*/none/\*; check the path"),
         ({"sequences": []}, "sequences: expected a pattern such as"),
         ({"sequences": 3}, "sequences: expected a pattern such as .* got 3"),
@@ -106,6 +119,7 @@ def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
         ({"overrides": {"a": {"output": "x"}}}, "overrides.a: output is the same for all sequences"),
         ({"overrides": ["a"]}, "overrides: expected names of sequences with blocks"),
         ({"source": {"input": "takes/a"}}, "source.input: the sequences say what is read; remove it"),
+        ({"metrics": "takes"}, r"metrics: .*/takes is a folder; name a file in it, e\.g\. .*/takes/metrics\.prom"),
         ({"on_failure": "mail me"}, r"on_failure: expected a program and its arguments as a list"),
         ({"retention": {"keep_lst": 1}}, "retention.keep_lst: no such key; did you mean 'keep_last'"),
         ({"retention": {"max_size": "huge"}}, "retention.max_size: expected a size such as 20GB"),
