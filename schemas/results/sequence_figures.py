@@ -13,7 +13,7 @@ class SequenceFigures(Artifact):
     """Counts, confidence and errors of one sequence, and a small picture of its body."""
 
     frames: int
-    """Number of frames."""
+    """Number of measured frames."""
     unit: str | None
     """Unit of all lengths; None where it is not known."""
     height: float

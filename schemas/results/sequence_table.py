@@ -16,7 +16,7 @@ class SequenceRow(Params):
     outcome: SequenceOutcome
     """What became of it."""
     frames: int | None = None
-    """Number of frames; None without a result, as are all below."""
+    """Number of measured frames; None without a result, as are all below."""
     unit: str | None = None
     """Unit of all lengths; None also where it is not known."""
     height: float | None = None

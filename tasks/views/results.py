@@ -80,8 +80,8 @@ def evaluation_remarks(evaluation: Evaluation) -> tuple[str, ...]:
     if missing:
         lines.append(f"missing: {', '.join(missing)}")
     if evaluation.true_frames != len(evaluation.frames):
-        compared = f"{len(evaluation.frames)} of the {evaluation.true_frames} frames"
-        lines.append(f"{compared} of {evaluation.truth} are compared; the sequence has no others")
+        compared = f"{len(evaluation.frames)} measured frames are compared"
+        lines.append(f"{compared}; {evaluation.truth} has {evaluation.true_frames}: interpolated and missing ones do not count")
     return tuple(lines)
 
 

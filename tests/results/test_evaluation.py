@@ -7,8 +7,10 @@ from results.true_skeletons import generated, observed, perfect
 from kinetree.errors import InputError
 from kinetree.pipeline import views
 from kinetree.schemas.input.source import Source
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.evaluation import EvaluationParams
 from kinetree.schemas.results.truth import TruthParams
+from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.formats.bvh import bvh
 from kinetree.tasks.results.truth import numbered, synthetic, truth
@@ -200,7 +202,14 @@ def test_frames_are_compared_by_their_numbers():
             selected[field] = selected[field][1::2]
     result = evaluated(skeleton=type(PERFECT)(**{**PERFECT.plain(), **selected, "frames": (1, 3, 5)}))
     assert result.summary.percent == 0.0
-    assert views.remarks(result)[-1] == "3 of the 6 frames of synth are compared; the sequence has no others"
+    told = "3 measured frames are compared; synth has 6: interpolated and missing ones do not count"
+    assert views.remarks(result)[-1] == told
+
+
+def test_interpolated_frames_are_not_evaluated():
+    reads = {argument.artifact for argument in evaluation.arguments}
+    assert Skeleton in reads
+    assert CompleteSkeleton not in reads
 
 
 def test_bvh_of_a_skeleton_is_its_truth(tmp_path):
