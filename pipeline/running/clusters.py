@@ -283,6 +283,8 @@ class Remote:
                 return await future
             except KilledWorker as error:
                 raise LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory") from None
+            except OSError as error:  # of the network: what a task raises comes as a result
+                raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from None
 
         outcome = asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop)
         outcome.add_done_callback(lambda _: workers.forget(future.key))

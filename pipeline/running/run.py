@@ -162,6 +162,8 @@ class _Loop:
             results: list[Result] = future.result()
         except CancelledError:
             raise ClusterError("the scheduler cancelled the work; was it stopped? Run again to go on") from None
+        except ClusterError:
+            raise
         except Exception as error:  # the workers died under it, or none can even load the work
             self._forget(number)
             self._lose(job, parcel, error)

@@ -6,6 +6,7 @@ import time
 
 import pytest
 from distributed import Client, LocalCluster
+from distributed.comm import CommClosedError
 
 from kinetree.errors import ClusterError, ConfigError
 from kinetree.pipeline.inspect import Pipeline
@@ -209,6 +210,19 @@ def test_a_queue_that_never_starts_a_worker_is_given_up_in_words(toys, late):
     done = toys.command("run", str(toys.yaml(compute={**late, "wait_workers": "1,0.5"})), "--quiet")
     assert (done.returncode, toys.executions()) == (3, [])
     assert "--wait-workers 1: 0 workers are there after 0.5 s" in done.stderr
+
+
+def test_a_result_that_cannot_be_fetched_is_no_fault_of_its_node(toys, empty, monkeypatch):
+    """A scheduler that is killed while it sends a result."""
+
+    async def closed(*_, **__):
+        raise CommClosedError("Stream is closed")
+
+    empty.scale(1)
+    with Client(empty) as client:
+        monkeypatch.setattr(client, "_gather", closed)
+        with pytest.raises(ClusterError, match=r"the scheduler is gone \(CommClosedError\); run again"):
+            toys.run(client, until=("points",))
 
 
 def test_dask_names_what_runs_by_its_tasks(toys, empty):
