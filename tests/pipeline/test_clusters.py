@@ -235,7 +235,6 @@ def test_dask_names_what_runs_by_its_tasks(toys, empty):
 
 
 def test_dask_reports_on_a_run(toys, tmp_path):
-    pytest.importorskip("bokeh", reason="dask's pages are drawn by bokeh")
     report = tmp_path / "report.html"
     compute = {"executor": "processes", "workers": 1, "performance_report": str(report)}
     run = toys.run(until=("total",), compute=compute)
