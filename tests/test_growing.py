@@ -21,6 +21,10 @@ SMALL: dict[str, Any] = {
 }
 
 
+MADE = ("skeleton", "frame_confidence", "coarse_mesh")
+GATHERS = {"sequence", "tracking_order", "frame_confidence", "skeleton", "excerpt"}
+
+
 class Heard:
     """The nodes that a run computed."""
 
@@ -46,14 +50,14 @@ class Take:
         return Pipeline.of({"output": str(self.output), **SMALL, **told})
 
     def run(self, frames: int, learn_from: str) -> set[str]:
-        """Labels of the nodes that were computed to make the skeleton."""
+        """Labels of the nodes that were computed to make the skeleton and what the report shows of each frame."""
         heard = Heard()
-        self.pipeline(frames, learn_from).run(until=("skeleton", "frame_confidence"), listeners=[heard])
+        self.pipeline(frames, learn_from).run(until=MADE, listeners=[heard])
         return heard.ran
 
     def artifacts(self, frames: int, learn_from: str) -> dict[str, str | None]:
         """The artifact of every node."""
-        plan = self.pipeline(frames, learn_from).inspect(until=("skeleton", "frame_confidence")).plan
+        plan = self.pipeline(frames, learn_from).inspect(until=MADE).plan
         return {node.node: node.artifact for node in plan.nodes}
 
 
@@ -74,15 +78,14 @@ def test_appended_frames_compute_themselves_and_the_gathers_of_all_frames(take: 
     per_frame = [t for t in METHODS["mesoscopic"].tasks if t.over and t.over[-1] in ("frame", "further") and not t.on_request]
     passes = {t.name: 3 if "pass" in t.over else 1 for t in per_frame if not t.is_origin}
     assert len(of_frames) <= 2 * sum(passes.values())
-    assert ran - of_frames == {"sequence", "tracking_order", "frame_confidence", "skeleton"}
+    assert ran - of_frames == GATHERS
 
 
 def test_artifacts_of_the_frames_before_stay_byte_for_byte(take: Any) -> None:
     here, before, _, _ = take
     after = here.artifacts(GROWN, f":{THERE}")
-    gathers = {"sequence", "tracking_order", "frame_confidence", "skeleton"}
-    assert {node: after[node] for node in before if node not in gathers} == {
-        node: artifact for node, artifact in before.items() if node not in gathers
+    assert {node: after[node] for node in before if node not in GATHERS} == {
+        node: artifact for node, artifact in before.items() if node not in GATHERS
     }
 
 
@@ -101,7 +104,7 @@ def test_the_skeleton_is_the_same_where_it_was_and_posed_in_the_new_frames(take:
 def test_learning_from_all_frames_is_learning_from_those_there_are(take: Any) -> None:
     here, before, _, _ = take
     ran = here.run(THERE, ":")
-    assert ran <= {"sequence", "tracking_order"}
+    assert ran <= {"sequence", "tracking_order", "excerpt"}
     assert {n: a for n, a in here.artifacts(THERE, ":").items() if n != "sequence"} == {
         n: a for n, a in before.items() if n != "sequence"
     }

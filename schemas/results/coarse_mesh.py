@@ -2,15 +2,26 @@
 
 from typing import Annotated
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from pydantic import Field
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
 from kinetree.schemas.dims import CORNER, FACE, SAMPLE, VERTEX, XYZ
 
 
+class CoarseMeshParams(Params):
+    """How much of an input mesh the player of the report shows."""
+
+    vertices: int = Field(default=2500, ge=50)
+    """Most vertices of an input mesh in the player."""
+
+
 class CoarseMesh(Artifact):
-    """Some vertices of one frame's mesh, and the point of the reference that each belongs to; empty where it is not shown."""
+    """Some vertices of one frame's mesh, and the point of the reference that each belongs to."""
 
     size: int
     """Vertices of the whole mesh."""
+    limit: int
+    """Vertices that were asked for at most."""
     extent: tuple[float, ...]
     """Extent of the whole mesh along x, y and z, length."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from kinetree.schemas.array import Artifact, Params
+from kinetree.schemas.array import Artifact, Index, Params
 
 
 class ExcerptParams(Params):
@@ -12,8 +12,6 @@ class ExcerptParams(Params):
 
     frames: int = Field(default=90, ge=1, le=1000)
     """Most frames that the player shows; with more the page opens slowly."""
-    input_vertices: int = Field(default=2500, ge=50)
-    """Most vertices of an input mesh in the player."""
     views: int = Field(default=4, ge=1, le=12)
     """Number of frames in pictures of the body."""
 
@@ -21,6 +19,7 @@ class ExcerptParams(Params):
 class Excerpt(Artifact):
     """The frames of a sequence that the report shows."""
 
+    opens: ClassVar[tuple[str, ...]] = ("shown", "shown/frame")
     orders: ClassVar[str] = "frame"
 
     frames: tuple[int, ...]
@@ -29,12 +28,12 @@ class Excerpt(Artifact):
     """For each of these, the first of the frames up to it that all have its faces: they are made coarse alike."""
     pictured: tuple[int, ...]
     """Source frame numbers of the frames in pictures of the body."""
-    input_vertices: int
-    """Most vertices of an input mesh in the player."""
+
+    def members(self, space: str, index: Index) -> tuple[int, ...]:
+        """The one member that has all frames shown, or these frames."""
+        return (0,) if space == "shown" else self.frames
 
     def previous(self, member: int) -> int | None:
-        """The frame whose coarse mesh this one takes over; None where it has its own, or is not shown."""
-        if member not in self.frames:
-            return None
+        """The frame whose coarse mesh this one takes over; None where it has its own."""
         first = self.alike[self.frames.index(member)]
         return None if first == member else first

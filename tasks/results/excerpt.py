@@ -20,5 +20,4 @@ def excerpt(sequence: Sequence, mesh: Mapping[int, Mesh], params: ExcerptParams)
         frames=played,
         alike=alike({frame: mesh[frame].faces for frame in played}),
         pictured=pictured,
-        input_vertices=params.input_vertices,
     )

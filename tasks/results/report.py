@@ -52,14 +52,14 @@ def report(
     frame_confidence: FrameConfidence,
     verdict: Verdict,
     excerpt: Excerpt,
-    coarse_mesh: Mapping[int, CoarseMesh],
+    coarse_mesh: tuple[CoarseMesh, ...],
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
     params: ReportParams,
 ) -> Report:
     """Lays out the result of the run on one page that needs no network (ours)."""
-    limits = Limits(len(excerpt.frames), params.vertices, excerpt.input_vertices)
-    inputs = {frame: coarse_mesh[frame] for frame in excerpt.frames}
+    limits = Limits(len(excerpt.frames), params.vertices, coarse_mesh[0].limit)
+    inputs = dict(zip(excerpt.frames, coarse_mesh, strict=True))
     structure = pictures(skeleton_figures) + pictures(motion_figures) + _joints(skeleton, intervals, structure_figures)
     has_truth = evaluation.summary is not None
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"

@@ -14,7 +14,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
-from kinetree.schemas.results.coarse_mesh import CoarseMesh
+from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.structure.skeleton import Skeleton
@@ -98,13 +98,11 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
 
     all_of_it["excerpt"] = excerpt(**some("sequence", "mesh"), params=params)
     coarse: dict[int, CoarseMesh] = {}
-    for frame, mesh in all_of_it["mesh"].items():
+    for frame in all_of_it["excerpt"].frames:
         before = coarse.get(all_of_it["excerpt"].previous(frame))
-        projection = all_of_it["projection"][frame]
-        coarse[frame] = coarse_mesh(
-            mesh=mesh, projection=projection, excerpt=all_of_it["excerpt"], previous=before, index=(frame,)
-        )
-    all_of_it["coarse_mesh"] = coarse
+        mesh, projection = all_of_it["mesh"][frame], all_of_it["projection"][frame]
+        coarse[frame] = coarse_mesh(mesh=mesh, projection=projection, previous=before, params=CoarseMeshParams())
+    all_of_it["coarse_mesh"] = tuple(coarse.values())
     topology = some("excerpt", "correlation", "intervals", "leaves", "up_direction", "mesh", "geodesics")
     aligned = some("skeleton", "excerpt", "connectivity", "up_direction", "alignment")
     all_of_it["topology_figures"] = topology_figures(**topology)

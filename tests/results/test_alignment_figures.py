@@ -9,7 +9,7 @@ from kinetree.schemas.results.alignment_figures import AlignmentFigures
 from kinetree.schemas.results.excerpt import Excerpt
 from kinetree.tasks.results.alignment_figures import alignment_figures
 
-CHOSEN = Excerpt(frames=(0,), alike=(0,), pictured=(0,), input_vertices=100)
+CHOSEN = Excerpt(frames=(0,), alike=(0,), pictured=(0,))
 
 
 def of(away: float = 0.0, anew: bool = False) -> AlignmentFigures:

@@ -4,19 +4,17 @@ import numpy as np
 from results.rigged_bodies import spider
 from results.sample_report import artifacts
 
-from kinetree.schemas.results.coarse_mesh import CoarseMesh
-from kinetree.schemas.results.excerpt import Excerpt
+from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
 from kinetree.tasks.results.page.coarse import alike, coarse_meshes
 
 COUNT = 100
 CONTENT = artifacts()
-CHOSEN = Excerpt(frames=(0, 4), alike=(0, 0), pictured=(0,), input_vertices=COUNT)
 
 
 def of(frame: int, previous: CoarseMesh | None = None) -> CoarseMesh:
     mesh, projection = CONTENT["mesh"][frame], CONTENT["projection"][frame]
-    return coarse_mesh(mesh=mesh, projection=projection, excerpt=CHOSEN, previous=previous, index=(frame,))
+    return coarse_mesh(mesh=mesh, projection=projection, previous=previous, params=CoarseMeshParams(vertices=COUNT))
 
 
 def test_vertices_are_some_of_the_mesh() -> None:
@@ -39,12 +37,8 @@ def test_frame_with_the_same_faces_has_the_same_vertices_and_holds_no_faces() ->
     assert (len(later.kept), len(later.faces)) == (0, 0)
 
 
-def test_frame_that_is_not_shown_is_empty() -> None:
-    assert (of(5).size, len(of(5).vertices)) == (0, 0)
-
-
 def test_many_at_once_are_those_made_one_by_one() -> None:
-    shown = {frame: CONTENT["mesh"][frame] for frame in CHOSEN.frames}
+    shown = {frame: CONTENT["mesh"][frame] for frame in (0, 4)}
     made = coarse_meshes(shown, CONTENT["projection"], COUNT)
     assert made[0] == of(0)
     assert made[4] == of(4, of(0))

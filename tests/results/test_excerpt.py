@@ -1,6 +1,5 @@
 """The frames that the report shows: evenly spread, and made coarse alike where they share their faces."""
 
-from results.rigged_bodies import spider
 from results.sample_report import artifacts
 
 from kinetree.schemas.results.excerpt import Excerpt, ExcerptParams
@@ -26,8 +25,9 @@ def test_frames_with_the_same_faces_follow_the_first_of_them() -> None:
 def test_frames_with_faces_of_their_own_follow_none() -> None:
     chosen = of(ExcerptParams(frames=4), anew=True)
     assert chosen.alike == chosen.frames
-    assert not any(chosen.previous(frame) for frame in spider().frames)
+    assert not any(chosen.previous(frame) for frame in chosen.frames)
 
 
-def test_frame_that_is_not_shown_follows_none() -> None:
-    assert of(ExcerptParams(frames=4)).previous(5) is None
+def test_the_frames_shown_are_an_index_of_their_own() -> None:
+    chosen = of(ExcerptParams(frames=4))
+    assert (chosen.members("shown", ()), chosen.members("shown/frame", (0,))) == ((0,), (0, 4, 7, 11))

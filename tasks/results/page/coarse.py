@@ -37,6 +37,7 @@ def coarse(mesh: Mesh, projection: Projection, previous: CoarseMesh | None, coun
     face[at], corner[at] = projection.face[known], np.argmax(projection.share, axis=1)[known]
     return CoarseMesh(
         size=len(V),
+        limit=count,
         extent=tuple(np.ptp(V, axis=0).tolist()),
         vertices=V[kept],
         reference_face=face[kept],
