@@ -2,12 +2,12 @@
 
 import contextlib
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from kinetree.errors import KinetreeError, StoreFullError
-from kinetree.pipeline.storage.heartbeat import lives
+from kinetree.pipeline.storage.heartbeat import LOST_SECONDS, is_here, lives
 from kinetree.pipeline.storage.place import Listed
 from kinetree.pipeline.storage.run_records import list_path, run_path
 from kinetree.pipeline.storage.store import Store, artifact_path
@@ -76,7 +76,7 @@ def collect(
     lists = {runs[name]["list"]: name for name in sorted(needed)}
     keys = {node["key"] for name in lists.values() for node in _nodes(store, runs[name]).values() if node.get("key")}
     keys.update(key for name in needed for key in runs[name].get("uses", ()))
-    since = min((run["epoch"] for run in unfinished), default=float("inf"))
+    since = min((_begun(run) for run in unfinished), default=float("inf"))
     garbage = _garbage(store, tuple(name for name in store.run_names() if name not in needed), keys, lists, since)
     if not dry:
         _free(store, garbage)
@@ -115,6 +115,12 @@ def advising(store: Store) -> Iterator[None]:
         if freed < _WORTH_SAYING:
             raise
         raise StoreFullError(f"{error}; kinetree gc would free {freed / 2**20:.1f} MiB of the store") from error
+
+
+def _begun(run: Mapping[str, Any]) -> float:
+    """From when on something may be of a run, in the store's time; minus infinity where a clock that was set back hides it."""
+    epoch = float(run["epoch"]) - (0.0 if is_here(run) else LOST_SECONDS)  # clocks of two machines differ
+    return epoch if epoch <= time.time() else float("-inf")
 
 
 def _latest(runs: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
