@@ -30,19 +30,19 @@ class RunRecords:
     def heads(self) -> list[dict[str, Any]]:
         """The runs without their nodes, oldest first, without those that cannot be read; `list` names a run's nodes."""
         found = self.place.get_all([run_path(name) for name in self.names()])
-        heads = (_head(data) for data in found.values())
+        heads = (_head(data, path) for path, data in found.items())
         return [head for head in heads if head is not None]
 
     def head(self, name: str) -> dict[str, Any] | None:
         """One run without its nodes; None where there is none or it cannot be read."""
-        return _head(self.place.get(run_path(name)))
+        return _head(self.place.get(run_path(name)), run_path(name))
 
     def nodes(self, head: Mapping[str, Any]) -> dict[str, Any] | None:
         """The nodes of a run by label; None where they cannot be read."""
         name, states = head["list"], head["states"]
         listed = self._list(name) if name else {}
-        if listed is None:
-            return None
+        if not isinstance(listed, dict) or not all(isinstance(node, dict) for node in listed.values()):
+            return None  # damaged, or another sealed file in its place
         return {label: {"state": states.get(label, "fresh"), **node} for label, node in listed.items()}
 
     def write(self, name: str, run: Mapping[str, Any]) -> None:
@@ -80,8 +80,11 @@ def list_path(name: str) -> str:
     return f"nodes/{name}.json"
 
 
-def _head(data: bytes | None) -> dict[str, Any] | None:
+def _head(data: bytes | None, path: str) -> dict[str, Any] | None:
+    """The run of a file; None where it is damaged or that of another run or thing."""
     run = unsealed(data)
-    if not isinstance(run, dict):
+    if not isinstance(run, dict) or not isinstance(run.get("nodes"), str) or not isinstance(run.get("states"), dict):
+        return None
+    if run_path(str(run.get("name", ""))) not in (path, run_path("")):
         return None
     return {**{name: value for name, value in run.items() if name != "nodes"}, "list": run["nodes"]}

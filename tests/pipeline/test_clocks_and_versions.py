@@ -19,7 +19,8 @@ def under_way(toys, after, **changes):
     for name in store.run_names():
         store.place.remove(f"runs/{name}.json")
     name = "20260101-000000-aaaaaa"
-    told = {"name": name, "status": "running", "epoch": time.time() + after, "output": str(toys.output), "nodes": {}, **identity(), **changes}
+    told = {"name": name, "status": "running", "epoch": time.time() + after, "output": str(toys.output), "nodes": {}}
+    told |= {**identity(), **changes}
     store.write_run(name, told)
     return store
 

@@ -125,3 +125,24 @@ def test_recent_runs_are_kept_by_age_and_old_ones_let_go_by_size(toys):
     done = toys.command("gc", str(toys.output), "--keep-days", "2", "--max-size", "1 GB", "--dry-run")
     assert done.stdout.startswith("would delete 0 artifacts")
     assert toys.command("gc", str(toys.output), "--max-size", "much").returncode == 2
+
+
+def test_sealed_files_in_place_of_each_other_are_damage_and_no_traceback(toys):
+    toys.run()
+    toys.run(points={"scale": 1.3})
+    place = toys.output / "store"
+    there = {name: sorted(path for path in (place / name).iterdir() if path.is_file()) for name in ("runs", "nodes", "records")}
+    others = [(there[name] or sorted((place / "packs").iterdir()))[0].read_bytes() for name in there]
+    others.append(there["runs"][1].read_bytes())
+    for path in (there["runs"][0], there["nodes"][0]):
+        whole = path.read_bytes()
+        for other in others:
+            path.write_bytes(other)
+            pipeline = toys.pipeline()
+            assert len(pipeline.runs()) >= 1
+            pipeline.plan()
+            pipeline.inspect().estimate()
+            collect(pipeline.store, dry=True)
+            verify(pipeline.store, [pipeline.tasks])
+        path.write_bytes(whole)
+    assert toys.run(points={"scale": 1.3}).ran == set()
