@@ -112,7 +112,7 @@ def test_missing_folder(refused, scans, tmp_path):
 def test_empty_folder(refused, tmp_path):
     (tmp_path / "empty").mkdir()
     assert refused("-i", "empty") == (
-        f"{tmp_path / 'empty'}: no mesh among its files (nothing); .ply .obj .off .stl .glb are read, one file a frame"
+        f"{tmp_path / 'empty'}: no mesh among its files (nothing); .ply .obj .off .stl .glb .drc are read, one file a frame"
     )
 
 

@@ -9,7 +9,7 @@ from kinetree.errors import ArtifactError
 from kinetree.schemas.array import Artifact, Index, Location, Params, PathLike
 from kinetree.schemas.input.synth import SynthParams
 
-Kind = Literal["file", "npz", "zarr", "synth", "silhouettes", "volume"]
+Kind = Literal["file", "npz", "zarr", "animated", "synth", "silhouettes", "volume"]
 
 
 class TakeParams(Params):
@@ -19,13 +19,17 @@ class TakeParams(Params):
     """What files of this take are called by."""
     input: Annotated[str, PathLike()] = ""
     """As `source.input`, of this take alone."""
+    clip: str = ""
+    """As `source.clip`, of this take alone."""
 
 
 class SourceParams(Params):
     """Where the sequence is and which of its frames are wanted."""
 
     input: Annotated[str, PathLike()] = ""
-    """Folder or glob of meshes, silhouettes or volumes, or one file that holds all frames; meshes also at s3://."""
+    """Folder or glob of meshes, silhouettes or volumes, or one file of all frames (npz, zarr, GLB, USD, zip); meshes also at s3://."""
+    clip: str = ""
+    """Name of the animation in a GLB that holds several; empty for its first."""
     takes: tuple[TakeParams, ...] = ()
     """Several takes of one body, which have one skeleton; excludes `input` and `synth`."""
     synth: SynthParams | None = None
@@ -64,8 +68,10 @@ class Source(Artifact):
     """What a synthetic frame is made by, as JSON; its digest is in `content`."""
     take: str = ""
     """Name of the take that it is from; empty where there is one alone."""
+    clip: Annotated[str, Location()] = ""
+    """Name of the animation that it is a frame of, where one of several was chosen."""
     kind: Kind = "file"
-    """How to read it: the first four are meshes."""
+    """How to read it: the first five are meshes."""
     calibration: Annotated[tuple[str, ...], Location()] = ()
     """The files that calibrate the cameras of silhouettes."""
     masks: Annotated[tuple[str, ...], Location()] = ()

@@ -17,6 +17,8 @@ from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import BadFrame, Kind, Source, SourceParams
 from kinetree.tasks.input.synth import body, recipe
+from kinetree.tasks.numerics.input.animated import SUFFIXES as ANIMATED
+from kinetree.tasks.numerics.input.animated import Animated, read_animated
 from kinetree.tasks.numerics.input.bad_frames import (
     FrameMeasures,
     bad_frames,
@@ -41,6 +43,7 @@ from kinetree.tasks.numerics.input.source import (
     written,
 )
 from kinetree.tasks.numerics.input.volumes import Grid, Volumes, read_volume, read_volumes
+from kinetree.tasks.numerics.input.zipped import Zipped
 
 REMOTE = "content and measures/2"
 """How the memory of files calls what is read of a mesh in a bucket."""
@@ -57,7 +60,7 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
         return _chosen(_generated(recipe(params.synth), params.synth.frames), params.frames, "the synthetic sequence")
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
-    return _usable(_chosen(_found(params.input, files), params.frames, params.input), params, files)
+    return _usable(_chosen(_found(params.input, files, params.clip), params.frames, params.input), params, files)
 
 
 def _several(params: SourceParams, files: Files) -> dict[int, Source]:
@@ -73,7 +76,7 @@ def _several(params: SourceParams, files: Files) -> dict[int, Source]:
     found: dict[int, Source] = {}
     measured: dict[str, list[FrameMeasures]] = {}
     for k, take in enumerate(params.takes):
-        own = _usable(_chosen(_found(take.input, files), params.frames, take.input), params, files)
+        own = _usable(_chosen(_found(take.input, files, take.clip), params.frames, take.input), params, files)
         measured[take.name] = [m for m in _measured(own, files).values() if not isinstance(m, str)]
         for t, frame in own.items():
             dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)
@@ -106,9 +109,9 @@ def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -
 def _measured(sources: Mapping[int, Source], files: Files) -> dict[int, FrameMeasures | str]:
     """What the surface of every frame is like, or why it cannot be read; nothing where frames are no meshes yet."""
     kinds = {s.kind for s in sources.values()}
-    if kinds <= {"npz", "zarr"}:
-        path, kind = next(iter(sources.values())).path, kinds.pop()
-        held = files.parts(path, f"{kind}/measures/2", lambda where: _measures_of_parts(where, kind))
+    if kinds <= {"npz", "zarr", "animated"}:
+        first = next(iter(sources.values()))
+        held = files.parts(first.path, _memory(first, "measures/2"), lambda where: _measures_of_parts(where, first))
         return {t: _parsed(held[s.part or 0]) for t, s in sources.items()}
     if kinds == {"file"}:
         return {t: _parsed(_measures(s.path, files)) for t, s in sources.items()}
@@ -136,10 +139,22 @@ def _measures_of_file(path: Path) -> Sequence[str]:
         return [json.dumps(str(error).replace(f"{path.parent}{os.sep}", ""))]
 
 
-def _measures_of_parts(path: Path, kind: str) -> Sequence[str]:
-    """The measures of all frames of one file as JSON."""
-    frames = _packed_frames(path, kind)
-    return [json.dumps(frame_measures(*frames.mesh(t))) for t in range(len(frames))]
+def _measures_of_parts(path: Path, of: Source) -> Sequence[str]:
+    """The measures of all frames of one file, or why one cannot be read, as JSON."""
+    frames = _packed_frames(path, of.kind, of.clip)
+    return [json.dumps(_measures_of_part(frames, t)) for t in range(len(frames))]
+
+
+def _measures_of_part(frames: Animated, t: int) -> object:
+    try:
+        return frame_measures(*frames.mesh(t))
+    except (MeshError, SourceError) as error:
+        return str(error)
+
+
+def _memory(of: Source, what: str) -> str:
+    """How the memory of files calls what is read of all frames of one file."""
+    return f"{of.kind}{f'={of.clip}' if of.clip else ''}/{what}"
 
 
 def _parsed(text: str) -> FrameMeasures | str:
@@ -151,13 +166,17 @@ def _parsed(text: str) -> FrameMeasures | str:
     return FrameMeasures(area, size, (x, y, z), vertices, pieces, volume)
 
 
-def _found(where: str, files: Files) -> dict[int, Source]:
+def _found(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
     if files.is_remote(where):
-        return _in_bucket(where, files)
+        return _in_bucket(where, files, clip)
     if "://" in where:
         raise SourceError(f"{where.partition('://')[0]}:// is not read; give a folder, a pattern, a file or s3://bucket/folder")
     path = written(Path(where))
+    if path.suffix.lower() in ANIMATED and path.is_file():
+        return _animated(path, clip, files)
+    if clip:
+        raise SourceError(f"source.clip {clip}: names an animation of one GLB, and {where} is none; leave it out")
     if _is_zarr(path):
         return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
     kind, found = input_kind(where)
@@ -174,13 +193,24 @@ def _found(where: str, files: Files) -> dict[int, Source]:
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
 
 
-def _in_bucket(where: str, files: Files) -> dict[int, Source]:
-    """Every frame of a folder or pattern of mesh files in a bucket, or of one npz there."""
+def _animated(path: Path | str, clip: str, files: Files) -> dict[int, Source]:
+    """Every frame of one file that holds a moving surface; a zip's have the numbers of their names."""
+    sources = _packed(path, "animated", files, clip)
+    if PurePath(path).suffix.lower() != ".zip":
+        return dict(enumerate(sources))
+    names = files.parts(path, "names/1", lambda where: [str(name) for name in Zipped(where).names])
+    return _numbered(sources, [PurePosixPath(name) for name in names])
+
+
+def _in_bucket(where: str, files: Files, clip: str) -> dict[int, Source]:
+    """Every frame of a folder or pattern of mesh files in a bucket, or of one file there that holds all."""
     addresses = files.found(where)
     named = {PurePosixPath(address.partition("://")[2]): address for address in addresses}
     suffixes = {path.suffix.lower() for path in named}
     if suffixes == {".npz"} and len(addresses) == 1:
         return dict(enumerate(_packed(addresses[0], "npz", files)))
+    if len(addresses) == 1 and suffixes <= set(ANIMATED):
+        return _animated(addresses[0], clip, files)
     if not suffixes & set(mesh_suffixes()):
         raise SourceError(
             f"{where}: no mesh among its files ({', '.join(sorted(suffixes))}); in a bucket a folder or pattern of mesh files"
@@ -238,7 +268,7 @@ def surface(frame_source: Source) -> tuple[Floats, Ints]:
         V, F = read_mesh(path)
         now = file_digest(path)
     else:
-        V, F = _packed_frames(path, frame_source.kind).mesh(frame_source.part)
+        V, F = _packed_frames(path, frame_source.kind, frame_source.clip).mesh(frame_source.part)
         now = _mesh_digest(V, F)
     _refuse_changed(now, frame_source)
     return V, F
@@ -361,8 +391,10 @@ def _grid_digest(grid: Grid) -> str:
     return digest(["volume", array_digest(np.ascontiguousarray(grid.values)), grid.origin.tolist(), grid.spacing.tolist()])
 
 
-def _packed_frames(path: Path, kind: str) -> Frames:
-    """The frames of one npz or zarr file."""
+def _packed_frames(path: Path, kind: str, clip: str = "") -> Animated:
+    """The frames of one file that holds all."""
+    if kind == "animated":
+        return read_animated(path, clip)
     return read_npz(path) if kind == "npz" else _zarr_frames(path, _state(path))
 
 
@@ -389,19 +421,28 @@ def _mesh_digest(V: Floats, F: Ints) -> str:
     return digest([array_digest(V), array_digest(F)])
 
 
-def _packed(path: Path | str, kind: str, files: Files) -> list[Source]:
-    """Every frame of one npz or zarr file, or of an npz in a bucket."""
+def _part_digest(frames: Animated, t: int) -> str:
+    """Digest of one frame; "unreadable: …" for one that cannot be read, so that its node can say so."""
+    try:
+        return _mesh_digest(*frames.mesh(t))
+    except (MeshError, SourceError) as error:
+        return f"unreadable: {error}"
+
+
+def _packed(path: Path | str, kind: Kind, files: Files, clip: str = "") -> list[Source]:
+    """Every frame of one file that holds all, also of one in a bucket."""
     if isinstance(path, Path) and not path.exists():
         raise SourceError(f"{path}: there is no such file")
 
     def parts(where: Path) -> Sequence[str]:
-        frames = _packed_frames(where, kind)
+        frames = _packed_frames(where, kind, clip)
         heads = [json.dumps(frames.fps), json.dumps(frames.unit)]
-        return heads + [_mesh_digest(*frames.mesh(t)) for t in range(len(frames))]
+        return heads + [_part_digest(frames, t) for t in range(len(frames))]
 
-    fps, unit, *contents = files.parts(path, f"{kind}/2", parts)
-    stated = {"path": str(path), "kind": kind, "fps": json.loads(fps), "unit": json.loads(unit)}
-    return [Source(content=c, part=t, **stated) for t, c in enumerate(contents)]
+    every = Source(content="", path=str(path), kind=kind, clip=clip)
+    fps, unit, *contents = files.parts(path, _memory(every, "2"), parts)
+    stated = {"fps": json.loads(fps), "unit": json.loads(unit)}
+    return [every.model_copy(update={"content": c, "part": t, **stated}) for t, c in enumerate(contents)]
 
 
 def _is_zarr(path: Path) -> bool:

@@ -2,11 +2,13 @@
 
 import os
 import shutil
+import zipfile
 
 import numpy as np
 import pytest
 import trimesh
 import zarr
+from numerics.input.animated_glbs import TENTHS, Made
 
 from kinetree.errors import MeshError, SourceError
 from kinetree.pipeline.identity.key import artifact_digest
@@ -74,6 +76,70 @@ PACKED = pytest.mark.parametrize(
     [("a.npz", as_npz), ("a.zarr", as_zarr), ("a", as_zarr)],
     ids=lambda x: str(x)[:9],
 )
+
+# ── one file of all frames ──────────────────────────────────────────────────────────────────────────────────────────
+
+
+def zip_of(path, frames):
+    with zipfile.ZipFile(path, "w") as file:
+        for t, content in frames.items():
+            file.writestr(f"walk/frame_{t}.off", content)
+
+
+def test_zip_of_frames_has_the_numbers_of_their_names(found, tmp_path):
+    zip_of(tmp_path / "walk.zip", {t: off(1 + t / 10) for t in (1, 2, 9, 10)})
+    frames = found("walk.zip")
+    assert list(frames) == [1, 2, 9, 10]
+    assert {s.kind for s in frames.values()} == {"animated"}
+    np.testing.assert_array_equal(surface(frames[9])[0], V * 1.9)
+    zip_of(tmp_path / "walk.zip", {t: off(2) for t in (1, 2, 9, 10)})
+    with pytest.raises(SourceError, match=r"^walk\.zip, frame 2: the file changed while the run was under way; run again$"):
+        surface(frames[9])
+
+
+def test_damaged_member_of_a_zip_is_a_bad_frame_and_no_more(found, tmp_path):
+    zip_of(tmp_path / "walk.zip", {t: off(1) if t != 5 else off(1)[:30] for t in range(12)})
+    frames = found("walk.zip")
+    assert list(frames) == [t for t in range(12) if t != 5]
+    ((bad,),) = [s.dropped for s in frames.values() if s.dropped]
+    assert bad.frame == 5
+    assert "the file is cut short" in bad.reason
+
+
+def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_path):
+    made = Made().moves("translation", TENTHS / 3, np.outer(TENTHS, [1, 2, 3]))
+    made.moves("translation", [0, 2], [[0, 0, 0], [0, 0, 0.1]], name="wave")
+    (tmp_path / "walk.glb").write_bytes(made.raw())
+    frames = found("walk.glb")
+    assert (list(frames), frames[3].fps, frames[3].unit) == (list(range(11)), 30.0, "m")
+    np.testing.assert_allclose(surface(frames[10])[0][0], [1, 2, 3], atol=1e-6)
+    wave = source(SourceParams(input=str(tmp_path / "walk.glb"), clip="wave"), files)
+    assert (len(wave), wave[0].clip) == (49, "wave")
+    np.testing.assert_allclose(surface(wave[48])[0][0], [0, 0, 0.1], atol=1e-6)
+    with pytest.raises(SourceError, match=r"source\.clip dance: there is walk, wave"):
+        source(SourceParams(input=str(tmp_path / "walk.glb"), clip="dance"), files)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "told"),
+    [
+        (".fbx", "open it in Blender and export it as glTF binary"),
+        (".abc", "export it as USD"),
+        (".gltf", "export it as one binary glTF"),
+        (".pcd", "is a cloud of points; make a surface of every frame first"),
+        (".bvh", "holds a skeleton or markers, no surface"),
+        (".mp4", "holds pictures, no surface"),
+        (".uvol", "unpack it"),
+    ],
+)
+def test_formats_that_are_not_read_end_in_what_to_do(found, tmp_path, suffix, told):
+    (tmp_path / "many").mkdir()
+    for where in ("many/a1", "many/a2", "a"):
+        (tmp_path / f"{where}{suffix}").write_text("something")
+    for where in ("many", f"a{suffix}"):
+        with pytest.raises(SourceError, match=told):
+            found(where)
+
 
 # ── folders and patterns ────────────────────────────────────────────────────────────────────────────────────────────
 

@@ -15,6 +15,7 @@ from results.rigged_bodies import skinned, spider
 from kinetree.pipeline import views
 from kinetree.schemas.results.glb import GlbParams
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.results.formats.placement import placed
 from kinetree.tasks.results.glb import glb
 
@@ -45,6 +46,18 @@ def test_mesh_read_back_moves_as_the_skeleton_says_in_every_frame(body):
     size = np.linalg.norm(np.ptp(body.vertices, axis=0))
     for t in range(len(body.frames)):
         assert np.abs(file.skinned(t) - truth[t]).max() < 2e-6 * size
+
+
+def test_glb_is_a_sequence_to_begin_with(body, tmp_path):
+    """What is exported goes in again, surface and motion the same."""
+    (tmp_path / "skeleton.glb").write_bytes(written(body))
+    frames, truth = read_animated(tmp_path / "skeleton.glb"), skinned(body)
+    size = np.linalg.norm(np.ptp(body.vertices, axis=0))
+    assert frames.fps == body.fps
+    for t in range(len(frames)):
+        X, F = frames.mesh(t)
+        assert np.abs(X - truth[t]).max() < 2e-6 * size
+        np.testing.assert_array_equal(F, body.faces)
 
 
 def test_joints_read_back_are_where_the_skeleton_has_them(body):

@@ -9,6 +9,7 @@ from kinetree.errors import ConfigError
 from kinetree.pipeline import views
 from kinetree.schemas.results.usd import UsdParams
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.results.formats import usd as exports
 from kinetree.tasks.results.usd import usd
 
@@ -85,6 +86,20 @@ def test_skin_moves_as_the_skeleton_says_in_every_frame(opened):
         points = Vt.Vec3fArray(mesh.GetPointsAttr().Get())
         assert skin.ComputeSkinnedPoints(skeleton.ComputeSkinningTransforms(frame), points, frame)
         np.testing.assert_allclose(np.array(points), truth[t], atol=1e-4)
+
+
+@needs_usd
+def test_usd_is_a_sequence_to_begin_with(tmp_path):
+    """What is exported goes in again, surface and motion the same."""
+    body = spider()
+    (tmp_path / "skeleton.usda").write_bytes(written(body))
+    frames, truth = read_animated(tmp_path / "skeleton.usda"), skinned(body)
+    size = np.linalg.norm(np.ptp(body.vertices, axis=0))
+    assert (len(frames), frames.fps) == (len(body.frames), body.fps)
+    for t in range(len(frames)):
+        X, F = frames.mesh(t)
+        assert np.abs(X - truth[t]).max() < 1e-3 * size  # rotations of half precision
+        np.testing.assert_array_equal(F, body.faces)
 
 
 @needs_usd

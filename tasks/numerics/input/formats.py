@@ -1,4 +1,4 @@
-"""Mesh files of the five formats that are read, and what is refused of them.
+"""Mesh files of the six formats that are read, and what is refused of them.
 
 A file is input from outside: every count it claims is held against its size before memory is taken, nothing outside it
 is opened, and whatever cannot be a mesh is refused with its name and the reason.
@@ -7,6 +7,7 @@ is opened, and whatever cannot be a mesh is refused with its name and the reason
 import json
 import re
 from collections.abc import Callable
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -36,24 +37,36 @@ def read_mesh(path: Path | str) -> tuple[Floats, Faces]:
     raises  : MeshError if it cannot be read, has no faces, or its indices or coordinates are no mesh's
     """
     path = Path(path)
-    read = _READERS.get(path.suffix.lower())
-    if read is None:
+    if path.suffix.lower() not in _READERS:
         raise MeshError(f"{path}: {path.suffix or 'no suffix'} is not read; {' '.join(suffixes())} are")
     if not path.is_file():
         raise MeshError(f"{path}: {'not a file' if path.exists() else 'there is no such file'}")
     try:
         raw = path.read_bytes()
+    except OSError as error:
+        raise MeshError(f"{path}: cannot be read: {error.strerror}") from None
+    return mesh_of(raw, str(path), path.suffix)
+
+
+def mesh_of(raw: bytes, name: str, suffix: str) -> tuple[Floats, Faces]:
+    """One mesh from the bytes of a file, as `read_mesh`.
+
+    name   : what messages call it
+    suffix : of the format, one of `suffixes()`
+    """
+    try:
         if not raw:
             raise MeshError("the file is empty")
-        V, F = read(raw)
+        V, F = _READERS[suffix.lower()](raw)
         V = np.asarray(V, dtype=np.float64).reshape(len(V), 3)
     except MeshError as error:
-        raise MeshError(f"{path}: {error}") from None
+        raise MeshError(f"{name}: {error}") from None
     except Exception as error:
-        kind = path.suffix[1:].upper()
         reason = f"{type(error).__name__}: {error}"
-        raise MeshError(f"{path}: cannot be read as {kind} ({reason}); the file is damaged or cut short") from error
-    return checked(V, F, str(path), first_index=int(path.suffix.lower() == ".obj"))
+        raise MeshError(
+            f"{name}: cannot be read as {suffix[1:].upper()} ({reason}); the file is damaged or cut short"
+        ) from error
+    return checked(V, F, name, first_index=int(suffix.lower() == ".obj"))
 
 
 def checked(V: Any, F: Any, name: str, first_index: int = 0) -> tuple[Floats, Faces]:
@@ -226,10 +239,29 @@ def _glb(raw: bytes) -> tuple[Any, Any]:
     return np.concatenate(V), np.concatenate(F)
 
 
+def _drc(raw: bytes) -> tuple[Any, Any]:
+    try:
+        draco = import_module("DracoPy")
+    except ImportError:
+        raise MeshError("Draco is read by DracoPy; pip install 'kinetree[draco]'") from None
+    mesh = draco.decode(raw)
+    return mesh.points, getattr(mesh, "faces", ())
+
+
+def _drc(raw: bytes) -> tuple[Any, Any]:
+    try:
+        draco = import_module("DracoPy")
+    except ImportError:
+        raise MeshError("Draco is read by DracoPy; pip install 'kinetree[draco]'") from None
+    mesh = draco.decode(raw)
+    return mesh.points, getattr(mesh, "faces", ())
+
+
 _READERS: dict[str, Callable[[bytes], tuple[Any, Any]]] = {
     ".ply": _ply,
     ".obj": _obj,
     ".off": _off,
     ".stl": _stl,
     ".glb": _glb,
+    ".drc": _drc,
 }

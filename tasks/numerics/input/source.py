@@ -18,6 +18,7 @@ import numpy as np
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
+from kinetree.tasks.numerics.input.foreign import advice
 from kinetree.tasks.numerics.input.formats import checked, suffixes
 
 _PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
@@ -73,7 +74,8 @@ def one_format(files: Sequence[AnyPath], where: str, folder: Path | None = None)
     if not meshes:
         others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
         known = " ".join(suffixes())
-        raise SourceError(f"{where}: no mesh among its files ({others}); {known} are read, one file a frame")
+        told = advice(set(kinds))
+        raise SourceError(f"{where}: no mesh among its files ({others}); {known} are read, one file a frame{told}")
     if len(meshes) > 1:
         counts = ", ".join(f"{n} × {kind}" for kind, n in meshes.items())
         likely = max(meshes, key=lambda kind: meshes[kind])
@@ -267,6 +269,8 @@ def _not_a_file(path: Path) -> str:
 def _not_a_folder(path: Path) -> str:
     """What to say about a path that is neither a folder nor a pattern: the nearest that exists, and likely names."""
     if path.exists():
+        if told := advice({path.suffix}):
+            return f"{path}{told}"
         return f"{path}: one file, not a sequence; give the folder of the frames' files, or a pattern such as *{path.suffix}"
     missing = path.absolute()
     while not missing.parent.is_dir():

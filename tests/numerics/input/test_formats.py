@@ -3,6 +3,7 @@
 import json
 import os
 import struct
+import sys
 
 import numpy as np
 import pytest
@@ -177,7 +178,7 @@ def test_file_cut_short_anywhere_is_refused(tmp_path, name, content):
 
 
 def test_other_formats_and_folders_are_refused(tmp_path):
-    assert ".fbx is not read; .ply .obj .off .stl .glb are" in refusal(tmp_path / "a.fbx")
+    assert ".fbx is not read; .ply .obj .off .stl .glb .drc are" in refusal(tmp_path / "a.fbx")
     (tmp_path / "a.ply").mkdir()
     assert "not a file" in refusal(tmp_path / "a.ply")
 
@@ -329,3 +330,17 @@ def test_body_too_far_from_the_origin_for_its_digits_is_refused_with_the_remedy(
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_draco_is_read(tmp_path):
+    draco = pytest.importorskip("DracoPy", reason="pip install 'kinetree[draco]' brings it")
+    path = written(tmp_path, "f.drc", draco.encode(V, F, quantization_bits=16, preserve_order=True))
+    X, G = read_mesh(path)
+    np.testing.assert_allclose(X, V, atol=1e-3)
+    assert sorted(map(sorted, G.tolist())) == sorted(map(sorted, F.tolist()))
+    assert "cannot be read as DRC" in refusal(written(tmp_path, "g.drc", b"DRACO" + b"\xff" * 40))
+
+
+def test_draco_without_its_reader_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    assert "pip install 'kinetree[draco]'" in refusal(written(tmp_path, "f.drc", b"DRACO"))

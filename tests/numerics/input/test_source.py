@@ -100,7 +100,7 @@ def test_missing_folder_is_refused_with_the_name_it_may_have_meant(tmp_path):
 
 
 def test_folder_without_meshes_is_refused_with_what_was_there(tmp_path):
-    with pytest.raises(SourceError, match=r"no mesh among its files \(nothing\); .ply .obj .off .stl .glb are read"):
+    with pytest.raises(SourceError, match=r"no mesh among its files \(nothing\); .ply .obj .off .stl .glb .drc are read"):
         mesh_files(tmp_path)
     for name in ("a.fbx", "b.fbx", "readme"):
         written(tmp_path, name, b"")

@@ -1,0 +1,62 @@
+"""One file that holds a moving surface: an animated GLB, a USD stage, a zip of frames."""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Protocol
+
+from kinetree.errors import MeshError, SourceError
+from kinetree.tasks.numerics.arrays import Faces, Floats
+from kinetree.tasks.numerics.input.animated_glb import AnimatedGlb
+from kinetree.tasks.numerics.input.animated_usd import AnimatedUsd
+from kinetree.tasks.numerics.input.zipped import Zipped
+
+SUFFIXES = (".glb", ".usd", ".usda", ".usdc", ".usdz", ".zip")
+
+
+class Animated(Protocol):
+    """A sequence of meshes whose frames are numbered from 0."""
+
+    @property
+    def fps(self) -> float | None:
+        """Frames a second; None where the file does not say."""
+
+    @property
+    def unit(self) -> str | None:
+        """Unit of length; None where the file does not say."""
+
+    def __len__(self) -> int: ...
+
+    def mesh(self, t: int) -> tuple[Floats, Faces]:
+        """V (vertex, xyz) and F (face, corner) of frame t."""
+
+
+def read_animated(path: Path, clip: str = "") -> Animated:
+    """The frames of one file; asked again for the same unchanged file, the same value without reading.
+
+    clip   : name of the animation, where the file has several; the first where empty
+    raises : SourceError where it cannot be read, or holds no motion
+    """
+    try:
+        state = path.stat()
+    except OSError as error:
+        raise SourceError(f"{path}: cannot be read: {error.strerror}") from None
+    return _read(path, state.st_size, state.st_mtime_ns, clip)
+
+
+@lru_cache(maxsize=2)
+def _read(path: Path, size: int, mtime_ns: int, clip: str) -> Animated:
+    suffix = path.suffix.lower()
+    if clip and suffix != ".glb":
+        raise SourceError(f"source.clip {clip}: only a GLB has clips; leave it out for {path.name}")
+    if suffix == ".zip":
+        return Zipped(path)
+    if suffix == ".glb":
+        try:
+            return AnimatedGlb(path.read_bytes(), str(path), clip)
+        except (SourceError, MeshError) as error:
+            told = str(error)
+            raise SourceError(told if told.startswith(str(path)) else f"{path}: {told}") from None
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"
+            raise SourceError(f"{path}: cannot be read as GLB ({reason}); the file is damaged or cut short") from error
+    return AnimatedUsd(path)

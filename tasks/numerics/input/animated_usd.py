@@ -1,0 +1,111 @@
+"""Meshes of a USD stage over time, skinned ones included, as a sequence.
+
+Source: UsdGeom and UsdSkel of OpenUSD (the extra `usd`), which read the stage and bake its skins.
+"""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.arrays import Faces, Floats
+from kinetree.tasks.numerics.input.formats import checked
+
+_UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm"}
+"""Units by their length in metres; any other stage is brought to metres."""
+_MOST_FRAMES = 100_000
+_MOST_VERTICES = 50_000_000
+
+
+class AnimatedUsd:
+    """The frames of a USD stage, one a time code.
+
+    fps  : time codes a second
+    unit : of the stage
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Opens the stage; raises SourceError where it cannot be, needs other files, or does not change over time."""
+        self.name = str(path)
+        try:
+            pxr = {name: import_module(f"pxr.{name}") for name in ("Gf", "Sdf", "Usd", "UsdGeom", "UsdSkel")}
+        except ImportError:
+            raise SourceError(f"{path}: USD is read by usd-core; pip install 'kinetree[usd]'") from None
+        self._geom, self._usd = pxr["UsdGeom"], pxr["Usd"]
+        stage = self._stage = self._opened(path, pxr)
+        first, last = stage.GetStartTimeCode(), stage.GetEndTimeCode()
+        if not stage.HasAuthoredTimeCodeRange() or not 0 < last - first < _MOST_FRAMES:
+            raise SourceError(
+                f"{path}: its stage has {last - first + 1:g} time codes; at least two are needed, at most {_MOST_FRAMES}"
+            )
+        self._first, self._frames = first, int(last - first) + 1
+        self.fps = float(stage.GetTimeCodesPerSecond())
+        metres = float(self._geom.GetStageMetersPerUnit(stage))
+        self.unit = next((unit for length, unit in _UNITS.items() if abs(metres / length - 1) < 1e-6), "m")
+        self._scale = 1.0 if abs(metres / {u: m for m, u in _UNITS.items()}[self.unit] - 1) < 1e-6 else metres
+        pxr["UsdSkel"].BakeSkinning(stage.Traverse())
+        self._meshes = [self._geom.Mesh(p) for p in stage.Traverse() if p.IsA(self._geom.Mesh)]
+        if not self._meshes:
+            raise SourceError(f"{path}: no mesh on its stage; a surface is needed")
+
+    def _opened(self, path: Path, pxr: Any) -> Any:
+        """The stage, with a layer of its own for what is baked."""
+        is_package = path.suffix.lower() == ".usdz"
+        try:
+            # the library remembers a layer by its path, also after the file has changed
+            layer = pxr["Sdf"].Layer.FindOrOpen(str(path)) if is_package else pxr["Sdf"].Layer.OpenAsAnonymous(str(path))
+            if is_package and layer is not None:
+                layer.Reload(True)
+            outside = [] if layer is None or is_package else list(layer.GetCompositionAssetDependencies())
+        except Exception as error:  # raised by boost as its own kinds of exception
+            raise SourceError(f"{path}: cannot be read as USD ({str(error).strip().splitlines()[-1][:200]})") from None
+        if layer is None:
+            raise SourceError(f"{path}: cannot be read as USD; the file is damaged or something else")
+        if outside:
+            raise SourceError(
+                f"{path}: is composed of other files ({outside[0]!r}), which are not opened; flatten it (usdcat --flatten)"
+            )
+        baked = pxr["Sdf"].Layer.CreateAnonymous()
+        baked.timeCodesPerSecond = layer.timeCodesPerSecond  # else its time codes would be stretched
+        stage = self._usd.Stage.Open(layer, baked)
+        stage.SetEditTarget(stage.GetSessionLayer())
+        return stage
+
+    def __len__(self) -> int:
+        return self._frames
+
+    def mesh(self, t: int) -> tuple[Floats, Faces]:
+        """V (vertex, xyz) and F (face, corner) of frame t; SourceError where there is none, MeshError as `checked`."""
+        if not 0 <= t < len(self):
+            raise SourceError(f"{self.name}: there is no frame {t}; frames are 0 to {len(self) - 1}")
+        code = self._usd.TimeCode(self._first + t)
+        placed = self._geom.XformCache(code)
+        V: list[Floats] = [np.empty((0, 3))]
+        F: list[Any] = [np.empty((0, 3), np.int64)]
+        for mesh in self._meshes:
+            if mesh.ComputeVisibility(code) == "invisible":
+                continue
+            X = np.array(mesh.GetPointsAttr().Get(code) or np.empty((0, 3)), dtype=np.float64).reshape(-1, 3)
+            corners = np.array(mesh.GetFaceVertexIndicesAttr().Get(code) or (), dtype=np.int64)
+            counts = np.array(mesh.GetFaceVertexCountsAttr().Get(code) or (), dtype=np.int64)
+            M = np.array(placed.GetLocalToWorldTransform(mesh.GetPrim()))
+            turned = (mesh.GetOrientationAttr().Get() == "leftHanded") != (np.linalg.det(M[:3, :3]) < 0)
+            G = _fans(counts, corners, self.name)
+            V.append((X @ M[:3, :3] + M[3, :3]) * self._scale)
+            F.append((G[:, ::-1] if turned else G) + sum(map(len, V[:-1])))
+        if sum(map(len, V)) > _MOST_VERTICES:
+            raise SourceError(f"{self.name}, frame {t}: more than {_MOST_VERTICES} vertices; no frame needs as many")
+        return checked(np.concatenate(V), np.concatenate(F), f"{self.name}, frame {t}")
+
+
+def _fans(counts: Any, corners: Any, name: str) -> Any:
+    """(face, corner) of polygons, each cut into triangles about its first corner."""
+    if (counts < 0).any() or counts.sum() != len(corners):
+        raise SourceError(f"{name}: faces of {counts.sum()} corners, of which {len(corners)} are there; the file is damaged")
+    begin = np.cumsum(counts) - counts
+    many = np.maximum(counts - 2, 0)
+    face = np.repeat(np.arange(len(counts)), many)
+    k = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
+    return np.stack([corners[begin[face]], corners[begin[face] + k + 1], corners[begin[face] + k + 2]], axis=1).reshape(-1, 3)

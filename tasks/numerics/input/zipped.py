@@ -1,0 +1,60 @@
+"""A zip of mesh files, one a frame, as a sequence; nothing is written to disk, and sizes are held against bounds first."""
+
+import zipfile
+from pathlib import Path, PurePosixPath
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.arrays import Faces, Floats
+from kinetree.tasks.numerics.input.formats import mesh_of
+from kinetree.tasks.numerics.input.source import UNPACKED_BYTES, UNPACKED_RATIO, one_format
+
+_MOST_BYTES = 2**32
+"""Of one frame, unpacked."""
+
+
+class Zipped:
+    """The frames of a zip in the natural order of their names.
+
+    names : of its members that are frames
+    """
+
+    fps: float | None = None
+    unit: str | None = None
+
+    def __init__(self, path: Path) -> None:
+        """Reads the list of members; raises SourceError where it is no zip, or no mesh is in it."""
+        self.name = str(path)
+        self._path = path
+        try:
+            with zipfile.ZipFile(path) as archive:
+                there = [info for info in archive.infolist() if not info.is_dir()]
+        except (OSError, zipfile.BadZipFile, ValueError, RuntimeError) as error:
+            raise SourceError(f"{path}: cannot be read as a zip ({error}); it is damaged or something else") from None
+        shown = {PurePosixPath(i.filename): i for i in there if not _is_hidden(PurePosixPath(i.filename))}
+        self.names = one_format(list(shown), self.name)
+        self._members = [shown[name] for name in self.names]
+        for info in self._members:
+            if info.flag_bits & 1:
+                raise SourceError(f"{path}: {info.filename} is encrypted; zip it without a password")
+            too_dense = info.file_size > UNPACKED_BYTES and info.file_size > UNPACKED_RATIO * info.compress_size
+            if too_dense or info.file_size > _MOST_BYTES:
+                raise SourceError(f"{path}: {info.filename}: {info.compress_size} bytes would unpack to {info.file_size}")
+
+    def __len__(self) -> int:
+        return len(self._members)
+
+    def mesh(self, t: int) -> tuple[Floats, Faces]:
+        """V (vertex, xyz) and F (face, corner) of frame t; SourceError where there is none, MeshError as `mesh_of`."""
+        if not 0 <= t < len(self):
+            raise SourceError(f"{self.name}: there is no frame {t}; frames are 0 to {len(self) - 1}")
+        info = self._members[t]
+        try:
+            with zipfile.ZipFile(self._path) as archive, archive.open(info) as file:
+                raw = file.read(info.file_size + 1)
+        except (OSError, zipfile.BadZipFile, ValueError, RuntimeError, NotImplementedError, EOFError) as error:
+            raise SourceError(f"{self.name}: {info.filename} cannot be unpacked ({error}); the archive is damaged") from None
+        return mesh_of(raw, f"{self.name}, {info.filename}", self.names[t].suffix)
+
+
+def _is_hidden(path: PurePosixPath) -> bool:
+    return any(part.startswith(".") or part == "__MACOSX" for part in path.parts)

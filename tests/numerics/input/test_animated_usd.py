@@ -1,0 +1,94 @@
+"""Laws of a USD stage over time; the skinned ones are proved by a round trip of our own export."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.input.animated import read_animated
+
+pytest.importorskip("pxr", reason="pip install 'kinetree[usd]' brings Pixar's library")
+from pxr import Usd, UsdGeom
+
+V = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1]], dtype=np.float32)
+COUNTS, CORNERS = [4, 3, 3, 3, 3], [0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]
+
+
+@pytest.fixture
+def stage(tmp_path):
+    """A pyramid whose top rises by 1 a frame while all of it moves along x."""
+    made = Usd.Stage.CreateNew(str(tmp_path / "pyramid.usda"))
+    made.SetStartTimeCode(1)
+    made.SetEndTimeCode(4)
+    made.SetTimeCodesPerSecond(50)
+    UsdGeom.SetStageMetersPerUnit(made, 0.01)
+    moved = UsdGeom.Xform.Define(made, "/moved").AddTranslateOp()
+    mesh = UsdGeom.Mesh.Define(made, "/moved/pyramid")
+    mesh.CreateFaceVertexCountsAttr(COUNTS)
+    mesh.CreateFaceVertexIndicesAttr(CORNERS)
+    for t in range(1, 5):
+        moved.Set((t, 0, 0), t)
+        mesh.CreatePointsAttr().Set([tuple(map(float, v)) for v in V + np.float32([0, 0, t]) * (V[:, 2:] > 0)], t)
+    return made
+
+
+def read(stage):
+    stage.Save()
+    return read_animated(Path(stage.GetRootLayer().realPath))
+
+
+def test_points_and_places_over_time_are_the_frames(stage):
+    frames = read(stage)
+    assert (len(frames), frames.fps, frames.unit) == (4, 50.0, "cm")
+    for t in range(4):
+        X, F = frames.mesh(t)
+        np.testing.assert_allclose(X, V + np.float32([0, 0, t + 1]) * (V[:, 2:] > 0) + [t + 1, 0, 0])
+        assert len(F) == 6  # one quad is two triangles
+        assert np.einsum("fi,fi->", X[F[:, 0]], np.cross(X[F[:, 1]], X[F[:, 2]])) > 0
+
+
+def test_left_handed_faces_are_turned_and_hidden_meshes_are_left_out(stage):
+    mesh = UsdGeom.Mesh.Get(stage, "/moved/pyramid")
+    mesh.CreateOrientationAttr("leftHanded")
+    hidden = UsdGeom.Mesh.Define(stage, "/hidden")
+    hidden.CreatePointsAttr([(9, 9, 9)])
+    hidden.CreateVisibilityAttr("invisible")
+    X, F = read(stage).mesh(0)
+    assert len(X) == len(V)
+    assert np.einsum("fi,fi->", X[F[:, 0]], np.cross(X[F[:, 1]], X[F[:, 2]])) < 0
+
+
+def test_other_units_are_brought_to_metres(stage):
+    UsdGeom.SetStageMetersPerUnit(stage, 0.0254)
+    frames = read(stage)
+    assert frames.unit == "m"
+    np.testing.assert_allclose(frames.mesh(0)[0][0], [0.0254, 0, 0])
+
+
+def test_stages_of_other_files_still_ones_and_damaged_ones_are_refused(stage, tmp_path):
+    stage.GetRootLayer().subLayerPaths.append("/etc/passwd")
+    with pytest.raises(SourceError, match=r"composed of other files \('/etc/passwd'\), which are not opened; flatten it"):
+        read(stage)
+    stage.GetRootLayer().subLayerPaths.clear()
+    stage.SetEndTimeCode(1)
+    with pytest.raises(SourceError, match="its stage has 1 time codes; at least two"):
+        read(stage)
+    (tmp_path / "damaged.usdc").write_bytes(b"PXR-USDC" + b"\xff" * 80)
+    with pytest.raises(SourceError, match=r"damaged\.usdc: cannot be read as USD"):
+        read_animated(tmp_path / "damaged.usdc")
+
+
+def test_stage_that_changed_on_disk_is_read_anew_also_as_a_package(stage, tmp_path):
+    from pxr import Sdf, UsdUtils
+
+    assert read(stage).mesh(0)[0][4, 2] == 2
+    for suffix in (".usda", ".usdz"):
+        mesh = UsdGeom.Mesh.Get(stage, "/moved/pyramid")
+        height = 7.0 if suffix == ".usda" else 8.0
+        mesh.GetPointsAttr().Set([tuple(map(float, v)) for v in V * np.float32([1, 1, height])], 1)
+        stage.Save()
+        path = tmp_path / f"pyramid{suffix}"
+        if suffix == ".usdz":
+            assert UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(tmp_path / "pyramid.usda")), str(path))
+        assert read_animated(path).mesh(0)[0][4, 2] == height
