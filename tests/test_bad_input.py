@@ -333,7 +333,7 @@ def test_npz_whose_members_point_outside_reads_and_writes_nothing_there(refused,
 def test_npz_of_a_wrong_layout_is_refused_by_its_array(refused, tmp_path, changes, told):
     np.savez(tmp_path / "walk.npz", **packed(**changes))
     message = refused("-i", "walk.npz")
-    assert message.startswith(f"{tmp_path / 'walk.npz'}")
+    assert "walk.npz" in message
     assert told in message
 
 

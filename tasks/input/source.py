@@ -142,14 +142,14 @@ def _measures_of_file(path: Path) -> Sequence[str]:
 def _measures_of_parts(path: Path, of: Source) -> Sequence[str]:
     """The measures of all frames of one file, or why one cannot be read, as JSON."""
     frames = _packed_frames(path, of.kind, of.clip)
-    return [json.dumps(_measures_of_part(frames, t)) for t in range(len(frames))]
+    return [json.dumps(_measures_of_part(frames, t, path)) for t in range(len(frames))]
 
 
-def _measures_of_part(frames: Animated, t: int) -> object:
+def _measures_of_part(frames: Animated, t: int, path: Path) -> object:
     try:
         return frame_measures(*frames.mesh(t))
     except (MeshError, SourceError) as error:
-        return str(error)
+        return str(error).replace(f"{path.parent}{os.sep}", "")
 
 
 def _memory(of: Source, what: str) -> str:

@@ -248,15 +248,6 @@ def _drc(raw: bytes) -> tuple[Any, Any]:
     return mesh.points, getattr(mesh, "faces", ())
 
 
-def _drc(raw: bytes) -> tuple[Any, Any]:
-    try:
-        draco = import_module("DracoPy")
-    except ImportError:
-        raise MeshError("Draco is read by DracoPy; pip install 'kinetree[draco]'") from None
-    mesh = draco.decode(raw)
-    return mesh.points, getattr(mesh, "faces", ())
-
-
 _READERS: dict[str, Callable[[bytes], tuple[Any, Any]]] = {
     ".ply": _ply,
     ".obj": _obj,
