@@ -7,6 +7,7 @@ import pytest
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.input.animated import read_animated
+from kinetree.tasks.numerics.input.animated_usd import AnimatedUsd
 
 pytest.importorskip("pxr", reason="pip install 'kinetree[usd]' brings Pixar's library")
 from pxr import Usd, UsdGeom
@@ -35,7 +36,9 @@ def stage(tmp_path):
 
 def read(stage):
     stage.Save()
-    return read_animated(Path(stage.GetRootLayer().realPath))
+    frames = read_animated(Path(stage.GetRootLayer().realPath))
+    assert isinstance(frames, AnimatedUsd)
+    return frames
 
 
 def test_points_and_places_over_time_are_the_frames(stage):
