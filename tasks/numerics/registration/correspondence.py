@@ -15,9 +15,8 @@ from scipy.spatial import cKDTree
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.edge_rings import averaged_normals, edge_rings
 from kinetree.tasks.numerics.geometry.morton_curve import spread_along_curve
-from kinetree.tasks.numerics.geometry.neighbours import rings
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 
 _STEPS = 64
 """Safety bound: a match moves over at most so many edges."""
@@ -78,10 +77,11 @@ class Target:
         settings = settings or CorrespondenceSettings()
         beta = settings.beta * size
         faces = F.astype(np.int64)
-        N = smoothed_normals(V, faces)
+        start, ring, count = edge_rings(faces, len(V))
+        N = averaged_normals(V, faces, start, ring, count)
         sample = spread_along_curve(V, samples)
         tree = cKDTree(np.hstack([V[sample], beta * N[sample]]), balanced_tree=False)
-        return cls(np.ascontiguousarray(V), faces, N, *rings(faces, len(V)), sample, tree, beta, size)
+        return cls(np.ascontiguousarray(V), faces, N, start, ring, sample, tree, beta, size)
 
     def nearest(self, x: Floats, n: Floats) -> Ints:
         """The sample of the frame that is nearest to each point in (x, βn).
@@ -99,7 +99,7 @@ def local_matches(x: Floats, n: Floats, match: Ints, V: Floats, N: Floats, start
     x, n        : (point, xyz) mesh unit · (point, xyz) unit
     match       : (point,) the vertex at which each search starts
     V, N        : (vertex, xyz) mesh unit · (vertex, xyz) unit
-    start, ring : (vertex + 1,) · (entry,) neighbours of the vertices, see `rings`
+    start, ring : (vertex + 1,) · (entry,) neighbours of the vertices, see `edge_rings`
     beta        : mesh unit
     returns     : (point,) the vertex at which it ends
     """
