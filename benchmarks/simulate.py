@@ -209,13 +209,15 @@ def _print_night(sequence: Units, sequences: int, loops: int) -> None:
 def check(folder: Path, frames: int, vertices: int) -> None:
     """Prints seconds from the first node sent to the last one done, as predicted and as they were."""
     for number, figure in enumerate(("human", "quadruped")):
-        told = {"figure": figure, "frames": frames + number, "vertices": vertices}
-        write_sequence(SynthParams.model_validate(told), folder / "takes" / f"take_{number}")
+        synth = {"figure": figure, "frames": frames + number, "vertices": vertices}
+        write_sequence(SynthParams.model_validate(synth), folder / "takes" / f"take_{number}")
     keys: dict[str, Any] = {"sequences": f"{folder}/takes/*", "compute": {"executor": "sync"}}
     real = Dataset.of({**keys, "output": f"{folder}/real/{{name}}"}, application=APPLICATION)
     with unittest.mock.patch.object(execute, "time", SimpleNamespace(perf_counter=time.process_time)):
-        if real.run()["status"] != "done":
-            raise SystemExit("the data set could not be computed")
+        told = real.run()
+    if told["status"] != "done":
+        failed = {name: row for name, row in told["sequences"].items() if row["state"] == "failed"}
+        raise SystemExit(json.dumps(failed, indent=1))
     all_jobs: Jobs = {}
     for name in real:
         pipeline = real[name]
