@@ -1,13 +1,15 @@
 """How a night over a data set too large to try would go: nodes, objects, requests, dollars, and what holds it up first.
 
     python benchmarks/simulate.py [--sequences 10000] [--length 500] [--frames 4 8] [--vertices 6000] [--loops 1 4 16]
-                                  [--put 5e-6] [--get 4e-7] [--month 0.023] [--json FILE]
+                                  [--latency 0.02] [--prefixes 256] [--put 5e-6] [--get 4e-7] [--month 0.023] [--json FILE]
     python benchmarks/simulate.py --check [--frames 3 5] [--vertices 600]
 
 Computes a generated human at two lengths, in one thread, with processor seconds on record and every question to the store
 counted, and draws straight lines through what it finds: so many a sequence, so many a frame. What grows faster than the
 number of frames comes out too small. A store in a bucket is asked the same questions as one in a folder: `put` and listings
-are paid by `--put`, other questions by `--get`, in dollars each, and what is stored by `--month`, in dollars for 1 GB.
+are paid by `--put`, other questions by `--get`, in dollars each, and what is stored by `--month`, in dollars for 1 GB. Each
+is answered after `--latency` seconds (0: a disk), and below each of `--prefixes` so many a second as `ASKED` says: artifacts
+lie in 256 folders, which a service spreads when it has seen the load; until then there is one.
 
 `--loops` is how many processes run the data set at once and share its sequences: each examines its input, lays out its
 graphs and sends its parcels by itself.
@@ -23,9 +25,9 @@ import threading
 import time
 import unittest.mock
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -36,8 +38,9 @@ from kinetree.pipeline.dataset.dataset import Dataset
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.running import execute
+from kinetree.pipeline.storage.bucket import ASKED_AT_ONCE, LISTED_AT_ONCE
 from kinetree.pipeline.storage.place import Folder
-from kinetree.pipeline.storage.store import Store
+from kinetree.pipeline.storage.store import MARKER, Store
 from kinetree.pipeline.task import Task
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.application import APPLICATION
@@ -49,6 +52,8 @@ QUESTIONS = {
     "remove": "free",
 }  # fmt: skip
 """What each question to a place is paid as."""
+AT_ONCE = {"get_all": ASKED_AT_ONCE, "remove_all": LISTED_AT_ONCE}
+"""How many objects of these a bucket is asked for at a time."""
 WORKERS = (1, 4, 16, 64, 256, 1024, 4096, 16384)
 ASKED = {"put": 3500.0, "get": 5500.0}
 """Questions a second that a bucket answers below one prefix, as its makers say."""
@@ -71,6 +76,10 @@ class Units:
     bytes: float
     put: float
     get: float
+    asked_by_workers: float
+    """Questions that a node waits for, one after the other."""
+    asked_by_loop: float
+    """Likewise of the process of the loop; what it asks for many at a time counts by rounds."""
     path: float
     """Seconds of the nodes that wait for each other and take longest."""
 
@@ -89,6 +98,8 @@ def main() -> None:
     options.add_argument("--loops", type=int, nargs="+", default=(1, 4, 16))
     for name, dollars in (("put", 5e-6), ("get", 4e-7), ("month", 0.023)):
         options.add_argument(f"--{name}", type=float, default=dollars, help=f"dollars; default: {dollars:g}")
+    options.add_argument("--latency", type=float, default=0.02, help="seconds")
+    options.add_argument("--prefixes", type=int, default=256)
     options.add_argument("--check", action="store_true")
     options.add_argument("--json", type=Path)
     chosen = options.parse_args()
@@ -96,6 +107,7 @@ def main() -> None:
         if chosen.check:
             check(Path(folder), max(chosen.frames), chosen.vertices)
             return
+        measured(Path(folder) / "warm", chosen.frames[0], chosen.vertices)  # imports and compiles what no frame costs again
         short, long = (measured(Path(folder) / str(n), n, chosen.vertices) for n in chosen.frames)
     apart = chosen.frames[1] - chosen.frames[0]
     frame = Units(**{name: (getattr(long, name) - value) / apart for name, value in asdict(short).items()})
@@ -105,7 +117,7 @@ def main() -> None:
     _print_units(frame, sequence, chosen.sequences)
     _print_dollars(sequence, chosen)
     for loops in chosen.loops:
-        _print_night(sequence, chosen.sequences, loops)
+        _print_night(sequence, chosen, loops)
 
 
 def measured(folder: Path, frames: int, vertices: int) -> Units:
@@ -114,13 +126,18 @@ def measured(folder: Path, frames: int, vertices: int) -> Units:
     write_sequence(SynthParams(figure="human", frames=frames, vertices=vertices), takes)
     pipeline = Pipeline.of({"output": str(folder / "out"), "source": {"input": str(takes)}, "compute": {"executor": "sync"}})
     begun: list[float] = []
+    asked = Asked()
 
     def noted(*work: Any) -> Any:
         begun.append(time.process_time())
-        return compute(*work)
+        asked.who = "workers"
+        try:
+            return compute(*work)
+        finally:
+            asked.who = "loop"
 
     compute = execute.compute
-    with counted() as asked, ExitStack() as patches:
+    with asked.counting(), ExitStack() as patches:
         clock = SimpleNamespace(perf_counter=time.process_time)
         patches.enter_context(unittest.mock.patch.object(execute, "time", clock))
         patches.enter_context(unittest.mock.patch.object(execute, "compute", noted))
@@ -128,6 +145,7 @@ def measured(folder: Path, frames: int, vertices: int) -> Units:
         told = pipeline.run()
     if told["status"] != "done":
         raise SystemExit(f"{frames} frames: {told['failures'][0]['message']}")
+    print(f"{frames} frames:", ", ".join(f"{what} {count}" for what, count in asked.named.most_common(8)))
     jobs = recorded(pipeline, pipeline.tasks.unasked)
     store = folder / "out" / "store"
     files = [path for path in store.rglob("*") if path.is_file()]
@@ -138,49 +156,64 @@ def measured(folder: Path, frames: int, vertices: int) -> Units:
         begin=begun[0] - started,
         objects=len(files),
         bytes=sum(path.stat().st_size for path in files),
-        put=asked["put"],
-        get=asked["get"],
+        put=sum(asked.paid["put", who] for who in ("loop", "workers")),
+        get=sum(asked.paid["get", who] for who in ("loop", "workers")),
+        asked_by_workers=asked.waits["workers"],
+        asked_by_loop=asked.waits["loop"],
         path=sum(job.seconds for job in longest_path(jobs)),
     )
 
 
-@contextmanager
-def counted() -> Iterator[Counter[str]]:
-    """Counts what stores in folders are asked, by how it would be paid."""
-    asked: Counter[str] = Counter()
+@dataclass
+class Asked:
+    """What stores in folders are asked."""
 
-    def counting(name: str, original: Any) -> Any:
+    who: str = "loop"
+    paid: Counter[tuple[str, str]] = field(default_factory=Counter)
+    """By how it would be paid, and by whom."""
+    waits: dict[str, float] = field(default_factory=lambda: {"loop": 0.0, "workers": 0.0})
+    """By whom, one after the other."""
+    named: Counter[str] = field(default_factory=Counter)
+    """By whom, and what."""
+    at_once: int = 1
+
+    @contextmanager
+    def counting(self) -> Iterator[None]:
+        """Counts what is asked meanwhile."""
+        with ExitStack() as patches:
+            for name in {*QUESTIONS, *AT_ONCE} & set(vars(Folder)):
+                patches.enter_context(unittest.mock.patch.object(Folder, name, self._counting(name, getattr(Folder, name))))
+            patches.enter_context(unittest.mock.patch.object(Folder, "is_remote", True))  # the ways of a bucket are taken
+            yield
+
+    def _counting(self, name: str, original: Any) -> Any:
         def ask(place: Folder, *given: Any, **named: Any) -> Any:
-            if (place.root / "kinetree-store.json").exists():
-                asked[QUESTIONS[name]] += 1
+            if not (place.root / MARKER).exists():
+                return original(place, *given, **named)
+            if name in AT_ONCE:
+                self.at_once = AT_ONCE[name]
+                try:
+                    return original(place, *given, **named)
+                finally:
+                    self.at_once = 1
+            self.paid[QUESTIONS[name], self.who] += 1
+            self.named[f"{self.who}: {name} {str(given[0]).partition('/')[0]}"] += 1
+            self.waits[self.who] += 1 / self.at_once
             return original(place, *given, **named)
 
         return ask
 
-    with ExitStack() as patches:
-        for name in QUESTIONS:
-            if hasattr(Folder, name):
-                patches.enter_context(unittest.mock.patch.object(Folder, name, counting(name, getattr(Folder, name))))
-        yield asked
 
-
-def bounds(sequence: Units, sequences: int, workers: int, loops: int) -> dict[str, float]:
+def bounds(sequence: Units, chosen: argparse.Namespace, workers: int, loops: int) -> dict[str, float]:
     """Seconds by each thing that a night cannot be faster than; the longest of them is what holds it up."""
+    n, latency = chosen.sequences, chosen.latency
     return {
-        "computing": sequences * (sequence.compute + AT_WORKER * sequence.nodes) / workers,
-        "examining and laying out": sequences * sequence.begin / loops,
-        "sending and hearing": sequences * IN_LOOP * sequence.nodes / loops,
-        "the bucket's writes": sequences * sequence.put / ASKED["put"],
-        "the bucket's reads": sequences * sequence.get / ASKED["get"],
-        "one sequence's longest path": sequence.path,
+        "workers": n * (sequence.compute + AT_WORKER * sequence.nodes + latency * sequence.asked_by_workers) / workers,
+        "the loop": n * (sequence.begin + IN_LOOP * sequence.nodes + latency * sequence.asked_by_loop) / loops,
+        "the bucket's writes": n * sequence.put / ASKED["put"] / chosen.prefixes,
+        "the bucket's reads": n * sequence.get / ASKED["get"] / chosen.prefixes,
+        "one sequence's longest path": sequence.path + latency * sequence.asked_by_workers * sequence.path / sequence.compute,
     }
-
-
-def _in_loop(held: Mapping[str, float]) -> dict[str, float]:
-    """The bounds with all that one process does one after the other in one."""
-    told = dict(held)
-    told["the loop"] = told.pop("examining and laying out") + told.pop("sending and hearing")
-    return told
 
 
 def _print_units(frame: Units, sequence: Units, sequences: int) -> None:
@@ -196,14 +229,13 @@ def _print_dollars(sequence: Units, chosen: argparse.Namespace) -> None:
     print(f"\ndollars: {put:,.0f} to write and list, {get:,.0f} to read, {month:,.0f} a month to keep")
 
 
-def _print_night(sequence: Units, sequences: int, loops: int) -> None:
+def _print_night(sequence: Units, chosen: argparse.Namespace, loops: int) -> None:
     print(f"\n{loops} process{'es' if loops > 1 else ''} that send{'' if loops > 1 else 's'}")
     print(f"{'workers':>8}{'hours':>10}{'busy':>7}  held up by")
-    alone = bounds(sequence, sequences, 1, loops)["computing"]
     for workers in WORKERS:
-        held = _in_loop(bounds(sequence, sequences, workers, loops))
+        held = bounds(sequence, chosen, workers, loops)
         what = max(held, key=held.__getitem__)
-        print(f"{workers:>8}{held[what] / 3600:>10.1f}{alone / workers / held[what]:>7.0%}  {what}")
+        print(f"{workers:>8}{held[what] / 3600:>10.1f}{held['workers'] / held[what]:>7.0%}  {what}")
 
 
 def check(folder: Path, frames: int, vertices: int) -> None:

@@ -24,6 +24,8 @@ PACKED_FROM = 16
 LISTED_SECONDS = 5.0
 """How long a listing of packs is good for."""
 _KEY = re.compile("[0-9a-f]{40}")
+Packs = dict[str, zipfile.ZipFile | None]
+"""By name; None where it cannot be read."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class Records:
 
     place: Place
     _single: set[str] = field(default_factory=set)
-    _packs: dict[str, zipfile.ZipFile | None] = field(default_factory=dict)
+    _packs: Packs = field(default_factory=dict)
     _where: dict[str, str] = field(default_factory=dict)
     _listed: float = float("-inf")
     _lock: threading.Lock = field(default_factory=threading.Lock)
@@ -133,6 +135,7 @@ class Records:
             else:
                 self.place.remove(_pack(name))
             self._packs = {other: held for other, held in self._packs.items() if other != name}  # it is read again
+            self._where = {key: held for key, held in self._where.items() if held != name}
         self._list()
 
     def damaged(self) -> list[str]:
@@ -164,8 +167,7 @@ class Records:
             known = self._packs
             new = self.place.get_all(_pack(name) for name in there if not known.get(name))
             self._packs = {name: known.get(name) or _opened(new[_pack(name)]) for name in there}
-            files = {file: name for name, archive in self._packs.items() if archive for file in archive.namelist()}
-            self._where = {file[:-5]: name for file, name in files.items() if _KEY.fullmatch(file[:-5])}
+            self._where = _placed(self._where, known, self._packs)
             self._single = {key for key in single if _KEY.fullmatch(key)}
             self._listed = time.monotonic()
 
@@ -179,6 +181,18 @@ class Records:
             return archive.read(file) if archive is not None else None
         except Exception:  # zipfile and zlib raise many kinds for altered bytes
             return None
+
+
+def _placed(before: dict[str, str], known: Packs, packs: Packs) -> dict[str, str]:
+    """The pack of every key; only those that were not known are looked through, since a store may have thousands of others."""
+    if packs == known:
+        return before
+    kept = {name for name, archive in known.items() if packs.get(name) is archive}
+    where = dict(before) if len(kept) == len(known) else {key: name for key, name in before.items() if name in kept}
+    for name, archive in packs.items():
+        if archive is not None and name not in kept:
+            where.update((file[:-5], name) for file in archive.namelist() if _KEY.fullmatch(file[:-5]))
+    return where
 
 
 def _single(key: str) -> str:

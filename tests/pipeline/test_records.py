@@ -1,5 +1,7 @@
 """Records alone and in packs: what was written is found in either place, and what cannot be read is none."""
 
+import zipfile
+
 import pytest
 
 from kinetree.pipeline.storage.packed import packed
@@ -74,6 +76,25 @@ def test_removed_records_are_gone_wherever_they_lay(place, records):
     records.remove(KEYS)
     assert records.listed() == []
     assert place.names("packs") == []
+
+
+def test_list_of_a_pack_that_is_known_is_not_looked_through_again(place, records, monkeypatch):
+    records.pack("run", KEYS)
+    looked = []
+    namelist = zipfile.ZipFile.namelist
+    monkeypatch.setattr(zipfile.ZipFile, "namelist", lambda archive: (looked.append(1), namelist(archive))[1])
+    reader = Records(place)
+    assert reader.listed() == reader.listed() == KEYS
+    assert len(looked) == 1
+    more = [f"{n:040x}" for n in range(100, 100 + PACKED_FROM)]
+    for key in more:
+        records.put(record(key))
+    records.pack("another", more)
+    looked.clear()
+    assert reader.listed() == KEYS + more
+    assert len(looked) == 1
+    place.remove("packs/run.zip")
+    assert reader.listed() == more
 
 
 def test_altered_pack_is_noticed_and_discarded(place, records):
