@@ -55,6 +55,8 @@ QUESTIONS = {
 AT_ONCE = {"get_all": ASKED_AT_ONCE, "remove_all": LISTED_AT_ONCE}
 """How many objects of these a bucket is asked for at a time."""
 WORKERS = (1, 4, 16, 64, 256, 1024, 4096, 16384)
+INDEX_BYTES = 2900
+"""Memory that a record takes in every process that reads the store, measured on 1,822 records in four packs."""
 ASKED = {"put": 3500.0, "get": 5500.0}
 """Questions a second that a bucket answers below one prefix, as its makers say."""
 CHECKED = (1, 2, 4)
@@ -226,7 +228,8 @@ def _print_dollars(sequence: Units, chosen: argparse.Namespace) -> None:
     n = chosen.sequences
     put, get = n * sequence.put * chosen.put, n * sequence.get * chosen.get
     month = n * sequence.bytes / 1e9 * chosen.month
-    print(f"\ndollars: {put:,.0f} to write and list, {get:,.0f} to read, {month:,.0f} a month to keep")
+    print(f"\nrecords in the memory of every process: {n * sequence.nodes * INDEX_BYTES / 1e9:,.0f} GB")
+    print(f"dollars: {put:,.0f} to write and list, {get:,.0f} to read, {month:,.0f} a month to keep")
 
 
 def _print_night(sequence: Units, chosen: argparse.Namespace, loops: int) -> None:
