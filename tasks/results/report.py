@@ -18,15 +18,17 @@ from kinetree.schemas.results.motion_figures import MotionFigures
 from kinetree.schemas.results.report import Report, ReportParams
 from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.topology_figures import TopologyFigures
 from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.verdict import VerdictSettings
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
-from kinetree.tasks.results.page.scene import Limits, scene
+from kinetree.tasks.results.page.scene import Limits, Trust, scene
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.views.results import evaluation_remarks
@@ -50,6 +52,7 @@ def report(
     evaluation: Evaluation,
     up_direction: UpDirection,
     frame_confidence: FrameConfidence,
+    surface_error: Mapping[int, SurfaceError],
     verdict: Verdict,
     excerpt: Excerpt,
     coarse_mesh: tuple[CoarseMesh, ...],
@@ -60,7 +63,11 @@ def report(
     """Lays out the result of the run on one page that needs no network (ours)."""
     limits = Limits(len(excerpt.frames), params.vertices, coarse_mesh[0].limit)
     inputs = dict(zip(excerpt.frames, coarse_mesh, strict=True))
-    structure = pictures(skeleton_figures) + pictures(motion_figures) + _joints(skeleton, intervals, structure_figures)
+    structure = pictures(skeleton_figures) + pictures(motion_figures)
+    size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
+    error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
+    share = VerdictSettings().wrong
+    trust = Trust(verdict.labels, error, share * size, share, verdict.state)
     has_truth = evaluation.summary is not None
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     page = Page(
@@ -70,32 +77,36 @@ def report(
         headline=headline(verdict),
         faults=faults(verdict),
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
-        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis),
+        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, trust=trust),
         sections=[
-            Section("structure", "Joints and parts", structure),
+            Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures)),
+            Section("structure", "Parts, tree and angles", structure),
             *([Section("truth", "Comparison with the truth", _comparison(evaluation))] if has_truth else []),
             *sections(structure_figures),
-            Section("intervals", "Topology over time", pictures(topology_figures)),
-            Section("alignment", "Alignment", aligned),
+            Section("intervals", "Topology over time", pictures(topology_figures), is_detail=True),
+            Section("alignment", "Alignment", aligned, is_detail=True),
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
-def _joints(skeleton: Skeleton, intervals: Intervals, figures: StructureFigures) -> str:
+def _joints(skeleton: Skeleton, labels: tuple[str, ...], intervals: Intervals, figures: StructureFigures) -> str:
     """A table of the skeleton's joints."""
     unit = skeleton.unit or "the unit of the input"
     note = f"<p>Lengths in {escape(unit)}. Intervals are listed where a joint's mean confidence is at least 0.5.</p>"
-    return note + table(*_joint_table(skeleton, intervals, figures))
+    return note + table(*_joint_table(skeleton, labels, intervals, figures), joints=True)
 
 
-def _joint_table(skeleton: Skeleton, intervals: Intervals, figures: StructureFigures) -> tuple[list[str], list[list[object]]]:
+def _joint_table(
+    skeleton: Skeleton, labels: tuple[str, ...], intervals: Intervals, figures: StructureFigures
+) -> tuple[list[str], list[list[object]]]:
     """Names of the columns and a row for every joint, without the column of lengths where none is known."""
     parents = np.array(skeleton.parents)
     columns: dict[str, list[object]] = {
-        "joint": list(skeleton.names),
+        "joint": list(labels),
+        "in the store": list(skeleton.names),
         "kind": list(skeleton.kinds),
-        "parent": [skeleton.names[p] if p >= 0 else "–" for p in parents],
+        "parent": [labels[p] if p >= 0 else "–" for p in parents],
         "bone length": skeleton.lengths.tolist(),
         VARIATION: [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, figures.length_variation)],
         "range, °": skeleton.degrees.tolist(),

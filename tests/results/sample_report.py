@@ -30,7 +30,7 @@ from kinetree.tasks.results.excerpt import excerpt
 from kinetree.tasks.results.motion_figures import motion_figures
 from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.document import Page, Section, document, table
-from kinetree.tasks.results.page.scene import Limits, Scene, scene
+from kinetree.tasks.results.page.scene import Limits, Scene, Trust, scene
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.structure_figures import structure_figures
@@ -41,13 +41,24 @@ from kinetree.tasks.results.verdict import verdict
 UP = UpDirection(up="y", confidence=1.0)
 
 
-def playing(skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False) -> Scene:
+def trusted() -> Scene:
+    """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint."""
+    joints, vertices = len(spider().names), len(spider().vertices)
+    body = spider(confidence=np.tile(np.linspace(0.9, 0.1, joints), (12, 1)))
+    error = {frame: np.linspace(0, 1, vertices) for frame in body.frames}
+    labels = ("trunk", "left shoulder", *body.names[2:])
+    return playing(body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)))
+
+
+def playing(
+    skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False, trust: Trust | None = None
+) -> Scene:
     """The spider playing."""
     arguments, chosen = artifacts(skeleton, anew=anew), limits or Limits()
     body = arguments["skeleton"]
     shown = {body.frames[t]: arguments["mesh"][body.frames[t]] for t in evenly_spread(len(body.frames), chosen.frames)}
     inputs = coarse_meshes(shown, arguments["projection"], chosen.input_vertices)
-    return scene(body, arguments["alignment"], inputs, arguments["leaves"], arguments["intervals"], chosen)
+    return scene(body, arguments["alignment"], inputs, arguments["leaves"], arguments["intervals"], chosen, trust=trust)
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
@@ -183,12 +194,12 @@ def halves(frames: tuple[int, ...]) -> Intervals:
 
 def page(title: str = "a walk", **more: object) -> str:
     """The whole page, what ran not yet told."""
-    body = table(("joint", "turns"), [("arm", 50.5)])
+    body = table(("joint", "turns"), [("trunk", 0.0), ("arm", 50.5)], joints=True)
     arguments = {
         "level": "good",
         "headline": "good",
         "facts": [("frames", "12")],
-        "scene": playing(),
+        "scene": trusted(),
         "sections": [Section("s", "Joints", body)],
     }
     return document(Page(title=title, **{**arguments, **more}))  # type: ignore[arg-type]

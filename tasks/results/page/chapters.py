@@ -79,5 +79,5 @@ def sections(figures: StructureFigures) -> list[Section]:
         rows = zip(figures.picture_files(chapter), chapter.pictures, strict=True)
         body = "".join(embedded(content, p.caption, p.kind) for content, p in rows)
         body += "".join(f"<p>{escape(text)}</p>" for text in chapter.paragraphs)
-        laid_out.append(Section(chapter.anchor, chapter.heading, body))
+        laid_out.append(Section(chapter.anchor, chapter.heading, body, is_detail=True))
     return laid_out

@@ -11,7 +11,7 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.results.comparison import ComparedRun, Comparison, UnpairedJoint
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, YELLOW
-from kinetree.tasks.results.page.document import Section, as_script, legend_entry, page_file, table
+from kinetree.tasks.results.page.document import Section, as_script, legend_entry, page_file, script_hashes, table
 from kinetree.tasks.results.page.scene import Scene
 from kinetree.tasks.views.results import comparison_remarks, comparison_rows
 
@@ -31,6 +31,10 @@ def comparison_document(comparison: Comparison, skeletons: tuple[Skeleton, Skele
     sections = _sections(comparison, rows)
     first, second = (scene.description for scene in scenes)
     omitted = [f"{letter}: {text}" for letter, s in zip("AB", scenes, strict=True) for text in s.omitted]
+    scripts = {
+        "three": page_file("vendor/three.min.js"),
+        "script": "\n".join(page_file(name) for name in ("player.js", "comparison.js")),
+    }
     parts = {
         "title": escape(f"{comparison.a.name} and {comparison.b.name} compared"),
         "style": page_file("style.css") + page_file("comparison.css"),
@@ -45,9 +49,8 @@ def comparison_document(comparison: Comparison, skeletons: tuple[Skeleton, Skele
         "scene_b": as_script({**second, **{name: first[name] for name in SHARED}}),
         "payload_a": scenes[0].block,
         "payload_b": scenes[1].block,
-        "three": page_file("vendor/three.min.js"),
-        "player": page_file("player.js"),
-        "script": page_file("comparison.js"),
+        "hashes": script_hashes(scripts.values()),
+        **scripts,
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], page_file("comparison.html"))
 

@@ -1,10 +1,11 @@
 """The page as one file of HTML; all text from outside is escaped."""
 
 import base64
+import hashlib
 import io
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
@@ -26,11 +27,12 @@ LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rig
 
 @dataclass(frozen=True)
 class Section:
-    """One chapter of the page; its body is HTML in which all text is escaped."""
+    """One chapter of the page; its body is HTML in which all text is escaped. Details are folded, all together."""
 
     anchor: str
     heading: str
     body: str
+    is_detail: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,12 @@ class Page:
 def document(page: Page) -> str:
     """The whole page, with `RUN` where the record of the run is inserted when the run has ended."""
     run = '<div id="ran"><p class="soft">Known when the run has ended.</p></div>'
-    sections = [*page.sections, Section("run", "What ran", run)]
+    first, details = ([s for s in page.sections if s.is_detail is folded] for folded in (False, True))
+    sections = [*first, *details, Section("run", "What ran", run)]
+    scripts = {
+        "three": page_file("vendor/three.min.js"),
+        "viewer": "\n".join(page_file(name) for name in ("player.js", "report_player.js", "viewer.js")),
+    }
     parts = {
         "title": escape(page.title),
         "style": page_file("style.css"),
@@ -76,13 +83,12 @@ def document(page: Page) -> str:
             for n, i in enumerate(page.scene.description["intervals"])
         ),
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
-        "sections": "".join(f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections),
+        "sections": _chapters(first) + _folded("Method details", details) + _folded("What ran", sections[-1:]),
         "scene": as_script(page.scene.description),
         "payload": page.scene.block,
         "run": RUN,
-        "three": page_file("vendor/three.min.js"),
-        "player": page_file("player.js"),
-        "viewer": page_file("viewer.js"),
+        "hashes": script_hashes(scripts.values()),
+        **scripts,
         "legend": "".join(legend_entry(name, colour) for name, colour in LEGEND.items()),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], page_file("page.html"))
@@ -92,6 +98,22 @@ def as_script(value: Any) -> str:
     """JSON for a script element: no string in it can end the element or begin a comment."""
     text = json.dumps(value, ensure_ascii=True, allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def script_hashes(scripts: Iterable[str]) -> str:
+    """What a page's policy says of its scripts: a browser runs none that is not exactly one of these (CSP 3, Sec. 8.3)."""
+    digests = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts]
+    return " ".join(f"'sha256-{digest}'" for digest in digests)
+
+
+def _chapters(sections: Sequence[Section]) -> str:
+    return "".join(f'<section id="{s.anchor}"><h2>{escape(s.heading)}</h2>{s.body}</section>' for s in sections)
+
+
+def _folded(heading: str, sections: Sequence[Section]) -> str:
+    if not sections:
+        return ""
+    return f'<details class="chapter"><summary>{escape(heading)}</summary>{_chapters(sections)}</details>'
 
 
 def verdict(page: Page) -> str:
@@ -119,15 +141,27 @@ def _remark(remark: Remark) -> str:
     return f'<button type="button" class="go"{data}>{escape(remark.text)}</button>' if data else escape(remark.text)
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """A table as HTML that scrolls on a narrow screen; columns of numbers are aligned to the right."""
+def table(head: Sequence[str], rows: Sequence[Sequence[object]], *, joints: bool = False) -> str:
+    """A table as HTML that scrolls on a narrow screen; columns of numbers are aligned to the right.
+
+    joints : whether row j is about joint j, so that it is selected by its first cell
+    """
     numeric = [all(isinstance(row[i], int | float) for row in rows) for i in range(len(head))]
     kind = [' class="n"' if n and rows else "" for n in numeric]
     top = "".join(f'<th scope="col"{k}>{escape(h)}</th>' for h, k in zip(head, kind, strict=True))
     body = "".join(
-        "<tr>" + "".join(f"<td{k}>{escape(_text(c))}</td>" for c, k in zip(row, kind, strict=True)) + "</tr>" for row in rows
+        f'<tr data-joint="{j}">{_pick(row[0])}{_cells(row[1:], kind[1:])}</tr>' if joints else f"<tr>{_cells(row, kind)}</tr>"
+        for j, row in enumerate(rows)
     )
     return f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+def _cells(row: Sequence[object], kind: Sequence[str]) -> str:
+    return "".join(f"<td{k}>{escape(_text(c))}</td>" for c, k in zip(row, kind, strict=True))
+
+
+def _pick(name: object) -> str:
+    return f'<td><button type="button" class="pick" aria-pressed="false">{escape(_text(name))}</button></td>'
 
 
 def picture(figure: "Figure", caption: str, *, vector: bool = True) -> str:
@@ -152,10 +186,8 @@ def embedded(content: bytes, caption: str, kind: Literal["png", "svg"]) -> str:
     """A picture as HTML that contains its file; the caption is also its alternative text."""
     data = base64.b64encode(content).decode()
     media = "svg+xml" if kind == "svg" else kind
-    return (
-        f'<figure><div class="scroll" tabindex="0"><img alt="{escape(caption)}" src="data:image/{media};base64,{data}"></div>'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
-    )
+    image = f'<img class="{kind}" alt="{escape(caption)}" src="data:image/{media};base64,{data}">'
+    return f'<figure><div class="scroll" tabindex="0">{image}</div><figcaption>{escape(caption)}</figcaption></figure>'
 
 
 def _text(value: object) -> str:

@@ -65,6 +65,7 @@ class Player {
     this.camera = new THREE.PerspectiveCamera(35, 1, scene.size / 100, scene.size * 50);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    canvas.style.touchAction = ""; // the page's style lets a swipe scroll
     this.controls.addEventListener("change", () => this.draw());
     this.addLight();
     this.addAlignedMesh();
@@ -113,14 +114,20 @@ class Player {
     this.skeleton = new THREE.Group();
     const onTop = { depthTest: false, transparent: true };
     const count = scene.joints.length;
-    const ball = new THREE.SphereGeometry(scene.size * 0.011, 14, 10);
+    const ball = new THREE.SphereGeometry(scene.size * 0.0105, 14, 10);
     this.balls = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0xffffff, ...onTop }), Math.max(count, 1));
     const rod = new THREE.CylinderGeometry(scene.size * 0.0025, scene.size * 0.006, 1, 8).translate(0, 0.5, 0);
     this.rods = new THREE.InstancedMesh(rod, new THREE.MeshBasicMaterial({ color: 0x222222, ...onTop }), Math.max(count, 1));
     this.balls.renderOrder = 3;
     this.rods.renderOrder = 2;
+    // A white and a black ring: one of them stands out from any part and from the stage.
+    this.rings = [[1.65, 0xffffff], [1.35, 0x000000]].map(([scale, color], k) => {
+      const ring = new THREE.InstancedMesh(ball.clone().scale(scale, scale, scale), new THREE.MeshBasicMaterial({ color, ...onTop }), Math.max(count, 1));
+      ring.renderOrder = 2.3 + k / 3;
+      return ring;
+    });
     scene.joints.forEach((joint, j) => this.balls.setColorAt(j, new THREE.Color(scene.kinds[joint.kind])));
-    for (const part of [this.rods, this.balls]) {
+    for (const part of [this.rods, ...this.rings, this.balls]) {
       part.frustumCulled = false;
       part.count = count;
       this.skeleton.add(part);
@@ -130,7 +137,7 @@ class Player {
 
   addLeaves() {
     const count = this.scene.arrays.leaves ? this.scene.arrays.leaves.shape[1] : 0;
-    const ball = new THREE.SphereGeometry(this.scene.size * 0.014, 14, 10);
+    const ball = new THREE.SphereGeometry(this.scene.size * 0.023, 14, 10);
     this.leaves = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: new THREE.Color(this.scene.surface_leaf) }), Math.max(count, 1));
     this.leaves.count = count;
     this.leaves.visible = false;
@@ -148,10 +155,23 @@ class Player {
     return this.scene.joints.length ? this.point("joints", this.scene.joints.length, 0) : new THREE.Vector3(...this.scene.centre);
   }
 
+  // The box of all frames, or of one where the body walks far; "Follow" keeps it in view then.
+  extent() {
+    const { scene, arrays } = this;
+    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    (arrays.positions || []).forEach((level, i) => { low[i % 3] = Math.min(low[i % 3], level); high[i % 3] = Math.max(high[i % 3], level); });
+    const side = low.map((l, x) => (high[x] >= l ? (high[x] - l) * scene.scale : scene.size));
+    const far = Math.hypot(...side) / (2.2 * scene.size);
+    const centre = far > 1 || !arrays.positions ? scene.centre : low.map((l, x) => scene.low[x] + (scene.scale * (l + high[x])) / 2);
+    return { centre, half: side.map((s) => s / 2 / Math.max(far, 1)) };
+  }
+
   resetView() {
-    this.controls.target.copy(new THREE.Vector3(...this.scene.centre));
-    const { size, reach } = this.scene;
-    const away = Math.min(Math.max(1.75 * size, 1.45 * reach), 3.5 * size); // a body that walks far leaves the view; "Follow the body" keeps it there
+    const { centre, half } = (this.box ??= this.extent());
+    this.controls.target.set(...centre);
+    const slope = Math.tan((this.camera.fov * Math.PI) / 360);
+    const [across, up] = [half[0] + 0.25 * half[2], half[1] + 0.12 * half[2]];
+    const away = 1.06 * (Math.max(up / slope, across / (slope * this.camera.aspect)) + half[2]);
     this.camera.position.copy(this.controls.target).add(new THREE.Vector3(0.25, 0.12, 1).setLength(away));
     this.followed = null;
     this.controls.update();
@@ -192,14 +212,14 @@ class Player {
     const upwards = new THREE.Vector3(0, 1, 0);
     joints.forEach((joint, j) => {
       const here = this.point("joints", joints.length, j);
-      this.balls.setMatrixAt(j, place.makeTranslation(here.x, here.y, here.z));
+      for (const part of [...this.rings, this.balls]) part.setMatrixAt(j, place.makeTranslation(here.x, here.y, here.z));
       const from = joint.parent < 0 ? here : this.point("joints", joints.length, joint.parent);
       const along = here.clone().sub(from);
       const length = along.length();
       const turn = new THREE.Quaternion().setFromUnitVectors(upwards, length > 0 ? along.divideScalar(length) : upwards);
       this.rods.setMatrixAt(j, place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1)));
     });
-    this.balls.instanceMatrix.needsUpdate = true;
+    for (const part of [...this.rings, this.balls]) part.instanceMatrix.needsUpdate = true;
     this.rods.instanceMatrix.needsUpdate = true;
   }
 
@@ -236,11 +256,13 @@ class Player {
     const { clientWidth, clientHeight } = canvas;
     if (!clientWidth) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.aspect = this.aspect(clientWidth, clientHeight);
     this.camera.fov = this.camera.aspect < 1 ? 35 / this.camera.aspect : 35;
     this.camera.updateProjectionMatrix();
     this.draw();
   }
+
+  aspect(width, height) { return width / height; }
 
   draw() { this.renderer.render(this.world, this.camera); }
 

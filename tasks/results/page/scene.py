@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.registration.alignment import Alignment
@@ -36,6 +37,23 @@ class Limits:
     input_vertices: int = 2500
 
 
+class Trust(NamedTuple):
+    """What a player shows of a result besides its motion.
+
+    labels : (joint,) what people call the joints
+    error  : by source frame number, (vertex,) distance of the skinned mesh to the input, mesh unit
+    most   : the distance that has the last colour, mesh unit
+    share  : the same, share of the diagonal of the body's box
+    state  : (frame, joint) 0 trusted, 1 uncertain, 2 wrong
+    """
+
+    labels: tuple[str, ...]
+    error: Mapping[int, NDArray[np.floating]]
+    most: float
+    share: float
+    state: NDArray[np.integer]
+
+
 class Scene(NamedTuple):
     """What the player reads: a description for JSON, the arrays in one compressed block, and sentences about omissions."""
 
@@ -53,6 +71,7 @@ def scene(
     limits: Limits,
     up: int = 1,
     axes: Floats | None = None,
+    trust: Trust | None = None,
 ) -> Scene:
     """The moving body, reduced to what a page can hold.
 
@@ -62,6 +81,7 @@ def scene(
     inputs     : by source frame number, the input meshes of the frames that play
     up         : axis that points up, see `view`
     axes       : directions of the view, as `view` gives them; None for those of these meshes
+    trust      : makes the skinned mesh, its error and the confidence of joints part of the scene
     """
     frames = [frame for frame in skeleton.frames if frame in inputs]
     selected_frames = np.array([skeleton.frames.index(frame) for frame in frames])
@@ -87,9 +107,12 @@ def scene(
     }
     if len(leaves.positions):
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
+    if trust is not None:
+        arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
     layout, block = packed(arrays)
     description = {
-        **_tree(skeleton),
+        **_tree(skeleton, skeleton.names if trust is None else trust.labels),
+        "most": 0.0 if trust is None else trust.share,
         "frames": frames,
         "rate": (skeleton.fps or 25.0) * len(frames) / len(skeleton.frames),
         "reach": float(np.linalg.norm(high - low)),
@@ -103,7 +126,30 @@ def scene(
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
 
 
-def _tree(skeleton: Skeleton) -> dict[str, Any]:
+def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict[str, NDArray[Any]]:
+    """The skinned mesh as the player poses it: selected vertices with their weights, and the rotations of all joints."""
+    turns = axes.T @ np.asarray(skeleton.rotation)[frames] @ axes
+    shape = turns.shape[:2]
+    return {
+        "rest_vertices": (np.asarray(skeleton.vertices)[selected] @ axes).astype(np.float32),
+        "rest": (np.asarray(skeleton.rest) @ axes).astype(np.float32),
+        "influence": np.asarray(skeleton.influence)[selected].astype(np.uint16),
+        "weight": np.asarray(skeleton.weight)[selected].astype(np.float32),
+        "turns": Rotation.from_matrix(turns.reshape(-1, 3, 3)).as_quat().reshape(*shape, 4).astype(np.float32),
+    }
+
+
+def _trusted(skeleton: Skeleton, selected: Ints, frames: Ints, trust: Trust) -> dict[str, NDArray[Any]]:
+    """Error, confidence and state as bytes."""
+    error = np.stack([trust.error[skeleton.frames[t]][selected] for t in frames]) / max(trust.most, 1e-300)
+    return {
+        "error": np.rint(255 * np.clip(error, 0.0, 1.0)).astype(np.uint8),
+        "confidence": np.rint(255 * np.clip(np.asarray(skeleton.confidence)[frames], 0.0, 1.0)).astype(np.uint8),
+        "state": np.asarray(trust.state)[frames].astype(np.uint8),
+    }
+
+
+def _tree(skeleton: Skeleton, labels: tuple[str, ...]) -> dict[str, Any]:
     """What stays the same in all frames: joints, the colours of parts and of kinds of joints, unit and frame rate."""
     colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PARTS))
     return {
@@ -114,8 +160,8 @@ def _tree(skeleton: Skeleton) -> dict[str, Any]:
         "surface_leaf": SURFACE_LEAF,
         "not_rigid": NOT_RIGID,
         "joints": [
-            {"name": name, "parent": parent, "kind": kind}
-            for name, parent, kind in zip(skeleton.names, skeleton.parents, skeleton.kinds, strict=True)
+            {"name": name, "label": label, "parent": parent, "kind": kind}
+            for name, label, parent, kind in zip(skeleton.names, labels, skeleton.parents, skeleton.kinds, strict=True)
         ],
     }
 

@@ -1,5 +1,7 @@
 """The page: one file, text from outside escaped, no request to the network."""
 
+import base64
+import hashlib
 import json
 import re
 
@@ -9,8 +11,8 @@ from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
-from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID
-from kinetree.tasks.results.page.document import Remark, as_script, table
+from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, linear
+from kinetree.tasks.results.page.document import Remark, as_script, page_file, table
 
 EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
 
@@ -75,3 +77,28 @@ def test_tables_put_numbers_to_the_right_and_escape_cells():
     html = table(("a", "b"), [("<b>", 1.23456), ("c", 2)])
     assert "&lt;b&gt;" in html
     assert '<td class="n">1.235</td>' in html
+
+
+def test_policy_allows_exactly_the_scripts_of_the_page():
+    text = page()
+    policy = re.search(r"script-src ([^;]*);", text).group(1)
+    scripts = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
+    digests = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+    assert policy == " ".join(f"'sha256-{digest}'" for digest in digests)
+    assert len(scripts) == 2
+
+
+def test_marks_of_joints_stand_out_from_every_part_and_from_the_stage():
+    rings = [(255, 255, 255), (0, 0, 0)]
+    stage = [tuple(bytes.fromhex(c[1:])) for c in re.findall(r"--stage-\w+: (#\w{6})", page_file("style.css"))]
+    assert len(stage) == 4
+    for colour in [*(tuple(bytes.fromhex(c[1:])) for c in (*PARTS, NOT_RIGID)), *stage]:
+        for light in (1.0, 0.5):  # lit and in the shade
+            shade = tuple(int(light * c) for c in colour)
+            assert max(contrast(shade, ring) for ring in rings) >= 3
+
+
+def contrast(a, b):
+    """Contrast ratio of two sRGB colours (WCAG 2.2)."""
+    high, low = sorted((float(linear(np.array(c, np.uint8)) @ [0.2126, 0.7152, 0.0722]) for c in (a, b)), reverse=True)
+    return (high + 0.05) / (low + 0.05)

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from results.rigged_bodies import skinned, spider
 from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import Report
 from kinetree.tasks.results.page.document import Remark
+from kinetree.tasks.results.plots.drawing import view
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -22,7 +24,8 @@ FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-
 RAN = {"run": "<b>r</b>", "status": "done", "nodes": {"ran": 3}, "seconds": 1.5, "failures": [], "versions": {"numpy": "2"},
        "tasks": {"mesh": {"ran": 3, "fresh": 0, "failed": 0, "seconds": 0.25}},
        "graph": {"mesh": {"over": "frame", "reads": ["source"]}},
-       "config": {"a": "</script><script>alert(1)</script>"}}  # fmt: skip
+       "files": ["report.html", "skeleton.glb", "skeleton.json"],
+       "config": "source:\n  input: /takes/</script><script>alert(1)</script>walk\n"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +46,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.fixture(scope="module", params=[(1200, 900), (390, 844)], ids=["desk", "phone"])
+@pytest.fixture(scope="module", params=[(1440, 900), (390, 844)], ids=["desk", "phone"])
 def tab(browser: Any, path: Path, request: pytest.FixtureRequest) -> Iterator[Any]:
     width, height = request.param
     context = browser.new_context(viewport={"width": width, "height": height}, reduced_motion="reduce")
@@ -90,15 +93,74 @@ def test_scrubbing_shows_another_picture_and_names_the_frame(opened: Any) -> Non
     assert drawn(opened) != before
 
 
-@pytest.mark.parametrize("toggle", ["see-aligned", "see-input", "see-parts", "see-skeleton", "see-leaves"])
+@pytest.mark.parametrize("toggle", ["see-skeleton", "see-leaves"])
 def test_every_toggle_changes_the_picture_and_changes_it_back(opened: Any, toggle: str) -> None:
-    opened.set_checked("#see-aligned", toggle != "see-input")  # the aligned mesh lies where the input does
     before = drawn(opened)
     opened.locator(f"#{toggle}").click()
     assert drawn(opened) != before
     opened.locator(f"#{toggle}").click()
     assert drawn(opened) == before
-    opened.check("#see-aligned")
+
+
+def test_every_mode_and_every_colour_is_another_picture(opened: Any) -> None:
+    for name, usual, pictures in (
+        ("mode", "rig", {"rig", "overlay", "sides"}),
+        ("colour", "parts", {"parts", "error", "confidence", "plain"}),
+    ):
+        there = {option.get_attribute("value") for option in opened.query_selector_all(f"#{name} option")}
+        assert there >= set(pictures)
+        shown = set()
+        for value in pictures:
+            opened.select_option(f"#{name}", value)
+            shown.add(drawn(opened))
+        assert len(shown) == len(pictures)
+        opened.select_option("#mode", "rig")
+        opened.select_option(f"#{name}", usual)
+        opened.select_option("#colour", "parts")
+
+
+def test_rig_is_where_the_skinned_mesh_is(opened: Any) -> None:
+    body, t = spider(), 5
+    opened.evaluate("kinetree.show(5)")
+    shown = np.array(opened.evaluate("Array.from(kinetree.rig.geometry.attributes.position.array)")).reshape(-1, 3)
+    true = skinned(body)[t] @ view(list(skinned(body)))
+    assert np.abs(np.sort(shown, axis=0)[[0, -1]] - np.sort(true, axis=0)[[0, -1]]).max() < 1e-3
+
+
+def test_a_joint_is_selected_on_the_stage_and_in_the_table(opened: Any) -> None:
+    row = opened.locator("tr[data-joint='1'] button")
+    row.click()
+    assert opened.evaluate("kinetree.selected") == 1
+    assert opened.inner_text("#selected") == "left shoulder"
+    opened.keyboard.press("Escape")
+    assert row.get_attribute("aria-pressed") == "false"
+    x, y = opened.evaluate("kinetree.place(1)")
+    opened.locator("#stage").click(position={"x": x, "y": y})
+    assert row.get_attribute("aria-pressed") == "true"
+    opened.keyboard.press("Escape")
+
+
+def test_controls_are_above_the_fold_and_a_swipe_scrolls(opened: Any) -> None:
+    if opened.viewport_size["width"] > 1000:
+        assert opened.evaluate("document.getElementById('home').getBoundingClientRect().bottom + scrollY") <= 900
+    assert opened.evaluate("getComputedStyle(document.getElementById('stage')).touchAction") == "pan-y"
+
+
+def test_title_names_the_data_and_files_that_the_run_left_are_offered(opened: Any) -> None:
+    assert opened.title().startswith("script>walk: a <script>")
+    assert [link.get_attribute("href") for link in opened.query_selector_all("#files a")] == ["skeleton.glb", "skeleton.json"]
+
+
+def test_a_script_that_was_changed_is_refused(browser: Any, path: Path, tmp_path: Path) -> None:
+    changed = tmp_path / "changed.html"
+    changed.write_text(path.read_text().replace("begin();\n", "begin();;\n"))
+    tab = browser.new_page()
+    refused: list[str] = []
+    tab.on("console", lambda m: refused.append(m.text))
+    tab.goto(changed.as_uri())
+    assert any("Content Security Policy" in text for text in refused)
+    assert tab.evaluate("typeof ReportPlayer") == "undefined"
+    tab.close()
 
 
 def test_keyboard_alone_steps_turns_and_plays(opened: Any) -> None:
@@ -127,6 +189,7 @@ def test_nothing_is_wider_than_the_screen(opened: Any) -> None:
 
 
 def test_what_ran_is_told_as_text(opened: Any) -> None:
+    opened.evaluate("() => document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     text = opened.inner_text("#run")
     assert "<b>r</b> done: 3 ran in 1.5 s" in text
     assert "mesh" in text
