@@ -172,6 +172,8 @@ class ReportPlayer extends Player {
     this.drawn?.();
   }
 
+  aspect(width, height) { return (this.mode === "sides" ? width / 2 : width) / height; }
+
   // Where a joint is drawn, in pixels of the stage; side by side, in the right half.
   place(j) {
     const { clientWidth, clientHeight } = this.renderer.domElement;

@@ -48,11 +48,13 @@ function drawLabels(player) {
   const wanted = joints.map((_, j) => j).filter((j) => j === player.selected || j === player.hovered || (all && joints[j].kind !== "leaf"));
   while (place.children.length < wanted.length) element("span", "", place);
   while (place.children.length > wanted.length) place.lastChild.remove();
+  const middle = joints.length ? player.place(0)[0] : 0;
   wanted.forEach((j, k) => {
     const [x, y] = player.place(j);
+    const outwards = x < middle ? `translate(${(x - 10).toFixed(1)}px, ${(y - 9).toFixed(1)}px) translateX(-100%)` : `translate(${(x + 10).toFixed(1)}px, ${(y - 9).toFixed(1)}px)`;
     const label = place.children[k];
     label.textContent = joints[j].label;
-    label.style.transform = `translate(${(x + 10).toFixed(1)}px, ${(y - 9).toFixed(1)}px)`;
+    label.style.transform = outwards;
   });
 }
 

@@ -119,6 +119,14 @@ def test_every_mode_and_every_colour_is_another_picture(opened: Any) -> None:
         opened.select_option("#colour", "parts")
 
 
+def test_bodies_side_by_side_are_not_squeezed(opened: Any) -> None:
+    opened.select_option("#mode", "sides")
+    width, height = opened.evaluate("[kinetree.renderer.domElement.clientWidth, kinetree.renderer.domElement.clientHeight]")
+    assert opened.evaluate("kinetree.camera.aspect") == pytest.approx(width / 2 / height)
+    opened.select_option("#mode", "rig")
+    assert opened.evaluate("kinetree.camera.aspect") == pytest.approx(width / height)
+
+
 def test_rig_is_where_the_skinned_mesh_is(opened: Any) -> None:
     body, t = spider(), 5
     opened.evaluate("kinetree.show(5)")
