@@ -250,8 +250,13 @@ class Pipeline:
         schedule = there.schedule
         if schedule.is_idle:
             return
+        from kinetree.pipeline.running.jobs import Job
         from kinetree.pipeline.running.launch import launcher
-        from kinetree.pipeline.running.run import run
+        from kinetree.pipeline.running.run import run, take_back_lost
 
-        with launcher(self.config.compute, client) as launch:
-            run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))
+        is_whole = False
+        while not is_whole:
+            with launcher(self.config.compute, client) as launch:
+                run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))
+            # to end workers takes seconds, in which somebody may have removed what was there
+            is_whole = not launch.is_elsewhere or not take_back_lost(Job(schedule, watch), schedule.store)

@@ -65,6 +65,17 @@ def run_all(jobs: Jobs, store: Store, launch: Launcher) -> None:
         loop.sight.end(store)
 
 
+def take_back_lost(job: Job, store: Store) -> bool:
+    """What somebody removed from the store after it was seen there is to be computed again; True if there was any."""
+    done = [e for e in job.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
+    lost = seeing.missing(store, {(e.key or "", e.artifact or "") for e in done})
+    for entry in done:
+        if (entry.key, entry.artifact) in lost:
+            job.schedule.lose(entry, "it is missing")
+    _tell_losses(job)
+    return bool(lost)
+
+
 @dataclass
 class _Loop:
     jobs: Jobs
@@ -111,22 +122,12 @@ class _Loop:
 
     def _end_jobs(self) -> None:
         for job in [job for job in self._open if job.is_over]:
-            while self._take_back_lost(job) and job.is_over:
+            while take_back_lost(job, self.store) and job.is_over:
                 pass  # what was lost too often has failed by now
             if job.is_over:
                 self._open.remove(job)
                 _refuse_rings(job.schedule)
                 self.jobs.end(job)
-
-    def _take_back_lost(self, job: Job) -> bool:
-        """What somebody removed from the store after it was seen there is computed again; True if there was any."""
-        done = [e for e in job.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
-        lost = seeing.missing(self.store, {(e.key or "", e.artifact or "") for e in done})
-        for entry in done:
-            if (entry.key, entry.artifact) in lost:
-                job.schedule.lose(entry, "it is missing")
-        _tell_losses(job)
-        return bool(lost)
 
     def _begin_jobs(self) -> None:
         """Begins schedules until enough are open and some node is ready, or there is none to begin."""

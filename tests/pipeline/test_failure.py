@@ -1,5 +1,7 @@
 """What fails, and what does not: nodes that raise, artifacts that lost bytes, runs that were killed or share a store."""
 
+import contextlib
+import dataclasses
 import json
 import os
 import shutil
@@ -10,7 +12,7 @@ from zips import alter
 
 from kinetree.errors import DamagedArtifactError
 from kinetree.pipeline.planning.schedule import MENDS
-from kinetree.pipeline.running import sight
+from kinetree.pipeline.running import launch, sight
 from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.records import Records
 from kinetree.pipeline.storage.store import Store, artifact_path
@@ -316,6 +318,24 @@ def test_store_removed_in_mid_run_is_a_store_again_and_every_command_accepts_it(
     assert sum(told["nodes"].values()) == 43
     assert toys.command("plan", str(toys.output)).returncode == 0
     assert toys.command("run", str(toys.yaml()), "--quiet").returncode == 0
+    assert toys.artifacts() == calm
+
+
+def test_a_store_removed_while_the_workers_end_is_filled_again(toys, calm, monkeypatch):
+    """After everything was looked for once more, and before the run is called done."""
+    begun, plain = [], launch.launcher
+
+    @contextlib.contextmanager
+    def launcher(*given):
+        with plain(*given) as there:
+            begun.append(there)
+            yield dataclasses.replace(there, is_elsewhere=True)
+        if len(begun) == 1:
+            shutil.rmtree(toys.output / "store")
+
+    monkeypatch.setattr(launch, "launcher", launcher)
+    told = toys.pipeline(compute={"executor": "threads"}).run()
+    assert (told["status"], len(begun)) == ("done", 2)
     assert toys.artifacts() == calm
 
 
