@@ -136,9 +136,11 @@ def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: 
     records: list[str] = []
     needed: set[str] = set()
     singles = store.records.singles()
+    recent = store.records.since(since)
     for key in store.records.listed():
-        record = singles.get(key) or store.record(key, as_listed=True)
-        if record is not None and (key in keys or store.records.modified(key) >= since):
+        is_wanted = key in keys or key in recent
+        record = (singles.get(key) or store.record(key, as_listed=True)) if is_wanted else None
+        if record is not None:
             needed.add(record.artifact)
         else:
             records.append(key)

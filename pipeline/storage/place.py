@@ -163,17 +163,14 @@ class Folder:
             return 0.0
 
     def remove(self, path: str) -> None:
-        """Renames away first, so that no reader meets half a tree, then deletes."""
-        with self._refusals(path):
-            beside = self._beside()
+        """Removes a file at once; renames a tree away first, so that no reader meets half of it."""
+        with self._refusals(path), contextlib.suppress(FileNotFoundError):
             try:
+                (self.root / path).unlink()
+            except (IsADirectoryError, PermissionError):  # which of them a folder is depends on the system
+                beside = self._beside()
                 (self.root / path).rename(beside)
-            except FileNotFoundError:
-                return
-            if beside.is_dir():
                 shutil.rmtree(beside, ignore_errors=True)
-            else:
-                beside.unlink(missing_ok=True)
 
     def remove_all(self, paths: Iterable[str]) -> None:
         """Removes one after the other."""

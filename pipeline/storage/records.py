@@ -7,6 +7,7 @@ A reader sees a record in either place: the pack is complete before the single o
 """
 
 import io
+import math
 import re
 import threading
 import time
@@ -108,9 +109,16 @@ class Records:
         self._list()
         return sorted({*self._single, *self._where})
 
-    def modified(self, key: str) -> float:
-        """When a record was written, or the pack it lies in; seconds since the epoch."""
-        return self.place.modified(_single(key) if key in self._single else _pack(self._where.get(key, "")))
+    def since(self, epoch: float) -> set[str]:
+        """The keys of the records that were written, or lie in a pack that was written, at a time or after it.
+
+        epoch : seconds since the epoch; nothing is asked for where it is infinite
+        """
+        if math.isinf(epoch):
+            return set()
+        packs = {name for name in self._packs if self.place.modified(_pack(name)) >= epoch}
+        packed = {key for key, name in self._where.items() if name in packs and key not in self._single}
+        return packed | {key for key in self._single if self.place.modified(_single(key)) >= epoch}
 
     def pack(self, name: str, keys: Collection[str]) -> None:
         """Puts the single records of these keys into one pack of that name, if they are many."""

@@ -8,6 +8,7 @@ import pytest
 from kinetree.errors import StoreFullError, UnknownNodeError
 from kinetree.pipeline.storage import gc
 from kinetree.pipeline.storage.gc import advising, collect
+from kinetree.pipeline.storage.records import Records
 from kinetree.pipeline.storage.store import Store
 
 
@@ -68,6 +69,17 @@ def test_a_dry_collection_frees_nothing_and_says_what_a_real_one_then_frees(toys
     assert not {record.key for record in store(toys).records.all()} & set(told.records)
     assert set(after) <= set(before)
     assert collect(store(toys), dry=True).artifacts == ()
+
+
+def test_records_that_nobody_needs_are_not_read(toys, monkeypatch):
+    toys.run()
+    toys.run(points={"scale": 2.0})
+    read, plain = [], Records.get
+    monkeypatch.setattr(Records, "get", lambda self, key, **told: read.append(key) or plain(self, key, **told))
+    freed = collect(toys.pipeline().store, dry=True)
+    assert len(freed.records) > 16, "they lie in a pack"
+    assert read
+    assert not set(read) & set(freed.records)
 
 
 def test_a_run_that_computed_nothing_leaves_nothing_but_its_own_record(toys):
