@@ -14,6 +14,7 @@ deep, and what gathers all frames takes three times as long.
 """
 
 import argparse
+import contextlib
 import graphlib
 import heapq
 import itertools
@@ -26,6 +27,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
+from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import Node, parse, project
@@ -110,7 +112,10 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
     """
     graph = pipeline.tasks.until(names)
     records = History.of(pipeline.store, pipeline.config).records().items()
-    found = {parse(label, graph): record for label, record in records if record.task in graph.by_name}
+    found = {}
+    for label, record in records:
+        with contextlib.suppress(UnknownNodeError):  # of a task that is no more, or that ran over another dimension then
+            found[parse(label, graph)] = record
     if not found:
         raise ValueError(f"{pipeline.config.output} holds no record; run it first")
     depth = {task.name: number for number, task in enumerate(graph.tasks)}
