@@ -50,7 +50,7 @@ def _write(listed: "dict[int, Source]", output: Path, cameras: int, size: int, e
     """Writes every frame's masks and the calibration, all or nothing."""
     import numpy as np
 
-    from kinetree.tasks.input.source import surface
+    from kinetree.tasks.input.frames.read import surface
     from kinetree.tasks.numerics.input import cameras as numerics
     from kinetree.tasks.numerics.input.calibration import Calibration, written_calibration
     from kinetree.tasks.numerics.input.silhouettes import write_masks
@@ -83,7 +83,7 @@ def _extent(listed: "dict[int, Source]") -> "tuple[Floats, Floats, int]":
     """Lowest and highest corner of the box about all frames, and the longest axis of the first."""
     import numpy as np
 
-    from kinetree.tasks.input.source import surface
+    from kinetree.tasks.input.frames.read import surface
 
     boxes = np.array([(V.min(axis=0), V.max(axis=0)) for V, _ in map(surface, listed.values())])
     return boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0), int((boxes[0, 1] - boxes[0, 0]).argmax())

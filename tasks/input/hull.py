@@ -6,7 +6,7 @@ from kinetree.errors import HullError
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.hull import Hull, HullParams
 from kinetree.schemas.input.source import Source
-from kinetree.tasks.input.source import name, silhouettes
+from kinetree.tasks.input.frames.read import name, silhouettes
 from kinetree.tasks.numerics.input import hull as numerics
 from kinetree.tasks.numerics.input.mask_distance import cut_sides
 

@@ -7,7 +7,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.hull import Hull
 from kinetree.schemas.input.isosurface import Isosurface, IsosurfaceParams
 from kinetree.schemas.input.source import Source
-from kinetree.tasks.input.source import name, volume
+from kinetree.tasks.input.frames.read import name, volume
 from kinetree.tasks.numerics.input import isosurface as numerics
 from kinetree.tasks.numerics.input.hull import Field
 

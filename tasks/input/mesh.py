@@ -8,7 +8,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.isosurface import Isosurface
 from kinetree.schemas.input.mesh import Cleaning, Mesh, MeshParams
 from kinetree.schemas.input.source import Source
-from kinetree.tasks.input.source import name, surface
+from kinetree.tasks.input.frames.read import name, surface
 from kinetree.tasks.numerics.input.mesh import Cleaned, clean
 
 

@@ -9,7 +9,7 @@ from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.ply import Ply
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.input.source import name, surface
+from kinetree.tasks.input.frames.read import name, surface
 from kinetree.tasks.results.formats.labels import input_labels
 from kinetree.tasks.results.formats.ply import ply as ply_bytes
 

@@ -9,7 +9,7 @@ from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
 from kinetree.tasks.commands.silhouettes import silhouettes
-from kinetree.tasks.input.source import silhouettes as read_back
+from kinetree.tasks.input.frames.read import silhouettes as read_back
 from kinetree.tasks.input.source import source
 
 

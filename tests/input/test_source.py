@@ -15,7 +15,8 @@ from kinetree.pipeline.identity.key import artifact_digest
 from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import Source, SourceParams
-from kinetree.tasks.input.source import name, source, surface
+from kinetree.tasks.input.frames.read import name, surface
+from kinetree.tasks.input.source import source
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)

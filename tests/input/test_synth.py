@@ -14,7 +14,8 @@ from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
 from kinetree.schemas.input.synth import ContactParams, SynthParams
 from kinetree.tasks.commands.synth import synth
-from kinetree.tasks.input.source import source, surface
+from kinetree.tasks.input.frames.read import surface
+from kinetree.tasks.input.source import source
 from kinetree.tasks.input.synth import body, figure_names, recipe, write_sequence
 
 SMALL = SynthParams(frames=3, vertices=600)

@@ -15,10 +15,11 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.input.hull import hull
 from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.sequence import sequence
-from kinetree.tasks.input.source import source, surface
+from kinetree.tasks.input.source import source
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
