@@ -170,9 +170,11 @@ def _of_joints(e: Evidence, state: Ints, s: VerdictSettings) -> Iterator[Finding
     if weak.any():
         yield Finding("weak", "fault", (), _at(weak), float(mean[weak].min()))
     unsure = (state == UNCERTAIN) & ~weak[None, :]
-    for j in sorted(np.flatnonzero(unsure.any(axis=0)), key=lambda j: -int(unsure[:, j].sum())):
-        frames = _at(unsure[:, j])
-        yield Finding("uncertain", "fault", frames, (int(j),), float(e.confidence[list(frames), j].mean()))
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for j in np.flatnonzero(unsure.any(axis=0)):
+        groups.setdefault(_at(unsure[:, j]), []).append(int(j))
+    for frames, joints in sorted(groups.items(), key=lambda item: -len(item[0])):
+        yield Finding("uncertain", "fault", frames, tuple(joints), float(e.confidence[np.ix_(frames, joints)].mean()))
     for left, right in e.pairs:
         apart = abs(float(e.length[left] - e.length[right]))
         if apart > s.asymmetry:

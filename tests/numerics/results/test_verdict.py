@@ -63,6 +63,12 @@ def test_a_hidden_joint_is_uncertain_where_it_is_hidden() -> None:
     assert (found.state[3:6, 1] == UNCERTAIN).all()
 
 
+def test_joints_that_are_uncertain_in_the_same_frames_are_one_finding() -> None:
+    of = changed("confidence", (slice(3, 6), slice(1, 3)), 0.2)
+    of.confidence[2:6, 3] = 0.1
+    assert [(f.frames, f.joints) for f in verdict(of).findings] == [((2, 3, 4, 5), (3,)), ((3, 4, 5), (1, 2))]
+
+
 def test_roots_and_ends_have_no_confidence_and_no_place_of_their_own() -> None:
     assert verdict(changed("confidence", (3, 4), 0.1)).level == "good"
     assert verdict(changed("outside", (3, 4), 0.1)).level == "good"
