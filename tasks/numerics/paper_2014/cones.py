@@ -75,16 +75,23 @@ def bands(distance: Floats, annuli: int) -> Ints:
     return band
 
 
-def grown(band: Ints, seed: Flags, area: Floats, E: Ints, settings: ConesSettings | None = None) -> Ints:
+def grown(
+    band: Ints, seed: Flags, area: Floats, E: Ints, settings: ConesSettings | None = None, *, dead_end: Flags | None = None
+) -> Ints:
     """Adds the next adjacent band until that is disjoint (Sec. 6.1.1.1, steps 3 and 4).
 
-    band    : (vertex,) see `bands`; vertices with −1 are never added
-    seed    : (vertex,) where to begin: the components of the lowest band among them
-    area    : (vertex,) mesh unit²
-    E       : (edge, 2) vertices
-    returns : (vertex,) annulus of every vertex, −1 beyond the cone
+    A disjoint band "partially covers at least two body extremities"; a dead end is none (ours): a bone takes two annuli
+    (Sec. 6.1.2.3). It belongs to the annulus and does not end the cone.
+
+    band     : (vertex,) see `bands`; vertices with −1 are never added
+    seed     : (vertex,) where to begin: the components of the lowest band among them
+    area     : (vertex,) mesh unit²
+    E        : (edge, 2) vertices
+    dead_end : (vertex,) see `dead_ends`; of these bands if not given
+    returns  : (vertex,) annulus of every vertex, −1 beyond the cone
     """
     settings = settings or ConesSettings()
+    dead_end = dead_ends(band, E) if dead_end is None else dead_end
     annulus = np.full(len(band), -1)
     seed = seed & (band >= 0)
     if not seed.any():
@@ -96,9 +103,23 @@ def grown(band: Ints, seed: Flags, area: Floats, E: Ints, settings: ConesSetting
         annulus[added] = k
         component = components(band == k + 1, E)
         adjacent = np.unique(component[neighbours(added, E) & (band == k + 1)])
-        if len(_large(adjacent, component, area, settings.least_component)) != 1:
+        through = np.unique(component[np.isin(component, adjacent) & ~dead_end & (component >= 0)])
+        if len(_large(through if len(through) else adjacent, component, area, settings.least_component)) != 1:
             return annulus
         added, k = np.isin(component, adjacent), k + 1
+
+
+def dead_ends(band: Ints, E: Ints) -> Flags:
+    """(vertex,) whether the connected component of its band touches no farther band: the tip of a thumb, a chin, an ear.
+
+    band, E : (vertex,) see `bands` · (edge, 2) vertices
+    """
+    held = E[band[E[:, 0]] == band[E[:, 1]]]
+    links = coo_array((np.ones(len(held), bool), (held[:, 0], held[:, 1])), shape=(len(band), len(band)))
+    component = connected_components(links, directed=False)[1]
+    a, b = E.T
+    onward = np.concatenate([component[a[band[a] < band[b]]], component[b[band[b] < band[a]]]])
+    return ~np.isin(component, onward)
 
 
 def neighbours(inside: Flags, E: Ints) -> Flags:

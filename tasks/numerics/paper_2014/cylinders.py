@@ -7,7 +7,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.paper_2014.annuli import annulus_clusters, least_rigid, self_errors
-from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown, neighbours
+from kinetree.tasks.numerics.paper_2014.cones import bands, components, dead_ends, edges, grown, neighbours
 from kinetree.tasks.numerics.paper_2014.integration import integrated
 
 Clustering = Callable[[list[Ints]], Flags]
@@ -116,6 +116,7 @@ def cylinders(
     settings = settings or CylindersSettings()
     E = edges(F)
     band = [bands(d, annuli) for d in distance]
+    dead_end = [dead_ends(own, E) for own in band]
     cone_of = np.full(len(area), -1)
     for cone in cones:
         cone_of[cone.annulus >= 0] = cone.cone
@@ -124,7 +125,7 @@ def cylinders(
         component = components(cone_of == -1, E)
         small = np.bincount(component[component >= 0], area[component >= 0], len(area)) < settings.least_area * area.sum()
         cone_of[(component >= 0) & small[component]] = -2
-        widest = _widest_extension(cone_of, band, distance, area, E)
+        widest = _widest_extension(cone_of, band, dead_end, distance, area, E)
         if widest is None:
             return out
         n, annulus = widest
@@ -206,12 +207,18 @@ def _without_shared_end(own: Ints, rigid: Flags, overlapping: Flags) -> Ints:
     return np.where(own > before[-1], -1, own) if len(before) else own
 
 
-def _widest_extension(cone_of: Ints, band: list[Ints], distance: Floats, area: Floats, E: Ints) -> tuple[int, Ints] | None:
-    """The cone whose extension into the undefined area has the widest range of distances, and (vertex,) the annuli of that."""
+def _widest_extension(
+    cone_of: Ints, band: list[Ints], dead_end: list[Flags], distance: Floats, area: Floats, E: Ints
+) -> tuple[int, Ints] | None:
+    """The cone whose extension into the undefined area has the widest range of distances, and (vertex,) the annuli of that.
+
+    An extension begins behind the last annulus of its cone. What lies beside nearer annuli is no ring: the cone lost it to another.
+    """
     best: tuple[float, int, Ints] | None = None
     for n, own in enumerate(band):
-        inside = cone_of == n
-        annulus = grown(np.where(cone_of == -1, own, -1), neighbours(inside, E) & ~inside, area, E)
+        last = int(own[cone_of == n].max(initial=-1))
+        end = neighbours((cone_of == n) & (own == last), E)
+        annulus = grown(np.where((cone_of == -1) & (own > last), own, -1), end, area, E, dead_end=dead_end[n])
         if (annulus >= 0).any():
             wide = float(np.ptp(distance[n][annulus >= 0]))
             if best is None or wide > best[0]:

@@ -7,7 +7,7 @@ from shapes import open_cylinder, y_pipe
 
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.paper_2014.cones import ConesSettings, bands, components, cones, edges, grown, neighbours
+from kinetree.tasks.numerics.paper_2014.cones import ConesSettings, bands, components, cones, dead_ends, edges, grown, neighbours
 
 PIPE, PIPE_FACES, _ = y_pipe()
 TIP = int(PIPE[:, 0].argmax())
@@ -83,6 +83,15 @@ def test_fragment_of_a_band_is_ignored_unless_it_is_large():
         assert annulus.max() == end
     large = ConesSettings(least_component=0.6)
     assert grown(np.array([0, 1, 1]), np.array([True, False, False]), np.array([1.0, 1.0, 0.5]), E, large).max() == 1
+
+
+def test_tip_that_ends_in_the_next_band_belongs_to_the_cone_and_a_limb_ends_it():
+    band, leaf = np.array([0, 1, 1, 2, 2]), np.arange(5) == 0
+    tip = np.array([[0, 1], [0, 2], [2, 3], [3, 4]])  # vertex 1 leads no farther
+    limb = np.array([[0, 1], [0, 2], [2, 3], [1, 4]])
+    assert dead_ends(band, tip).tolist() == [False, True, False, True, True]
+    assert grown(band, leaf, np.ones(5), tip).tolist() == [0, 1, 1, 2, 2]
+    assert grown(band, leaf, np.ones(5), limb).tolist() == [0, -1, -1, -1, -1]
 
 
 def test_leaf_that_is_not_seen_has_no_cone_and_others_have_the_range_of_mu():

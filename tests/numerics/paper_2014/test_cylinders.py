@@ -2,10 +2,11 @@
 
 import numpy as np
 from articulated import chain, swings
-from shapes import y_pipe
+from shapes import open_cylinder, y_pipe
 
 from kinetree.tasks.numerics.paper_2014.cones import bands, components, edges, grown
 from kinetree.tasks.numerics.paper_2014.cylinders import (
+    Cylinder,
     CylindersSettings,
     IntervalMotion,
     cylinders,
@@ -97,6 +98,16 @@ def test_annuli_of_a_cylinder_are_numbered_from_its_near_end():
     for cylinder, annuli in zip(extensions, clustered, strict=True):
         reach = [DISTANCE[cylinder.cone][inside].mean() for inside in annuli]
         assert reach == sorted(reach)
+
+
+def test_extension_begins_behind_the_last_annulus_of_its_cone_and_not_beside_it():
+    X, faces = open_cylinder(24, 51, height=10.0)
+    distance = X[None, :, 2] + 1e-9
+    band = bands(distance[0], 10)
+    lost = (band == 4) & (X[:, 0] > 0.5)
+    cone = Cylinder(0, np.where((band <= 4) & ~lost, band, -1), np.ones(5, bool))
+    (extension,) = cylinders([cone], distance, np.ones(len(X)), faces, all_rigid, 10)
+    assert (extension.annulus == np.where(band > 4, band - 5, -1)).all()
 
 
 def test_cone_whose_leaf_is_not_seen_is_not_extended():
