@@ -212,7 +212,7 @@ def _widest_extension(
 ) -> tuple[int, Ints] | None:
     """The cone whose extension into the undefined area has the widest range of distances, and (vertex,) the annuli of that.
 
-    An extension begins behind the last annulus of its cone. What lies beside nearer annuli is no ring: the cone lost it to another.
+    An extension begins behind the last annulus of its cone. What lies beside nearer annuli is no ring: another cone shares it.
     """
     best: tuple[float, int, Ints] | None = None
     for n, own in enumerate(band):

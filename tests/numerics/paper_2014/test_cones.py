@@ -7,7 +7,16 @@ from shapes import open_cylinder, y_pipe
 
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.paper_2014.cones import ConesSettings, bands, components, cones, dead_ends, edges, grown, neighbours
+from kinetree.tasks.numerics.paper_2014.cones import (
+    ConesSettings,
+    bands,
+    components,
+    cones,
+    dead_ends,
+    edges,
+    grown,
+    neighbours,
+)
 
 PIPE, PIPE_FACES, _ = y_pipe()
 TIP = int(PIPE[:, 0].argmax())
