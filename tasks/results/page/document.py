@@ -5,6 +5,7 @@ import hashlib
 import io
 import json
 import re
+import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
 """Beside the words of a verdict."""
+_RENDERING = threading.Lock()
+"""matplotlib's settings are those of the process: one figure at a time is written with settings of its own."""
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
 
@@ -174,7 +177,7 @@ def rendered(figure: "Figure", *, vector: bool) -> bytes:
     from matplotlib import rc_context
 
     file = io.BytesIO()
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
+    with _RENDERING, rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
         if vector:
             verbatim(figure).savefig(file, format="svg", metadata={"Date": None, "Creator": None})
         else:

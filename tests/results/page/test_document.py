@@ -4,15 +4,18 @@ import base64
 import hashlib
 import json
 import re
+import threading
 
 import numpy as np
 import pytest
+from matplotlib import rcParams
+from matplotlib.figure import Figure
 from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, linear
-from kinetree.tasks.results.page.document import Remark, as_script, page_file, table
+from kinetree.tasks.results.page.document import Remark, as_script, page_file, rendered, table
 
 EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
 
@@ -102,3 +105,25 @@ def contrast(a, b):
     """Contrast ratio of two sRGB colours (WCAG 2.2)."""
     high, low = sorted((float(linear(np.array(c, np.uint8)) @ [0.2126, 0.7152, 0.0722]) for c in (a, b)), reverse=True)
     return (high + 0.05) / (low + 0.05)
+
+
+def test_figures_that_are_written_at_once_do_not_share_settings():
+    """Settings of matplotlib are those of the process: the first to be done would take them from the other."""
+    begun, first_is_done, fonts = threading.Event(), threading.Event(), []
+
+    class First(Figure):
+        def savefig(self, *_, **__):
+            other.start()
+            begun.wait(0.5)  # in vain where they wait for each other
+
+    class Second(Figure):
+        def savefig(self, *_, **__):
+            begun.set()
+            first_is_done.wait()
+            fonts.append(rcParams["svg.fonttype"])
+
+    other = threading.Thread(target=rendered, args=(Second(),), kwargs={"vector": True})
+    rendered(First(), vector=True)
+    first_is_done.set()
+    other.join()
+    assert fonts == ["none"]

@@ -1,0 +1,67 @@
+"""What a run with nothing to do costs, counted: what it asks of the store, what it works out, what it imports."""
+
+import json
+import os
+from collections import Counter
+
+import pytest
+
+from kinetree.pipeline.identity import key
+from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.storage.place import Folder
+
+QUESTIONS = ("get", "tail", "part", "put", "names", "listed", "modified", "remove", "size")
+ALONE = {"intervals": {"length": 1000}}
+"""One interval, so that the nodes that are not of single frames are as many for every number of frames."""
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """How often the store was asked each question, and a node's key was worked out."""
+    counts = Counter()
+
+    def counted(place, name):
+        plain = getattr(place, name)
+
+        def count(*given, **named):
+            counts[name] += 1
+            return plain(*given, **named)
+
+        monkeypatch.setattr(place, name, count)
+
+    for question in QUESTIONS:
+        counted(Folder, question)
+    counted(schedule, "node_key")
+    return counts
+
+
+def test_reads_and_writes_do_not_grow_with_the_frames_and_a_node_is_asked_for_once(toys, asked, tmp_path):
+    assert schedule.node_key is not key.node_key, "it is counted"
+    told = []
+    for frames in (20, 60):
+        toys.write(*(10.0 * (n + 1) for n in range(frames)))
+        blocks = {**ALONE, "output": str(tmp_path / f"{frames}")}
+        toys.run(**blocks)
+        asked.clear()
+        nothing = toys.run(**blocks)
+        assert not nothing.ran
+        told.append((asked.copy(), nothing.told["nodes"]["fresh"]))
+    (few, _), (many, nodes) = told
+    per_node = {"size", "node_key"}
+    assert {name: n for name, n in few.items() if name not in per_node} == {
+        name: n for name, n in many.items() if name not in per_node
+    }
+    assert many["node_key"] == nodes
+    assert many["size"] <= nodes + 5
+
+
+def test_libraries_that_compute_and_store_are_not_imported(toys):
+    config = str(toys.yaml())
+    assert toys.command("run", config, "--quiet").returncode == 0
+    process = toys.start("run", config, "--quiet", env={**os.environ, "PYTHONPROFILEIMPORTTIME": "1"})
+    _, told = process.communicate(timeout=120)
+    assert process.returncode == 0
+    imported = {line.rpartition("|")[2].strip() for line in told.splitlines() if line.startswith("import time:")}
+    assert "numpy" in imported
+    assert not imported & {"dask", "distributed", "zarr", "obstore", "scipy", "numba", "matplotlib"}
+    assert json.loads((toys.output / "run.json").read_text())["nodes"]["ran"] == 0
