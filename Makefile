@@ -6,9 +6,10 @@ READY  := $(VENV)/ready
 
 DATA   ?=
 RUNS   ?= 1000000
+LOWEST := 'pytest>=8.2' 'pytest-timeout>=2.3.1' 'hypothesis>=6.100' 'libigl>=2.6' 'pygeodesic>=0.1.9'
 PROCESSES ?= 2
 
-.PHONY: demo test lint types tests coverage benchmarks faults fuzz accuracy clean
+.PHONY: demo test lint types tests coverage benchmarks faults fuzz accuracy lowest audit licences sbom wheel clean
 
 demo: $(READY)
 	$(BIN)/kinetree demo --output demo-output
@@ -46,6 +47,33 @@ fuzz: $(READY)
 accuracy: $(READY)
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/accuracy.py $(if $(DATA),--data $(DATA)) --markdown
 
+# the oldest versions that pyproject.toml permits, in an environment of their own
+lowest:
+	$(PYTHON) -m venv .venv-lowest
+	.venv-lowest/bin/python -m pip install --quiet uv
+	.venv-lowest/bin/uv pip install --quiet --python .venv-lowest/bin/python --resolution lowest-direct . $(LOWEST)
+	cd tests && OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 ../.venv-lowest/bin/python -P -m pytest -q -c ../pyproject.toml -W default \
+		numerics/input numerics/geometry pipeline/test_store.py pipeline/test_groups.py pipeline/test_place.py pipeline/test_config.py
+
+# known weaknesses of what is installed; needs the advisories of PyPI
+audit: $(READY)
+	$(BIN)/python -m pip install --quiet pip-audit
+	$(BIN)/pip-audit --skip-editable
+
+# the licence of every package that a run needs
+licences: $(READY)
+	$(BIN)/python -m pip install --quiet pip-licenses
+	$(BIN)/pip-licenses --format=markdown --order=license
+
+# a bill of materials of the environment, CycloneDX 1.6
+sbom: $(READY)
+	$(BIN)/python -m pip install --quiet cyclonedx-bom
+	$(BIN)/cyclonedx-py environment $(BIN)/python --pyproject pyproject.toml --output-reproducible --output-file sbom.json
+
+# the same commit gives the same bytes
+wheel: $(READY)
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m build --wheel
+
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "kinetree needs Python 3.11 or newer; name it with make PYTHON=…"; exit 2; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
@@ -55,4 +83,4 @@ $(READY): pyproject.toml
 	touch $@
 
 clean:
-	rm -rf .fuzz $(VENV) demo-output build dist .coverage .mypy_cache .pytest_cache .ruff_cache *.egg-info
+	rm -rf .fuzz .venv-lowest sbom.json $(VENV) demo-output build dist .coverage .mypy_cache .pytest_cache .ruff_cache *.egg-info

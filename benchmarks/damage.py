@@ -1,6 +1,6 @@
 """A small store damaged byte by byte and file by file, and a file system that fails at every write: what became of the result.
 
-    python benchmarks/damage.py [--faults bytes files writes] [--bytes 400] [--seed 0] [--work FOLDER]
+    python benchmarks/damage.py [--faults bytes files writes] [--bytes 400] [--stride 1] [--seed 0] [--work FOLDER]
 
 The store is that of three small frames up to `connectivity`. Each fault is put into a copy of it; then the same run is done
 again and every artifact is read:
@@ -14,8 +14,8 @@ again and every artifact is read:
 
 Faults are: one bit of a byte flipped, at so many places drawn at random; each file removed, emptied, cut in half, or
 exchanged with another one of its kind; and the n-th write below the output folder failing with EIO, or all from the n-th on
-with ENOSPC, for every n until a run gets through. After that the run must go on without the fault. Writes are noticed by the
-interpreter's audit events (open for writing, rename, mkdir, remove), whoever makes them.
+with ENOSPC, for every --stride'th n until a run gets through. After that the run must go on without the fault. Writes are
+noticed by the interpreter's audit events (open for writing, rename, mkdir, remove), whoever makes them.
 """
 
 import argparse
@@ -187,12 +187,12 @@ class Failing:
             raise OSError(self.code, os.strerror(self.code), os.fsdecode(path))
 
 
-def failing_writes(home: Path, expected: bytes) -> Iterator[tuple[str, str, str]]:
+def failing_writes(home: Path, expected: bytes, stride: int) -> Iterator[tuple[str, str, str]]:
     """Fault, outcome and words, for every write of a first run and of one that finds everything there."""
     failing = Failing()
     for code, forever in ((errno.ENOSPC, True), (errno.EIO, False)):
         for begun in ("first", "second"):
-            for number in range(10_000):
+            for number in range(0, 10_000, stride):
                 shutil.rmtree(home / "out", ignore_errors=True)
                 if begun == "second":
                     shutil.copytree(home / "kept", home / "out")
@@ -219,6 +219,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--faults", nargs="*", default=["bytes", "files", "writes"], choices=["bytes", "files", "writes"])
     parser.add_argument("--bytes", type=int, default=400)
+    parser.add_argument("--stride", type=int, default=1)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--work", type=Path)
     args = parser.parse_args()
@@ -236,7 +237,7 @@ def main() -> None:
             shutil.copytree(home / "kept", home / "out")
             put(home / "out" / "store")
             told.append((fault, *outcome(home, expected)))
-        told += failing_writes(home, expected) if "writes" in args.faults else []
+        told += failing_writes(home, expected, args.stride) if "writes" in args.faults else []
     counts = Counter((fault, became) for fault, became, _ in told)
     kinds = ("harmless", "mended", "told", "refused", *FAULTS)
     print("| fault | " + " | ".join(kinds) + " |\n|" + "---|" * (len(kinds) + 1))

@@ -1,8 +1,11 @@
 """A wheel built from the sdist, in an environment that has what it requires and nothing else, used from another folder."""
 
 import json
+import os
+import shutil
 import subprocess
 import sys
+import tomllib
 import venv
 import zipfile
 from importlib import metadata
@@ -11,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -55,6 +59,44 @@ def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path
         counts = json.loads(done.stdout)["nodes"]
         assert counts["ran"] <= ran
         assert (counts["ran"] == 0) == (ran == 0)
+
+
+def test_same_sources_give_the_same_wheel_to_the_byte(tmp_path: Path) -> None:
+    made = []
+    for n, place in enumerate(("one", "another")):
+        copy = tmp_path / place
+        ignored = shutil.ignore_patterns(".*", "build", "dist", "*.egg-info", "__pycache__", "tests", "benchmarks")
+        shutil.copytree(ROOT, copy, ignore=ignored, copy_function=shutil.copyfile)  # every copy has times of its own
+        os.utime(copy / "pipeline" / "graph.py", (10**9, 10**9 + 1000 * n))
+        command = [
+            sys.executable,
+            "-m",
+            "build",
+            "--wheel",
+            "--no-isolation",
+            "--outdir",
+            str(tmp_path / f"dist-{n}"),
+            str(copy),
+        ]
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}
+        done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+        assert done.returncode == 0, done.stdout + done.stderr
+        (wheel,) = (tmp_path / f"dist-{n}").glob("*.whl")
+        made.append(wheel.read_bytes())
+    assert made[0] == made[1]
+
+
+def test_every_direct_dependency_has_a_floor_and_a_newest_version_that_was_tested() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = {name: rows for name, rows in project["optional-dependencies"].items() if name != "benchmarks"}
+    lists = [project["dependencies"], *extras.values()]
+    floors = {canonicalize_name(r.name): r.specifier for one in lists for r in map(Requirement, one)}
+    rows = [line for line in (ROOT / ".ci" / "tested.txt").read_text().splitlines() if not line.startswith("#")]
+    tested = dict(row.split("==") for row in rows)
+    unbounded = {name for name, floor in floors.items() if not str(floor)}
+    assert unbounded == {"types-pyyaml"}
+    assert set(floors) == set(tested)
+    assert [name for name, version in tested.items() if version not in floors[name]] == []
 
 
 def required(wheel: Path) -> set[str]:
