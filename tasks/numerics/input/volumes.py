@@ -28,6 +28,7 @@ ARRAYS = ("field", "volume", "values")
 """Names under which an npz holds a volume, the first that is there."""
 MOST_VOXELS = 1_100_000_000
 """Of one frame: 1,024 along every axis."""
+_MOST_PAGES = 65_536
 
 
 @dataclass(frozen=True)
@@ -182,9 +183,24 @@ def _nrrd(path: Path) -> tuple[Any, Any, Any]:
 def _tiff(path: Path) -> tuple[Any, Any, Any]:
     logging.getLogger("tifffile").setLevel(logging.CRITICAL)  # what is wrong with a file is told once, as a refusal
     with tifffile.TiffFile(path) as file:
+        _refuse_circle(file, path)
         _refuse_large(tuple(file.series[0].shape), path)
         pages = file.series[0].asarray()
     return np.ascontiguousarray(pages.transpose()), np.zeros(3), 1.0
+
+
+def _refuse_circle(file: tifffile.TiffFile, path: Path) -> None:
+    """Refuses pages of which one names an earlier one as its next, which tifffile would follow for ever."""
+    seen: set[int] = set()
+    for k in range(_MOST_PAGES + 1):
+        try:
+            offset = file.pages[k].offset
+        except IndexError:
+            return
+        if offset in seen:
+            raise HullError(f"{path}: its pages follow each other in a circle; the file is damaged")
+        seen.add(offset)
+    raise HullError(f"{path}: more than {_MOST_PAGES} pages; no volume needs as many")
 
 
 _READERS: dict[str, Callable[[Path], tuple[Any, Any, Any]]] = {

@@ -117,3 +117,17 @@ def test_packed_array_that_holds_no_frames_of_volumes_is_refused(tmp_path):
     (tmp_path / "b.npz").write_bytes(b"PK")
     with pytest.raises(SourceError, match=r"cannot be read as .npz"):
         npz_shapes(tmp_path / "b.npz")
+
+
+def test_tiff_whose_pages_go_round_in_a_circle_is_refused(tmp_path):
+    path = tmp_path / "frame.tif"
+    tifffile.imwrite(path, np.zeros((2, 3, 4), np.uint8), photometric="minisblack", metadata=None)
+    with tifffile.TiffFile(path) as file:
+        first = file.pages[0].offset
+        last = file.pages[1].offset
+    raw = bytearray(path.read_bytes())
+    tags = int.from_bytes(raw[last : last + 2], "little")
+    raw[last + 2 + 12 * tags : last + 6 + 12 * tags] = first.to_bytes(4, "little")
+    path.write_bytes(raw)
+    with pytest.raises(HullError, match=r"frame\.tif: its pages follow each other in a circle; the file is damaged"):
+        read_volume(path)
