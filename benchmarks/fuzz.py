@@ -20,6 +20,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import zipfile
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -88,6 +89,52 @@ def _glb() -> list[bytes]:
     scene = trimesh.Scene()
     scene.add_geometry(trimesh.Trimesh(V, F, process=False), transform=np.diag([-1.0, 1, 1, 1]))
     return [scene.export(file_type="glb")]
+
+
+def _animated_glb() -> list[bytes]:
+    """A tetrahedron with a skin, a morph target and three channels."""
+    body = b""
+    views: list[dict[str, int]] = []
+    accessors: list[dict[str, Any]] = []
+
+    def added(array: Any, kind: str, component: int) -> int:
+        nonlocal body
+        raw = array.tobytes()
+        views.append({"buffer": 0, "byteOffset": len(body), "byteLength": len(raw)})
+        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind})
+        body += raw + b"\0" * (-len(raw) % 4)
+        return len(accessors) - 1
+
+    X, times = added(V.astype("<f4"), "VEC3", 5126), added(np.array([0, 0.5, 1], "<f4"), "SCALAR", 5126)
+    turns = added(np.eye(4, dtype="<f4")[[3, 0, 3]], "VEC4", 5126)
+    joints, weights = added(np.zeros((4, 4), "u1"), "VEC4", 5121), added(np.eye(4, dtype="<f4")[[0] * 4], "VEC4", 5126)
+    attributes = {"POSITION": X, "JOINTS_0": joints, "WEIGHTS_0": weights}
+    primitive = {
+        "attributes": attributes,
+        "indices": added(F.astype("<u2").ravel(), "SCALAR", 5123),
+        "targets": [{"POSITION": X}],
+    }
+    samplers = [{"input": times, "output": turns}, {"input": times, "output": times}, {"input": times, "output": turns}]
+    aims = [(1, "rotation"), (0, "weights"), (0, "rotation")]
+    channels = [{"sampler": k, "target": {"node": node, "path": path}} for k, (node, path) in enumerate(aims)]
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0, "skin": 0}, {}],
+        "meshes": [{"primitives": [primitive], "weights": [0]}], "skins": [{"joints": [1]}],
+        "animations": [{"name": "walk", "samplers": samplers, "channels": channels}],
+        "accessors": accessors, "bufferViews": views, "buffers": [{"byteLength": len(body)}],
+    }  # fmt: skip
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(body), b"BIN\0") + body
+    return [b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks]
+
+
+def _zip() -> list[bytes]:
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("walk/frame_1.off", _off()[0])
+        archive.writestr("walk/frame_2.off", _off()[0])
+    return [held.getvalue()]
 
 
 def _packed(save: Callable[..., None] = np.savez, **arrays: Any) -> bytes:
@@ -225,6 +272,13 @@ def _read_mesh(path: Path) -> Any:
     return read_mesh(path)
 
 
+def _read_animated(path: Path) -> Any:
+    from kinetree.tasks.numerics.input.animated import read_animated
+
+    frames = read_animated(path)
+    return [frames.mesh(t) for t in range(min(len(frames), 8))]
+
+
 def _read_volume(path: Path) -> Any:
     from kinetree.tasks.numerics.input.volumes import read_volume
 
@@ -282,6 +336,8 @@ PARSERS: dict[str, Parser] = {
     "off": Parser(_read_mesh, ".off", _off),
     "stl": Parser(_read_mesh, ".stl", _stl),
     "glb": Parser(_read_mesh, ".glb", _glb),
+    "animated-glb": Parser(_read_animated, ".glb", _animated_glb),
+    "zip": Parser(_read_animated, ".zip", _zip),
     "npz": Parser(_read_npz, ".npz", _npz),
     "volume-npy": Parser(_read_volume, ".npy", _npy),
     "volume-npz": Parser(_read_volume, ".npz", _volume_npz),
