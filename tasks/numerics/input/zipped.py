@@ -28,8 +28,9 @@ class Zipped:
         try:
             with zipfile.ZipFile(path) as archive:
                 there = [info for info in archive.infolist() if not info.is_dir()]
-        except (OSError, zipfile.BadZipFile, ValueError, RuntimeError) as error:
-            raise SourceError(f"{path}: cannot be read as a zip ({error}); it is damaged or something else") from None
+        except Exception as error:  # of many kinds, some of them undocumented
+            reason = f"{type(error).__name__}: {error}"
+            raise SourceError(f"{path}: cannot be read as a zip ({reason}); it is damaged or something else") from error
         shown = {PurePosixPath(i.filename): i for i in there if not _is_hidden(PurePosixPath(i.filename))}
         self.names = one_format(list(shown), self.name)
         self._members = [shown[name] for name in self.names]
@@ -51,8 +52,9 @@ class Zipped:
         try:
             with zipfile.ZipFile(self._path) as archive, archive.open(info) as file:
                 raw = file.read(info.file_size + 1)
-        except (OSError, zipfile.BadZipFile, ValueError, RuntimeError, NotImplementedError, EOFError) as error:
-            raise SourceError(f"{self.name}: {info.filename} cannot be unpacked ({error}); the archive is damaged") from None
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"
+            raise SourceError(f"{self.name}: {info.filename} cannot be unpacked ({reason}); the archive is damaged") from error
         return mesh_of(raw, f"{self.name}, {info.filename}", self.names[t].suffix)
 
 

@@ -44,6 +44,14 @@ def test_damaged_archives_and_members_are_refused_with_their_names(archive, tmp_
     archive.write_bytes(raw)
     with pytest.raises((SourceError, MeshError), match=r"walk\.zip.*frame_10\.off"):
         read_animated(archive).mesh(2)
+    with zipfile.ZipFile(archive) as file:
+        begin = file.getinfo("walk/frame_9.off").header_offset + 30 + len("walk/frame_9.off")
+    for at in range(begin, begin + 20):
+        damaged = bytearray(raw)
+        damaged[at] ^= 0xFF
+        archive.write_bytes(damaged)
+        with pytest.raises((SourceError, MeshError), match=r"walk\.zip.*frame_9\.off"):
+            read_animated(archive).mesh(1)
     (tmp_path / "none.zip").write_bytes(b"PK\x03\x04 cut short")
     with pytest.raises(SourceError, match=r"none\.zip: cannot be read as a zip"):
         read_animated(tmp_path / "none.zip")
