@@ -112,10 +112,10 @@ class Records:
     def since(self, epoch: float) -> set[str]:
         """The keys of the records that were written, or lie in a pack that was written, at a time or after it.
 
-        epoch : seconds since the epoch; nothing is asked for where it is infinite
+        epoch : seconds since the epoch; no place is asked where it is infinite, since all or none are after it
         """
         if math.isinf(epoch):
-            return set()
+            return {*self._single, *self._where} if epoch < 0 else set()
         packs = {name for name in self._packs if self.place.modified(_pack(name)) >= epoch}
         packed = {key for key, name in self._where.items() if name in packs and key not in self._single}
         return packed | {key for key in self._single if self.place.modified(_single(key)) >= epoch}

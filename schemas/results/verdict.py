@@ -15,7 +15,7 @@ class Finding(Params):
     """One thing that a person should know before relying on the result."""
 
     kind: Kind
-    """What it is about, in the body, in frames, or at joints.
+    """What it is about, in the body, in frames, or at joints, as said here.
 
     rigid       : nothing turns, so there are no joints
     unexplained : the skinned mesh is far from the input in most frames
@@ -28,7 +28,7 @@ class Finding(Params):
     short       : few frames
     still       : no joint turns enough
     unpaired    : joints found on one side alone
-    small       : joints that turn little
+    small       : joints that turn little.
     """
     severity: Literal["grave", "fault", "note"]
     """grave: do not use the result; fault: do not use what is named; note: good to know."""
