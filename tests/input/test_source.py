@@ -107,6 +107,15 @@ def test_damaged_member_of_a_zip_is_a_bad_frame_and_no_more(found, tmp_path):
     assert "the file is cut short" in bad.reason
 
 
+def test_clip_of_what_is_no_glb_is_refused(files, scans):
+    with pytest.raises(
+        SourceError, match=r"source\.clip wave: names an animation of one GLB, and .*scans is none; leave it out"
+    ):
+        source(SourceParams(input=str(scans), clip="wave"), files)
+    with pytest.raises(SourceError, match=r"and s3://bucket/scans is none"):
+        source(SourceParams(input="s3://bucket/scans", clip="wave"), files)
+
+
 def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_path):
     made = Made().moves("translation", TENTHS / 3, np.outer(TENTHS, [1, 2, 3]))
     made.moves("translation", [0, 2], [[0, 0, 0], [0, 0, 0.1]], name="wave")

@@ -98,7 +98,7 @@ def test_usd_is_a_sequence_to_begin_with(tmp_path):
     assert (len(frames), frames.fps) == (len(body.frames), body.fps)
     for t in range(len(frames)):
         X, F = frames.mesh(t)
-        assert np.abs(X - truth[t]).max() < 1e-3 * size  # rotations of half precision
+        assert np.abs(X - truth[t]).max() < 2e-6 * size
         np.testing.assert_array_equal(F, body.faces)
 
 

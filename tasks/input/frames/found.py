@@ -28,6 +28,8 @@ from kinetree.tasks.numerics.input.zipped import Zipped
 
 def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
+    if clip and not where.lower().endswith(".glb"):
+        raise SourceError(f"source.clip {clip}: names an animation of one GLB, and {where} is none; leave it out")
     if files.is_remote(where):
         return _in_bucket(where, files, clip)
     if "://" in where:
@@ -35,8 +37,6 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     path = written(Path(where))
     if path.suffix.lower() in ANIMATED and path.is_file():
         return _animated(path, clip, files)
-    if clip:
-        raise SourceError(f"source.clip {clip}: names an animation of one GLB, and {where} is none; leave it out")
     if _is_zarr(path):
         return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
     kind, found = input_kind(where)

@@ -64,12 +64,14 @@ class AnimatedUsd:
         if layer is None:
             raise SourceError(f"{path}: cannot be read as USD; the file is damaged or something else")
         if outside:
-            raise SourceError(
-                f"{path}: is composed of other files ({outside[0]!r}), which are not opened; flatten it (usdcat --flatten)"
-            )
+            raise SourceError(_composed(path, outside[0]))
         baked = pxr["Sdf"].Layer.CreateAnonymous()
         baked.timeCodesPerSecond = layer.timeCodesPerSecond  # else its time codes would be stretched
         stage = self._usd.Stage.Open(layer, baked)
+        own = str(path.resolve())
+        foreign = [used.realPath for used in stage.GetUsedLayers() if not (used.anonymous or used.realPath.startswith(own))]
+        if foreign:  # a package whose layers refer to what lies outside it
+            raise SourceError(_composed(path, foreign[0]))
         stage.SetEditTarget(stage.GetSessionLayer())
         return stage
 
@@ -98,6 +100,11 @@ class AnimatedUsd:
         if sum(map(len, V)) > _MOST_VERTICES:
             raise SourceError(f"{self.name}, frame {t}: more than {_MOST_VERTICES} vertices; no frame needs as many")
         return checked(np.concatenate(V), np.concatenate(F), f"{self.name}, frame {t}")
+
+
+def _composed(path: Path, other: str) -> str:
+    """What is said of a stage that needs other files."""
+    return f"{path}: is composed of other files ({other!r}), which are not read; flatten it (usdcat --flatten)"
 
 
 def _fans(counts: Any, corners: Any, name: str) -> Any:

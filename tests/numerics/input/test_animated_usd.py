@@ -10,7 +10,7 @@ from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.numerics.input.animated_usd import AnimatedUsd
 
 pytest.importorskip("pxr", reason="pip install 'kinetree[usd]' brings Pixar's library")
-from pxr import Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, UsdUtils
 
 V = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1]], dtype=np.float32)
 COUNTS, CORNERS = [4, 3, 3, 3, 3], [0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]
@@ -71,7 +71,7 @@ def test_other_units_are_brought_to_metres(stage):
 
 def test_stages_of_other_files_still_ones_and_damaged_ones_are_refused(stage, tmp_path):
     stage.GetRootLayer().subLayerPaths.append("/etc/passwd")
-    with pytest.raises(SourceError, match=r"composed of other files \('/etc/passwd'\), which are not opened; flatten it"):
+    with pytest.raises(SourceError, match=r"composed of other files \('/etc/passwd'\), which are not read; flatten it"):
         read(stage)
     stage.GetRootLayer().subLayerPaths.clear()
     stage.SetEndTimeCode(1)
@@ -83,8 +83,6 @@ def test_stages_of_other_files_still_ones_and_damaged_ones_are_refused(stage, tm
 
 
 def test_stage_that_changed_on_disk_is_read_anew_also_as_a_package(stage, tmp_path):
-    from pxr import Sdf, UsdUtils
-
     assert read(stage).mesh(0)[0][4, 2] == 2
     for suffix in (".usda", ".usdz"):
         mesh = UsdGeom.Mesh.Get(stage, "/moved/pyramid")
@@ -95,3 +93,14 @@ def test_stage_that_changed_on_disk_is_read_anew_also_as_a_package(stage, tmp_pa
         if suffix == ".usdz":
             assert UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(tmp_path / "pyramid.usda")), str(path))
         assert read_animated(path).mesh(0)[0][4, 2] == height
+
+
+def test_package_that_refers_outside_itself_is_refused(stage, tmp_path):
+    stage.Save()
+    inner = tmp_path / "inner.usda"
+    inner.write_text(f"#usda 1.0\n(\n    subLayers = [@{tmp_path / 'pyramid.usda'}@]\n)\n")
+    writer = Sdf.ZipFileWriter.CreateNew(str(tmp_path / "walk.usdz"))
+    writer.AddFile(str(inner), "inner.usda")
+    writer.Save()
+    with pytest.raises(SourceError, match=r"walk\.usdz: is composed of other files \('.*pyramid\.usda'\), which are not read"):
+        read_animated(tmp_path / "walk.usdz")
