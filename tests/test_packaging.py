@@ -25,6 +25,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(out), str(ROOT)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+    assert "absent from the `packages`" not in done.stdout + done.stderr  # files that a later setuptools would leave out
     return next(out.glob("*.whl"))  # build makes the wheel from the sdist it has just made
 
 
@@ -32,7 +33,7 @@ def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) ->
     held = set(zipfile.ZipFile(wheel).namelist())
     for folder in ("pipeline", "tasks", "schemas", "configs"):
         for file in (ROOT / folder).rglob("*"):
-            if file.suffix in (".py", ".yaml") and "__pycache__" not in file.parts:
+            if file.suffix in (".py", ".yaml", ".js", ".css", ".html", ".LICENSE") and "__pycache__" not in file.parts:
                 assert f"kinetree/{file.relative_to(ROOT)}" in held
     assert {name.split("/")[0] for name in held if ".dist-info" not in name} == {"kinetree"}
 

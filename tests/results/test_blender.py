@@ -1,17 +1,19 @@
-"""What Blender makes of skeleton.glb and of the FBX that its script writes."""
+"""What Blender makes of skeleton.glb, of the FBX that its script writes, and of skeleton.bvh."""
 
 import ast
 
 import numpy as np
 import pytest
-from results.blender_reader import opened, python, run
+from results.blender_reader import command, opened, run
 from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
+from kinetree.schemas.results.bvh import BvhParams
 from kinetree.schemas.results.glb import GlbParams
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.blender import blender
+from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.glb import glb
 
 FRAMES = [0, 5, 11]
@@ -47,18 +49,30 @@ def test_script_lies_beside_the_file_that_it_reads_and_knows_the_pace(body):
 
 @pytest.mark.parametrize("name", ["skeleton.glb", "skeleton.fbx"])
 def test_blender_has_joints_bones_and_skin_where_they_are_in_metres_and_upright(body, folder, name):
-    python()
+    command()
     if name == "skeleton.fbx":
         run(folder / "to_fbx.py")
     told = opened(folder / name, 10.0, FRAMES)
-    np.testing.assert_allclose(told["scale"], 1.0, rtol=1e-5)
+    np.testing.assert_allclose(list(told["matrices"].values()), np.tile(np.eye(4), (2, 1, 1)), atol=1e-5)
     truth = skinned(body) / 1000
     size = np.ptp(truth[0], axis=0).max()
     for t, heads, skin in zip(FRAMES, told["heads"], told["skin"], strict=True):
         expected = body.positions[t] / 1000
         np.testing.assert_allclose([heads[n] for n in body.names], expected, atol=2e-4 * size)
         np.testing.assert_allclose(skin, truth[t], atol=2e-4 * size)
+    assert told["frames"] == [0.0, 11.0]
     arm = np.linalg.norm(np.subtract(told["rest"]["hand"], told["rest"]["arm"]))
     assert arm == pytest.approx(body.lengths[body.names.index("hand")] / 1000, rel=1e-4)
     if name == "skeleton.glb":  # FBX knows joints and no bones
         assert told["lengths"]["arm"] == pytest.approx(arm, rel=1e-4)
+
+
+def test_blender_has_the_joints_of_the_bvh_where_they_are_in_metres_and_upright(body, tmp_path):
+    (tmp_path / "skeleton.bvh").write_bytes(views.files(bvh(body, plain(body), Z_UP, BvhParams()), ())["skeleton.bvh"])
+    told = opened(tmp_path / "skeleton.bvh", 10.0, [t + 1 for t in FRAMES])  # Blender begins with frame 1
+    np.testing.assert_allclose(told["matrices"]["skeleton"], np.eye(4), atol=1e-5)
+    assert told["frames"] == [1.0, 12.0]
+    assert {"trunk", "arm", "knee"} <= set(told["rest"])
+    for t, heads in zip(FRAMES, told["heads"], strict=True):
+        expected = {name: body.positions[t, j] / 1000 for j, name in enumerate(body.names)}
+        np.testing.assert_allclose(list(heads.values()), [expected[name] for name in heads], atol=2e-4 * np.ptp(body.vertices) / 1000)

@@ -23,6 +23,8 @@ from kinetree.tasks.numerics.input.formats import checked, suffixes
 
 _PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
 """Suffixes of files that must be unpacked before they can be read."""
+_WHOLE = {*suffixes(), ".zip", ".usd", ".usda", ".usdc", ".usdz", ".npz", ".npy", ".nrrd", ".tif", ".tiff", ".yaml", ".json"}
+"""Suffixes that only files have."""
 AnyPath = TypeVar("AnyPath", bound=PurePath)
 ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
 UNPACKED_BYTES = 256 * 2**20
@@ -277,4 +279,4 @@ def _not_a_folder(path: Path) -> str:
         missing = missing.parent
     like = get_close_matches(missing.name, sorted(p.name for p in missing.parent.iterdir()), n=1)
     hint = f"; there is {missing.parent / like[0]}" if like else f"; the nearest folder that exists is {missing.parent}"
-    return f"{path}: there is no such folder{hint}"
+    return f"{path}: there is no such {'file' if path.suffix.lower() in _WHOLE or advice({path.suffix}) else 'folder'}{hint}"

@@ -17,6 +17,13 @@ from pathlib import Path
 
 import bpy
 
+try:
+    import numpy
+except ImportError:
+    raise SystemExit("Blender imports glTF with numpy, which its Python has not; on Debian and Ubuntu: apt install python3-numpy")
+if "bool" not in vars(numpy):
+    numpy.bool = bool  # Blender 3.4 uses the old name, which numpy 1.24 to 1.26 do not have
+
 FPS = @FPS@
 here = Path(__file__).resolve().parent
 for model in sorted(here.glob("*.glb")):

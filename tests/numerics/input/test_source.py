@@ -95,6 +95,8 @@ def test_missing_folder_is_refused_with_the_name_it_may_have_meant(tmp_path):
     (tmp_path / "walking").mkdir()
     with pytest.raises(SourceError, match=r"walkin: there is no such folder; there is .*walking$"):
         mesh_files(tmp_path / "walkin")
+    with pytest.raises(SourceError, match=r"walk\.GLB: there is no such file; the nearest folder"):
+        mesh_files(tmp_path / "walk.GLB")
     with pytest.raises(SourceError, match=rf"no such folder; the nearest folder that exists is {tmp_path}$"):
         mesh_files(tmp_path / "xyz" / "deeper")
 
