@@ -28,7 +28,7 @@ kind = Path(path).suffix
 if kind == ".fbx":
     bpy.ops.import_scene.fbx(filepath=path, anim_offset=0.0)
 elif kind == ".bvh":
-    bpy.ops.import_anim.bvh(filepath=path, use_fps_scale=False, frame_start=0, axis_forward="-Z", axis_up="Y", global_scale=0.01)
+    bpy.ops.import_anim.bvh(filepath=path, frame_start=0, axis_forward="-Z", axis_up="Y", global_scale=0.01)
 else:
     bpy.ops.import_scene.gltf(filepath=path)
 armature = next(o for o in bpy.data.objects if o.type == "ARMATURE")

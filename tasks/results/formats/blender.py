@@ -20,7 +20,7 @@ import bpy
 try:
     import numpy
 except ImportError:
-    raise SystemExit("Blender imports glTF with numpy, which its Python has not; on Debian and Ubuntu: apt install python3-numpy")
+    raise SystemExit("Blender's Python lacks numpy, which its import of glTF needs; on Debian: apt install python3-numpy")
 if "bool" not in vars(numpy):
     numpy.bool = bool  # Blender 3.4 uses the old name, which numpy 1.24 to 1.26 do not have
 
