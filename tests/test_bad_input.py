@@ -194,31 +194,10 @@ def test_names_no_system_knows(refused, name):
 
 # ── frames that are none ────────────────────────────────────────────────────────────────────────────────────────────
 
-BAD_FRAMES = {
-    "empty file": ("", "the file is empty"),
-    "another format": ("hello", "does not begin with OFF"),
-    "cut short": (off()[:40], "the file is cut short"),
-    "no faces": (off(F=[]), "no faces, only 4 vertices; a surface is needed, not a point cloud"),
-    "no vertices": ("OFF\n0 0 0\n", "no vertices; the file is damaged or holds no mesh"),
-    "indices from 1": (off(F=F + 1), "but the mesh has 4 vertices; the file is damaged or its indices start at 1"),
-    "negative index": (off(F=[[0, 1, -3], [0, 1, 2]]), "is -3, but the mesh has 4 vertices"),
-    "index out of range": (off(F=[[0, 1, 9000]]), "vertex 2 of face 0 is 9000, but the mesh has 4 vertices"),
-    "huge index": (off(F=[[0, 1, 2**70]]), "the file is damaged"),
-    "NaN": (off(V=[[0, 0, "nan"], *V[1:]]), "1 of 4 vertices are NaN or infinite, the first is vertex 0"),
-    "infinity": (off(V=[*V[:3], [0, "inf", 0]]), "1 of 4 vertices are NaN or infinite, the first is vertex 3"),
-    "no area": (off(V=V * 0), "its faces have no area"),
-    "flat line": (off(V=V * [1, 0, 0]), "faces have no area"),
-    "claims a billion": ("OFF\n1000000000 1000000000 0\n0 0 0\n", "the file is cut short"),
-    "claims less than none": ("OFF\n-4 4 0\n0 0 0\n", "the file is cut short"),
-    "binary noise": (bytes(range(256)) * 9, "does not begin with OFF"),
-}
 
-
-@pytest.mark.parametrize("name", BAD_FRAMES)
-def test_bad_frame_is_left_out_alone(left_out, scans, name):
-    content, told = BAD_FRAMES[name]
-    (scans / "1.off").write_bytes(content if isinstance(content, bytes) else content.encode())
-    assert told in left_out()
+def test_bad_frame_is_left_out_alone(left_out, scans):
+    (scans / "1.off").write_text(off()[:40])
+    assert "the file is cut short" in left_out()
 
 
 def test_bad_frames_beyond_the_share_or_against_the_users_word_are_refused(refused, scans):

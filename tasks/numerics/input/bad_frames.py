@@ -24,6 +24,9 @@ class BadFrameSettings(NamedTuple):
     """Factor between a frame's number of vertices and the median."""
     pieces: int = 6
     """Pieces of 5 % of the area beyond the median number: the surface is torn."""
+    second: float = 1.5
+    """Factor between the area of a frame with more large pieces than most and the median: another body is in it. Poses change
+    the area of one body by 1.08 at most, and a limb that comes off does not add to it."""
     distance: float = 4.0
     """Sizes and usual steps between a frame's centre and the median of the frames around it."""
     window: int = 3
@@ -41,7 +44,8 @@ class BadFrameSettings(NamedTuple):
 class FrameMeasures(NamedTuple):
     """What one frame's surface is like.
 
-    Area length², size length, centre (xyz), vertices, pieces of 5 % of the area, volume length³ or 0 where the surface is open.
+    Area length², infinite where no number holds it; size length; centre (xyz); vertices; pieces of 5 % of the area; volume
+    length³ or 0 where the surface is open.
     """
 
     area: float
@@ -58,8 +62,8 @@ def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
     V, F : (vertex, xyz) mesh unit · (face, corner)
     """
     tail = BadFrameSettings().tail
-    scale = float(np.abs(V).max()) or 1.0
-    X = V / scale
+    scale = float(np.abs(V[F]).max()) or 1.0
+    X = np.clip(V / scale, -1.0, 1.0)  # a stray vertex that no face has may lie anywhere
     areas = face_areas(X, F)
     total = float(areas.sum())
     weight = areas if total > 0 else np.ones(len(F))
@@ -72,8 +76,10 @@ def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
     _, piece = connected_components(links, directed=False)
     shares = np.bincount(piece[G[:, 0]], weight) / weight.sum()
     x, y, z = map(float, mid)
-    volume = _volume(X, F, total) * scale**3
-    return FrameMeasures(total * scale**2, float(np.linalg.norm(high - low)), (x, y, z), n, int((shares >= tail).sum()), volume)
+    with np.errstate(over="ignore"):
+        area, volume = (float(total * np.float64(scale) ** 2), float(_volume(X, F, total) * np.float64(scale) ** 3))
+        size = float(np.linalg.norm(high - low))
+    return FrameMeasures(area, size, (x, y, z), n, int((shares >= tail).sum()), volume if np.isfinite(volume) else 0.0)
 
 
 def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSettings | None = None) -> dict[int, str]:
@@ -84,7 +90,8 @@ def bad_frames(measured: Mapping[int, FrameMeasures | str], settings: BadFrameSe
     limit = settings or BadFrameSettings()
     bad: dict[int, str] = {t: m for t, m in measured.items() if isinstance(m, str)}
     surfaces = {t: m for t, m in measured.items() if not isinstance(m, str)}
-    bad |= {t: "its faces have no area; export the frame again" for t, m in surfaces.items() if not 0 < m.area < np.inf}
+    bad |= {t: "its faces have no area; export the frame again" for t, m in surfaces.items() if m.area <= 0}
+    bad |= {t: "its coordinates are so large that no number holds its area" for t, m in surfaces.items() if m.area == np.inf}
     good = {t: m for t, m in surfaces.items() if t not in bad}
     if len(good) < limit.least:
         return dict(sorted(bad.items()))
@@ -157,9 +164,13 @@ def _of_another_size(good: Mapping[int, FrameMeasures], limit: BadFrameSettings)
                 have = {"size": "size is", "area": "area is", "vertices": "number of vertices is"}[name]
                 bad.setdefault(t, f"its {have} {value:.4g}, in the median of all frames {median:.4g}{hint}")
     usual = int(np.median([m.pieces for m in good.values()]))
+    area = float(np.median([m.area for m in good.values()]))
     for t, m in good.items():
         if m.pieces > usual + limit.pieces:
             bad.setdefault(t, f"its surface is torn into {m.pieces} large pieces, that of most frames has {usual}")
+        elif m.pieces > usual and m.area > limit.second * area:
+            more = f"{m.pieces} large pieces and {m.area / area:.3g} times the area, most frames have {usual}"
+            bad.setdefault(t, f"another body is in it: it has {more}")
     return bad
 
 
@@ -169,7 +180,8 @@ def _elsewhere(good: Mapping[int, FrameMeasures], limit: BadFrameSettings) -> di
     if len(C) < limit.least:
         return {}
     size = float(np.median([m.size for m in good.values()]))
-    allowed = limit.distance * (size + float(np.median(np.linalg.norm(np.diff(C, axis=0), axis=1))))
+    steps = np.linalg.norm(np.diff(C, axis=0), axis=1)
+    allowed = limit.distance * (size + float(np.quantile(steps, 0.5, method="lower")))  # one bad frame spoils two steps
     bad = {}
     for i, t in enumerate(good):
         around = np.median(C[max(0, i - limit.window) : i + limit.window + 1], axis=0)

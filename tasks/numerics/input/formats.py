@@ -24,6 +24,7 @@ from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong
 _MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
 _COARSEST = 1e-3
 """Share of the body's diagonal by which coordinates may go up in steps; such steps are noise of 0.03 %. Not varied so far."""
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _ENCODED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization"}
 
 
@@ -57,7 +58,7 @@ def mesh_of(raw: bytes, name: str, suffix: str) -> tuple[Floats, Faces]:
     try:
         if not raw:
             raise MeshError("the file is empty")
-        V, F = _READERS[suffix.lower()](raw)
+        V, F = _READERS[suffix.lower()](raw.removeprefix(_BYTE_ORDER_MARK))
         V = np.asarray(V, dtype=np.float64).reshape(len(V), 3)
     except MeshError as error:
         raise MeshError(f"{name}: {error}") from None

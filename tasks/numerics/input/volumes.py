@@ -10,6 +10,7 @@ Nothing is unpickled, and every size a file claims is held against a bound befor
 """
 
 import logging
+import math
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -185,6 +186,7 @@ def _tiff(path: Path) -> tuple[Any, Any, Any]:
     with tifffile.TiffFile(path) as file:
         _refuse_circle(file, path)
         _refuse_large(tuple(file.series[0].shape), path)
+        _refuse_missing_strips(file.series[0], path)
         pages = file.series[0].asarray()
     return np.ascontiguousarray(pages.transpose()), np.zeros(3), 1.0
 
@@ -201,6 +203,16 @@ def _refuse_circle(file: tifffile.TiffFile, path: Path) -> None:
             raise HullError(f"{path}: its pages follow each other in a circle; the file is damaged")
         seen.add(offset)
     raise HullError(f"{path}: more than {_MOST_PAGES} pages; no volume needs as many")
+
+
+def _refuse_missing_strips(series: tifffile.TiffPageSeries, path: Path) -> None:
+    """Refuses pages that claim more strips or tiles than are listed, each of which tifffile would fill with zeros in turn."""
+    for k, page in enumerate(series.pages):
+        if page is None:
+            continue
+        listed, claimed = len(page.dataoffsets), math.prod(page.chunked)
+        if listed < claimed:
+            raise HullError(f"{path}: page {k} claims {claimed} strips or tiles and lists {listed}; the file is damaged")
 
 
 _READERS: dict[str, Callable[[Path], tuple[Any, Any, Any]]] = {

@@ -1,5 +1,7 @@
 """The same volume in every format is the same grid; what is none is refused before it takes memory."""
 
+import struct
+
 import nrrd
 import numpy as np
 import pytest
@@ -130,4 +132,16 @@ def test_tiff_whose_pages_go_round_in_a_circle_is_refused(tmp_path):
     raw[last + 2 + 12 * tags : last + 6 + 12 * tags] = first.to_bytes(4, "little")
     path.write_bytes(raw)
     with pytest.raises(HullError, match=r"frame\.tif: its pages follow each other in a circle; the file is damaged"):
+        read_volume(path)
+
+
+def test_tiff_that_claims_more_strips_than_it_lists_is_refused_at_once(tmp_path):
+    path = tmp_path / "frame.tif"
+    tifffile.imwrite(path, np.zeros((2, 2, 2), np.uint8), photometric="minisblack", metadata=None)
+    with tifffile.TiffFile(path) as file:
+        at = file.pages[0].tags["ImageLength"].valueoffset
+    raw = bytearray(path.read_bytes())
+    raw[at : at + 4] = struct.pack("<I", 2**28)
+    path.write_bytes(raw)
+    with pytest.raises(HullError, match=r"page 0 claims 134217728 strips or tiles and lists 1; the file is damaged"):
         read_volume(path)
