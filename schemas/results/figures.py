@@ -1,7 +1,7 @@
 """Pictures for the report, rendered; every task that draws some leaves them in this form."""
 
 import itertools
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,8 @@ class Picture(Params):
 
     caption: str
     """What it shows."""
-    kind: Literal["png", "svg"]
-    """png for surfaces, svg for lines."""
+    alternative: str
+    """What it shows of this run, for those who do not see it."""
 
 
 class Figures(Artifact):

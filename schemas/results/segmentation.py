@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinetree.schemas.array import Array, Artifact, Ints
-from kinetree.schemas.dims import CORNER, FACE, FRAME, INPUT_VERTEX, VERTEX, XYZ
+from kinetree.schemas.dims import CORNER, FACE, FRAME, INPUT_VERTEX, JOINT, RGB, VERTEX, XYZ
 
 
 class Segmentation(Artifact):
@@ -35,5 +35,7 @@ class Segmentation(Artifact):
     """Part of every vertex of the reference mesh, −1 where the surface is not rigid."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
     """Faces of the reference mesh, the same in every frame."""
+    colour: Annotated[NDArray[np.uint8], Array("uint8", JOINT, RGB)]
+    """Colour of every part in all files, pictures and pages, sRGB."""
     aligned: Annotated[NDArray[np.float32], Array("float32", FRAME, VERTEX, XYZ, unit="length")]
     """The reference mesh in every frame."""

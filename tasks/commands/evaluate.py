@@ -46,7 +46,7 @@ def evaluate(
         raise ConfigError(f"--plot {plot}: pictures end in {', '.join(FORMATS)}")
     evaluation = evaluated(run, truth, body, sets)
     if plot is not None:
-        write_figure(evaluation_figure(evaluation), plot)
+        write_figure(evaluation_figure(evaluation, None), plot)
     if as_json:
         print_json(json.loads(evaluation_files(evaluation, ())["evaluation.json"]))
         return

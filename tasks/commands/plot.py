@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from kinetree.tasks.results.plots.drawing import Fetch
 
 
+STYLES = ("screen", "paper")
 WHAT = (
     "alignment", "angles", "clusters", "coherence", "cones", "confidence", "correlation", "description", "elimination",
     "endoskeleton", "errors", "lengths", "merging", "mu", "skeleton", "structure", "tree",
@@ -29,8 +30,13 @@ def plot(
     up: Annotated[
         str | None, typer.Option("--up", help="What points up: x, y, z, -x, -y or -z; default: as the run has it.")
     ] = None,
+    style: Annotated[
+        str, typer.Option("--style", help="screen, or paper: as wide as a column or a page, no headings, safe in grey.")
+    ] = "screen",
 ) -> None:
     """Draw a result of a run: curves, surfaces, the tree, errors."""
+    if style not in STYLES:
+        raise ConfigError(f"--style {style}: write {' or '.join(STYLES)}")
     from kinetree.schemas.paper_2014.interval_reference import IntervalReference
     from kinetree.schemas.structure.skeleton import Skeleton
     from kinetree.tasks.results.plots import PLOTS_OF_METHOD, draw
@@ -45,7 +51,7 @@ def plot(
     def fetch(name: str, **index: int) -> Any:
         return there.artifact(names.get(name) or name, **index)
 
-    draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method])
+    draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method], style)  # type: ignore[arg-type]
     typer.echo(str(path))
 
 

@@ -9,10 +9,11 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.registration.projection import Projection
 from kinetree.tasks.reproduction.sequence import PRESETS, Run, Sequence
 from kinetree.tasks.reproduction.table import Table
+from kinetree.tasks.results.formats.colours import pale_part_colours
 from kinetree.tasks.results.formats.labels import input_labels
 from kinetree.tasks.results.formats.rig import skinned
 from kinetree.tasks.results.plots.drawing import blank, surface, view
-from kinetree.tasks.results.plots.structure import bones, label_colours, label_shades, part_colours
+from kinetree.tasks.results.plots.structure import bones, label_colours, part_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +63,7 @@ def _captured(axes: "Axes", run: Run, frame: int, axis: Floats) -> None:
     label = np.full(len(mesh.vertices), -1, np.int32)
     known = mesh.vertex_of_input >= 0
     label[mesh.vertex_of_input[known]] = of_input[known]
-    surface(axes, mesh.vertices @ axis, mesh.faces, label_colours(label, mesh.faces, label_shades(body.label, body.faces)))
+    surface(axes, mesh.vertices @ axis, mesh.faces, label_colours(label, mesh.faces, pale_part_colours(body.label, body.faces)))
 
 
 def _counts(run: Run) -> tuple[int, int, int, int]:

@@ -10,6 +10,7 @@ from kinetree.schemas.results.alignment_figures import AlignmentFigures
 from kinetree.schemas.results.excerpt import Excerpt
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.results.page.alternatives import alignment_words
 from kinetree.tasks.results.page.chapters import CaptionedFigure, rendered_figures
 from kinetree.tasks.results.page.skin import skin_distance
 from kinetree.tasks.results.plots.alignment import alignment as alignment_figure
@@ -30,13 +31,13 @@ def alignment_figures(
         return skeleton if frame is None else alignment[frame]
 
     caption = "Distance of the aligned mesh from every frame, over time and on the surface."
-    figures = (
-        []
-        if connectivity.fixed
-        else [CaptionedFigure(alignment_figure(fetch, list(excerpt.pictured), up_direction.axis), caption, vector=False)]
-    )
+    reference = reference_frame(skeleton, alignment)
+    figures = []
+    if not connectivity.fixed:
+        figure = alignment_figure(fetch, list(excerpt.pictured), up_direction.axis)
+        figures = [CaptionedFigure(figure, caption, alignment_words(skeleton, alignment, reference))]
     return AlignmentFigures(
-        reference=reference_frame(skeleton, alignment),
+        reference=reference,
         skin_distance=skin_distance(skeleton, alignment),
         **rendered_figures(figures),
     )

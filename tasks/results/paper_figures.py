@@ -42,25 +42,33 @@ def paper_figures(
             return of_cone[interval, cone]
         return interval_references[interval] if name == "interval_reference" else artifacts[name]
 
+    size = interval_references[cylinders.interval].size
     frames, up = [interval_references[cylinders.interval].frame], up_direction.axis
     annulus_figures = [
         CaptionedFigure(
             cones(fetch, frames, up),
             "The annuli of every cone, black beyond it; last, the areas they become: white is not rigid.",
-            vector=False,
+            f"{len(cone_consistency.annulus)} cones on the body; {int(cylinders.rigid.sum())} rigid areas and"
+            f" {int((~cylinders.rigid).sum())} that are not.",
         )
     ]
     if len(cone_consistency.annulus):
         caption = "Merge-error of each annulus with the cluster before it (Eq. 12), and the choice of the threshold."
-        annulus_figures.append(CaptionedFigure(merging(fetch, frames, up), caption))
+        annulus_figures.append(
+            CaptionedFigure(merging(fetch, frames, up), caption, f"The threshold that was chosen is {integration.theta:.3g}.")
+        )
     bone_figures = [
         CaptionedFigure(
             structure(fetch, frames, up),
             "Bones between non-rigid areas, and the tree without redundant bones.",
-            vector=False,
+            f"{len(bones.bone)} bones, {int((~bones.in_tree).sum())} of them redundant;"
+            f" {skeleton.kinds.count('joint')} joints in the tree.",
         ),
         CaptionedFigure(
-            lengths(fetch, frames, up), "Variation of the lengths of bones before they are fixed; afterwards there is none."
+            lengths(fetch, frames, up),
+            "Variation of the lengths of bones before they are fixed; afterwards there is none.",
+            f"Bars of {int(np.isfinite(bones.variation).sum())} bones; the widest is"
+            f" {100 * np.nanmax(bones.variation, initial=0.0) / size:.2g} % of the root of the area.",
         ),
     ]
     words = (*cone_consistency_remarks(cone_consistency), *integration_remarks(integration))

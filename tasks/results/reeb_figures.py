@@ -7,6 +7,7 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals
 from kinetree.schemas.paper_2009.contact_kinds import ContactKinds
 from kinetree.schemas.paper_2009.graph_motion import GraphMotion
@@ -32,13 +33,14 @@ def reeb_figures(
     contact_kinds: ContactKinds,
     kinematic_tree: KinematicTree,
     up_direction: UpDirection,
+    sequence: Sequence,
     reeb_graph: Mapping[int, ReebGraph],
     perg: Mapping[int, Perg],
     graph_motion: Mapping[int, GraphMotion],
     mesh: Mapping[int, Mesh],
 ) -> StructureFigures:
     """Draws graphs inside the body, coherent intervals, clusters and the structure in some frames (2009, Figs. 1 to 4, 6)."""
-    of_sequence = {"integrated_structure": integrated_structure, "coherent_intervals": coherent_intervals}
+    of_sequence = {"integrated_structure": integrated_structure, "coherent_intervals": coherent_intervals, "sequence": sequence}
     by_frame = {"reeb_graph": reeb_graph, "perg": perg, "graph_motion": graph_motion, "mesh": mesh}
 
     def fetch(name: str, frame: int | None = None) -> Any:
@@ -48,16 +50,26 @@ def reeb_figures(
     frames = [coherent_intervals.frames[t] for t in evenly_spread(len(coherent_intervals.frames), SHOWN)]
     graphs = [
         CaptionedFigure(
-            endoskeleton(fetch, [], up), "The Reeb graph of μ, and the graph inside the body (2009, Fig. 1).", vector=False
+            endoskeleton(fetch, [], up),
+            "The Reeb graph of μ, and the graph inside the body (2009, Fig. 1).",
+            _nodes(perg[integrated_structure.frame]),
         ),
-        CaptionedFigure(coherence(fetch, [], up), "Ends and loops of every frame's graph; coherent intervals are shaded."),
+        CaptionedFigure(
+            coherence(fetch, [], up),
+            "Ends and loops of every frame's graph; coherent intervals are shaded.",
+            _coherent(coherent_intervals),
+        ),
     ]
     structure = [
         CaptionedFigure(
-            clusters(fetch, [], up), "Correlation of velocities (Eq. 5), and clusters that move as one (Fig. 2).", vector=False
+            clusters(fetch, [], up),
+            "Correlation of velocities (Eq. 5), and clusters that move as one (Fig. 2).",
+            _clusters(integrated_structure),
         ),
         CaptionedFigure(
-            description(fetch, frames, up), "The integrated structure in some frames (Figs. 4 and 6).", vector=False
+            description(fetch, frames, up),
+            "The integrated structure in some frames (Figs. 4 and 6).",
+            f"The structure over the body in frames {', '.join(map(str, frames))}.",
         ),
     ]
     variation = kinematic_tree.length_variation
@@ -69,3 +81,19 @@ def reeb_figures(
         ],
         variation if variation.any() else np.full(len(variation), np.nan),
     )
+
+
+def _nodes(inner: Perg) -> str:
+    """What the picture of the graphs shows, in words."""
+    return f"The graph inside the body has {len(inner.node)} nodes and {len(inner.edge)} edges."
+
+
+def _coherent(runs: CoherentIntervals) -> str:
+    """What the picture of the intervals shows, in words."""
+    spans = ", ".join(f"{runs.frames[int(a)]}–{runs.frames[int(b)]}" for a, b in zip(runs.begin, runs.end, strict=True))
+    return f"Between {int(runs.ends.min())} and {int(runs.ends.max())} ends; coherent in frames {spans or 'nowhere'}."
+
+
+def _clusters(model: IntegratedStructure) -> str:
+    """What the picture of the clusters shows, in words."""
+    return f"{len(model.node)} nodes in {len(np.unique(model.cluster))} clusters that move as one."

@@ -26,6 +26,7 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.verdict import VerdictSettings
+from kinetree.tasks.results.page.alternatives import evaluation_words
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.scene import Limits, Trust, scene
@@ -69,6 +70,7 @@ def report(
     share = VerdictSettings().wrong
     trust = Trust(verdict.labels, error, share * size, share, verdict.state)
     has_truth = evaluation.summary is not None
+    label = dict(zip(verdict.joints, verdict.labels, strict=True))
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
@@ -81,7 +83,17 @@ def report(
         sections=[
             Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures)),
             Section("structure", "Parts, tree and angles", structure),
-            *([Section("truth", "Comparison with the truth", _comparison(evaluation))] if has_truth else []),
+            *(
+                [
+                    Section(
+                        "truth",
+                        "Comparison with the truth",
+                        _comparison(evaluation, sequence.fps, label),
+                    )
+                ]
+                if has_truth
+                else []
+            ),
             *sections(structure_figures),
             Section("intervals", "Topology over time", pictures(topology_figures), is_detail=True),
             Section("alignment", "Alignment", aligned, is_detail=True),
@@ -128,13 +140,13 @@ def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> st
     return "all" if len(confident) == len(means) else ", ".join(confident) or "none"
 
 
-def _comparison(evaluation: Evaluation) -> str:
+def _comparison(evaluation: Evaluation, fps: float | None, label: Mapping[str, str]) -> str:
     """A picture of the errors and a table of the scored joints."""
     rows = [
         (
             joint.name,
             "–" if joint.turns is None else f"{joint.turns:.0f}",
-            joint.found or "missing",
+            "missing" if joint.found is None else label.get(joint.found, joint.found),
             "–" if joint.mean is None else f"{joint.mean:.4g} ± {joint.deviation:.2g}",
             "–" if joint.percent is None else f"{joint.percent:.2f}",
         )
@@ -144,7 +156,7 @@ def _comparison(evaluation: Evaluation) -> str:
     remarks = "".join(f"<p>{escape(text)}</p>" for text in evaluation_remarks(evaluation))
     head = ("true joint", "range, °", "found as", evaluation.unit or "length", "% of the height")
     caption = "Error of every joint over time with its mean and deviation (2014, Fig. 16); below, the measures of 2009."
-    return remarks + picture(evaluation_figure(evaluation), caption) + table(head, rows)
+    return remarks + picture(evaluation_figure(evaluation, fps), caption, evaluation_words(evaluation)) + table(head, rows)
 
 
 def _facts(

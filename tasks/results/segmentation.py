@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.segmentation import Segmentation
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.results.formats.colours import part_colours
 from kinetree.tasks.results.formats.labels import input_labels
 from kinetree.tasks.results.formats.rig import skinned
 
@@ -33,5 +35,14 @@ def segmentation(skeleton: Skeleton, alignment: Mapping[int, Alignment], project
         label=np.concatenate(labels),
         part=skeleton.label,
         faces=skeleton.faces,
+        colour=_colours(skeleton),
         aligned=aligned,
     )
+
+
+def _colours(skeleton: Skeleton) -> NDArray[np.uint8]:
+    """(joint, rgb) colour of the part of every joint; white where it has none."""
+    known = part_colours(skeleton.label, skeleton.faces)
+    rows = np.full(len(skeleton.names), len(known) - 1)
+    rows[: len(known) - 1] = np.arange(len(known) - 1)
+    return np.asarray(known[rows], np.uint8)

@@ -73,8 +73,10 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     zero, one = np.zeros(count), np.ones(count)
     return {
         "skeleton": skeleton,
+        "joint_names": plain(skeleton),
         "structure_figures": structure_figures(
-            parts_of(skeleton), tree_of(skeleton), Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit), UP
+            parts_of(skeleton), tree_of(skeleton), plain(skeleton),
+            Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit), UP,
         ),
         "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
@@ -114,17 +116,16 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
         mesh, projection = all_of_it["mesh"][frame], all_of_it["projection"][frame]
         coarse[frame] = coarse_mesh(mesh=mesh, projection=projection, previous=before, params=CoarseMeshParams())
     all_of_it["coarse_mesh"] = tuple(coarse.values())
-    topology = some("excerpt", "correlation", "intervals", "leaves", "up_direction", "mesh", "geodesics")
+    topology = some("excerpt", "sequence", "correlation", "intervals", "leaves", "up_direction", "mesh", "geodesics")
     aligned = some("skeleton", "excerpt", "connectivity", "up_direction", "alignment")
     all_of_it["topology_figures"] = topology_figures(**topology)
     all_of_it["alignment_figures"] = alignment_figures(**aligned)
-    all_of_it["joint_names"] = changes.get("joint_names", plain(all_of_it["skeleton"]))
     all_of_it["surface_error"] = {
         frame: surface_error(**some("skeleton"), mesh=mesh, index=(frame,)) for frame, mesh in all_of_it["mesh"].items()
     }
     all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error"))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
-    all_of_it["motion_figures"] = motion_figures(**some("skeleton"))
+    all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))
     return {argument.name: all_of_it[argument.name] for argument in report.arguments}
 
 

@@ -1,5 +1,6 @@
 """Pictures of the joints name them all."""
 
+from results.plain_names import plain
 from results.rigged_bodies import spider
 
 from kinetree.tasks.results.motion_figures import motion_figures
@@ -7,7 +8,7 @@ from kinetree.tasks.results.motion_figures import motion_figures
 
 def test_every_picture_names_the_joints() -> None:
     body = spider()
-    files = motion_figures(skeleton=body).files()
+    files = motion_figures(body, plain(body)).files()
     assert len(files) == 3
     for name in (name for name, kind in zip(body.names, body.kinds, strict=True) if kind == "joint"):
         assert all(name.encode() in file for file in files), name

@@ -7,11 +7,8 @@ from kinetree.schemas.results.excerpt import ExcerptParams
 
 def test_correlation_is_lines_and_mu_a_surface() -> None:
     figures = page_artifacts(ExcerptParams(views=1))["topology_figures"]
-    assert [picture.kind for picture in figures.pictures] == ["svg", "png"]
-    curve, surface = figures.files()
-    assert curve.startswith(b"<?xml")
-    assert surface.startswith(b"\x89PNG")
-    assert len(curve) + len(surface) == len(figures.content)
+    assert [b"<image" in file for file in figures.files()] == [False, True]
+    assert sum(map(len, figures.files())) == len(figures.content)
 
 
 def test_more_views_make_another_picture_of_mu_and_the_same_curve() -> None:

@@ -19,17 +19,34 @@ SURFACE_LEAF = GREEN
 """Of leaves where they are seen on the surface."""
 NOT_RIGID = "#FFFFFF"
 """Of surface that is not rigid."""
+UNDER_BONES = 0.5
+"""Share of white in the colours of parts that a skeleton is drawn over."""
+
+
+def part_palette(label: Ints, faces: Ints) -> list[str]:
+    """The colour of every part, for files, pictures and pages alike; parts that touch have different ones.
+
+    label : (vertex,) part, −1 where the surface is not rigid
+    faces : (face, corner)
+    """
+    return [PARTS[c] for c in part_colouring(np.asarray(label, np.int64), faces, len(PARTS))]
 
 
 def part_colours(label: Ints, faces: Ints) -> NDArray[np.uint8]:
-    """Colours of all parts; parts that touch have different ones.
+    """The same as numbers.
 
-    label   : (vertex,) part, −1 where the surface is not rigid
-    faces   : (face, corner)
     returns : (part + 1, rgb) sRGB, 0 to 255; the last row is for label −1
     """
-    chosen = part_colouring(np.asarray(label), faces, len(PARTS))
-    return np.array([_rgb(PARTS[c]) for c in chosen] + [_rgb(NOT_RIGID)], np.uint8)
+    return np.array([_rgb(c) for c in (*part_palette(label, faces), NOT_RIGID)], np.uint8)
+
+
+def pale_part_colours(label: Ints, faces: Ints) -> Floats:
+    """The same colours mixed with white, so that a skeleton is seen over them.
+
+    returns : (part + 1, rgb) sRGB, 0 to 1; the last row is for label −1
+    """
+    own = part_colours(label, faces).astype(np.float64) / 255.0
+    return (1.0 - UNDER_BONES) * own + UNDER_BONES
 
 
 def linear(srgb: NDArray[np.uint8]) -> Floats:

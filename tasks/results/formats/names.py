@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from kinetree.schemas.structure.joint_names import JointNames
 
-SIDES = {"_l": "left ", "_r": "right "}
+SIDES = {"_l": "left", "_r": "right"}
 NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_]")
 
 
@@ -30,7 +30,11 @@ def readable_names(joint_names: JointNames) -> tuple[str, ...]:
     return tuple(_in_words(of) if of else name for of, name in zip(joint_names.anatomy, joint_names.names, strict=True))
 
 
-def _in_words(anatomy: str) -> str:
-    """Station and side, such as hind_knee_l, as words."""
+def station_and_side(anatomy: str) -> tuple[str, str]:
+    """Words for a place of the body and its side, such as hind knee and left for hind_knee_l; the side may be empty."""
     side = SIDES.get(anatomy[-2:], "")
-    return side + (anatomy[:-2] if side else anatomy).replace("_", " ")
+    return (anatomy[:-2] if side else anatomy).replace("_", " "), side
+
+
+def _in_words(anatomy: str) -> str:
+    return " ".join(reversed(station_and_side(anatomy))).strip()

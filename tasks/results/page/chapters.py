@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CaptionedFigure:
-    """A figure with its caption; `vector` is true for lines and false for surfaces."""
+    """A figure with its caption, and with what it shows of this run for those who do not see it."""
 
     figure: "Figure"
     caption: str
-    vector: bool = True
+    alternative: str
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class FigureChapter:
 
 def rendered_figures(figures: Sequence[CaptionedFigure]) -> dict[str, Any]:
     """Renders some figures and returns the fields of `Figures`."""
-    files = [rendered(d.figure, vector=d.vector) for d in figures]
+    files = [rendered(d.figure) for d in figures]
     return {
-        "pictures": tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in figures),
+        "pictures": tuple(Picture(caption=d.caption, alternative=d.alternative) for d in figures),
         "end": np.cumsum([len(f) for f in files], dtype=np.int64),
         "content": np.frombuffer(b"".join(files), dtype=np.uint8),
     }
@@ -47,7 +47,9 @@ def rendered_figures(figures: Sequence[CaptionedFigure]) -> dict[str, Any]:
 
 def pictures(figures: Figures) -> str:
     """The pictures as HTML that contains their files."""
-    return "".join(embedded(content, p.caption, p.kind) for content, p in zip(figures.files(), figures.pictures, strict=True))
+    return "".join(
+        embedded(content, p.caption, p.alternative) for content, p in zip(figures.files(), figures.pictures, strict=True)
+    )
 
 
 def rendered_chapters(chapters: Sequence[FigureChapter], length_variation: Floats) -> StructureFigures:
@@ -55,14 +57,14 @@ def rendered_chapters(chapters: Sequence[FigureChapter], length_variation: Float
 
     length_variation : (joint,) %, see `StructureFigures`
     """
-    files = [rendered(d.figure, vector=d.vector) for chapter in chapters for d in chapter.figures]
+    files = [rendered(d.figure) for chapter in chapters for d in chapter.figures]
     return StructureFigures(
         chapters=tuple(
             Chapter(
                 anchor=c.anchor,
                 heading=c.heading,
                 paragraphs=tuple(c.paragraphs),
-                pictures=tuple(Picture(caption=d.caption, kind="svg" if d.vector else "png") for d in c.figures),
+                pictures=tuple(Picture(caption=d.caption, alternative=d.alternative) for d in c.figures),
             )
             for c in chapters
         ),
@@ -77,7 +79,7 @@ def sections(figures: StructureFigures) -> list[Section]:
     laid_out = []
     for chapter in figures.chapters:
         rows = zip(figures.picture_files(chapter), chapter.pictures, strict=True)
-        body = "".join(embedded(content, p.caption, p.kind) for content, p in rows)
+        body = "".join(embedded(content, p.caption, p.alternative) for content, p in rows)
         body += "".join(f"<p>{escape(text)}</p>" for text in chapter.paragraphs)
         laid_out.append(Section(chapter.anchor, chapter.heading, body, is_detail=True))
     return laid_out

@@ -5,26 +5,24 @@ import hashlib
 import io
 import json
 import re
-import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from kinetree.schemas.results.report import RUN
 from kinetree.schemas.results.verdict import Level
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, SURFACE_LEAF
 from kinetree.tasks.results.page.scene import Scene
 from kinetree.tasks.results.plots.drawing import verbatim
+from kinetree.tasks.results.plots.style import PAGE_DOTS, following_the_page, rendering
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
 """Beside the words of a verdict."""
-_RENDERING = threading.Lock()
-"""matplotlib's settings are those of the process: one figure at a time is written with settings of its own."""
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
 
@@ -167,29 +165,23 @@ def _pick(name: object) -> str:
     return f'<td><button type="button" class="pick" aria-pressed="false">{escape(_text(name))}</button></td>'
 
 
-def picture(figure: "Figure", caption: str, *, vector: bool = True) -> str:
-    """A figure as HTML that contains the file: SVG for lines, PNG for surfaces."""
-    return embedded(rendered(figure, vector=vector), caption, "svg" if vector else "png")
+def picture(figure: "Figure", caption: str, alternative: str) -> str:
+    """A figure as HTML that contains its file."""
+    return embedded(rendered(figure), caption, alternative)
 
 
-def rendered(figure: "Figure", *, vector: bool) -> bytes:
-    """A figure as the bytes of an SVG or PNG file; equal figures give equal bytes."""
-    from matplotlib import rc_context
-
+def rendered(figure: "Figure") -> bytes:
+    """A figure as the bytes of an SVG file, its surfaces as pixels; equal figures give equal bytes."""
     file = io.BytesIO()
-    with _RENDERING, rc_context({"svg.fonttype": "none", "svg.hashsalt": "kinetree"}):
-        if vector:
-            verbatim(figure).savefig(file, format="svg", metadata={"Date": None, "Creator": None})
-        else:
-            verbatim(figure).savefig(file, format="png", dpi=110, metadata={"Software": None})
-    return file.getvalue()
+    with rendering():
+        verbatim(figure).savefig(file, format="svg", dpi=PAGE_DOTS, metadata={"Date": None, "Creator": None})
+    return following_the_page(file.getvalue())
 
 
-def embedded(content: bytes, caption: str, kind: Literal["png", "svg"]) -> str:
-    """A picture as HTML that contains its file; the caption is also its alternative text."""
+def embedded(content: bytes, caption: str, alternative: str) -> str:
+    """An SVG picture as HTML that contains its file."""
     data = base64.b64encode(content).decode()
-    media = "svg+xml" if kind == "svg" else kind
-    image = f'<img class="{kind}" alt="{escape(caption)}" src="data:image/{media};base64,{data}">'
+    image = f'<img alt="{escape(alternative)}" src="data:image/svg+xml;base64,{data}">'
     return f'<figure><div class="scroll" tabindex="0">{image}</div><figcaption>{escape(caption)}</figcaption></figure>'
 
 

@@ -18,8 +18,8 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.geometry.decimation import decimated
-from kinetree.tasks.numerics.results.scene import Lattice, part_colouring
-from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF
+from kinetree.tasks.numerics.results.scene import Lattice
+from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF, part_palette
 from kinetree.tasks.results.plots.drawing import directions
 
 
@@ -151,11 +151,10 @@ def _trusted(skeleton: Skeleton, selected: Ints, frames: Ints, trust: Trust) -> 
 
 def _tree(skeleton: Skeleton, labels: tuple[str, ...]) -> dict[str, Any]:
     """What stays the same in all frames: joints, the colours of parts and of kinds of joints, unit and frame rate."""
-    colours = part_colouring(np.asarray(skeleton.label), skeleton.faces, len(PARTS))
     return {
         "fps": skeleton.fps,
         "unit": skeleton.unit,
-        "palette": [PARTS[c] for c in colours] or [PARTS[0]],
+        "palette": part_palette(skeleton.label, skeleton.faces) or [PARTS[0]],
         "kinds": KINDS,
         "surface_leaf": SURFACE_LEAF,
         "not_rigid": NOT_RIGID,

@@ -17,6 +17,7 @@ from kinetree.tasks.results.plots.mesoscopic import structure as structure_2014
 from kinetree.tasks.results.plots.motion import angles
 from kinetree.tasks.results.plots.reeb import clusters, coherence, description, endoskeleton
 from kinetree.tasks.results.plots.structure import confidence, skeleton, tree
+from kinetree.tasks.results.plots.style import Style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,16 +57,19 @@ PLOTS_OF_METHOD: Mapping[str, Plots] = {
 """The pictures of each method."""
 
 
-def draw(name: str, fetch: Fetch, frames: list[int], path: Path, up: int = 1, plots: Plots = PLOTS) -> None:
+def draw(
+    name: str, fetch: Fetch, frames: list[int], path: Path, up: int = 1, plots: Plots = PLOTS, style: Style = "screen"
+) -> None:
     """Draws one of `plots` into a file, complete or not at all.
 
     fetch  : gives the artifact of a task
     frames : source frame numbers to draw, where a picture shows single frames
     up     : axis that points up, see `view`
+    style  : for screens, or for papers
     raises : ConfigError where no plot has that name, the file's ending is none of FORMATS or it cannot be written
     """
     if name not in plots:
         raise ConfigError(f"plot {name!r} is not known; known plots: {', '.join(sorted(plots))}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
-    write_figure(plots[name](fetch, frames, up), path)
+    write_figure(plots[name](fetch, frames, up), path, style)

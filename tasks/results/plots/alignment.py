@@ -7,7 +7,9 @@ import numpy as np
 
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, levels, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, graded, levels, same_scale, surface, view
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import over_time
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,7 +40,12 @@ def alignment(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     reference = reference_frame(body, alignments)
     axes.axvline(reference, color=COLOURS[1], lw=1)
     axes.annotate("reference", (reference, 0.9), xycoords=("data", "axes fraction"), fontsize=7, color=COLOURS[1])
-    axes.set(ylabel="distance, % of √area", ylim=(0, None), title="Distance of the aligned mesh from every frame")
+    axes.set(
+        ylabel="distance, % of √area",
+        ylim=(0, None),
+    )
+    heading(axes, "Distance of the aligned mesh from every frame")
+    over_time(axes, body.frames, body.fps, label=False)
     axes.legend(fontsize=7, ncols=3)
     below.plot(
         t,
@@ -49,16 +56,21 @@ def alignment(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     )
     unreliable = [100 * (1 - float(np.mean(a.confidence))) for a in alignments.values()]
     below.plot(t, unreliable, "--", color="black", lw=1, label="body that is unreliable")
-    below.set(xlabel="frame", ylabel="%", ylim=(0, None))
+    below.set(ylabel="%", ylim=(0, None))
+    over_time(below, body.frames, body.fps, both=False)
     below.legend(fontsize=7, ncols=2)
     axis = view([alignments[frame].vertices for frame in frames], up)
     highest = float(np.quantile(residual, 0.995)) or 1.0
-    for column, frame in enumerate(frames):
-        panel = figure.add_subplot(rows[2, column])
+    panels = [figure.add_subplot(rows[2, column]) for column in range(len(frames))]
+    for panel, frame in zip(panels, frames, strict=True):
         aligned = alignments[frame]
         colour = levels(body.faces, np.asarray(aligned.residual) / size * 100, 0.0, highest)
         surface(panel, aligned.vertices @ axis, body.faces, colour)
-        panel.set_title(f"frame {frame}, yellow from {highest:.2g} %", fontsize=8)
+        panel.set_title(f"frame {frame}", fontsize=8)
+    same_scale(panels)
+    bar = figure.colorbar(graded(highest), ax=panels, shrink=0.8, extend="max", pad=0.0)
+    bar.set_label("distance, % of √area", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
     return figure
 
 

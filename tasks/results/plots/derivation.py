@@ -11,8 +11,11 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.results.majority import centroids, labels_of_rings
-from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view
+from kinetree.tasks.results.formats.colours import pale_part_colours
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view, words
 from kinetree.tasks.results.plots.structure import bones, part_colours
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import joint_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,9 +48,10 @@ def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Merge error along each cone from its tip inwards, its threshold, the first cut, and the joints' parts at the end."""
     skeleton, parts = fetch("skeleton"), fetch("rigid_parts")
-    count = len(parts.tip)
+    count, labels = len(parts.tip), joint_labels(fetch, skeleton.names)
+    shades = pale_part_colours(skeleton.label, skeleton.faces)
     if not count:
-        return _words(NO_CONES)
+        return words(NO_CONES)
     area = Surface.of(skeleton.vertices, skeleton.faces).area
     joint = labels_of_rings(parts.cone, parts.ring, skeleton.influence[:, 0], area, parts.run.shape)
     columns = min(count, 3)
@@ -55,11 +59,11 @@ def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     figure, grid = blank(3.6 * columns, 2.3 * rows + 0.6, columns, rows)
     panels = np.atleast_1d(grid).ravel()
     for axes in panels[count:]:
-        axes.set_axis_off()
+        axes.remove()
     highest = 100 * max(float(np.nanmax(parts.merge, initial=0.0)), 2 * parts.merge_threshold)
     last = int(np.flatnonzero((parts.run >= 0).any(axis=0)).max(initial=0))
     for k, axes in enumerate(panels[:count]):
-        _merged(axes, skeleton.names, parts, joint[k], k)
+        _merged(axes, labels, shades, parts, joint[k], k)
         axes.set(xlim=(0, last + 1), ylim=(0, 1.3 * highest))
         axes.set_title(f"cone {k}", fontsize=9, pad=3)
     figure.supxlabel("annulus, from the tip inwards", fontsize=9)
@@ -104,12 +108,12 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     bar.set_label("drift of the joint between two parts, % of the body's diagonal", fontsize=8)
     bar.ax.tick_params(labelsize=7)
     counts = f"{len(tree.joint_of_part)} parts, {len(tree.pair)} borders; dotted: not in the spanning tree"
-    before.set_title(counts + _dropped(tree), fontsize=9)
+    heading(before, counts + _dropped(tree))
     bones(after, skeleton, skeleton.rest @ axis)
     lost = (tree.centre @ axis)[_lost(tree)]
     after.plot(*lost[:, :2].T, "x", color="black", ms=7, mew=1.8, zorder=6)
     joints = skeleton.kinds.count("joint")
-    after.set_title(f"{joints} joints left; crossed: {len(lost)} borders of dropped parts or outside the tree", fontsize=9)
+    heading(after, f"{joints} joints left; crossed: {len(lost)} borders of dropped parts or outside the tree")
     return figure
 
 
@@ -118,7 +122,7 @@ def lengths(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     skeleton, tree = fetch("skeleton"), fetch("kinematic_tree")
     row = [j for j, parent in enumerate(skeleton.parents) if parent >= 0]
     if not row:
-        return _words("no bones: the body is one rigid part")
+        return words("no bones: the body is one rigid part")
     figure, axes = blank(7.0, max(2.2, 0.2 * len(row) + 1.3))
     colour = [COLOURS[0] if skeleton.kinds[j] == "leaf" else COLOURS[1] for j in row]
     variation = tree.length_variation
@@ -128,18 +132,11 @@ def lengths(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         text = f" {tree.free_length[j]:.3g} ± {tree.free_deviation[j]:.2g}{unit}"
         axes.annotate(text, (variation[j], place), va="center", fontsize=6.5)
     axes.set(ylim=(len(row) - 0.4, -0.6), yticks=range(len(row)), xlim=(0, 1.35 * max(float(variation.max()), 1e-6)))
-    axes.set_yticklabels([skeleton.names[j] for j in row], fontsize=7)
+    labels = joint_labels(fetch, skeleton.names)
+    axes.set_yticklabels([labels[j] for j in row], fontsize=7)
     axes.tick_params(axis="x", labelsize=7)
-    axes.set_title("Bones to joints (orange) and to end effectors (blue): mean length and its deviation", fontsize=9)
+    heading(axes, "Bones to joints (orange) and to end effectors (blue): mean length and its deviation")
     axes.set_xlabel("standard deviation of the bone's length before it is held, % of its mean; 0 after", fontsize=8)
-    return figure
-
-
-def _words(text: str) -> "Figure":
-    """A figure that says why there is nothing to see."""
-    figure, axes = blank(5.0, 1.0)
-    axes.set_axis_off()
-    axes.text(0.5, 0.5, text, ha="center", va="center", fontsize=10)
     return figure
 
 
@@ -167,15 +164,15 @@ def _part_colours(label: Ints, F: Ints, origin: Ints | None) -> Floats:
     return colour
 
 
-def _merged(axes: "Axes", names: tuple[str, ...], parts: RigidParts, joint: Ints, k: int) -> None:
+def _merged(axes: "Axes", names: tuple[str, ...], shades: Floats, parts: RigidParts, joint: Ints, k: int) -> None:
     """One cone: the curve, the threshold, first cuts as ticks below, joints' parts as bands."""
     rings = int((parts.run[k] >= 0).sum())
     part, run = joint[:rings], parts.run[k, :rings]
     edges = [0, *(np.flatnonzero(np.diff(part)) + 1).tolist(), rings]
     word: Any = {"transform": _over(axes), "ha": "center", "va": "top", "fontsize": 6, "rotation": 90}
-    for number, (a, b) in enumerate(pairwise(edges)):
+    for a, b in pairwise(edges):
         if b > a and part[a] >= 0:
-            axes.axvspan(a, b, color=COLOURS[5] if number % 2 else COLOURS[4], alpha=0.28, lw=0)
+            axes.axvspan(a, b, color=shades[min(int(part[a]), len(shades) - 1)], alpha=0.7, lw=0)
             if b - a >= 3:
                 axes.text((a + b) / 2, 0.97, names[int(part[a])], **word)
     cut = np.flatnonzero(np.diff(run)) + 1

@@ -1,7 +1,7 @@
 """The means of all pictures: figures without a window, views of a body, surfaces as shaded faces, colours of values."""
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from kinetree.errors import ConfigError
 from kinetree.schemas.array import Floats, Ints
 from kinetree.tasks.results.formats.colours import LINES
+from kinetree.tasks.results.plots.style import Style, following_the_page, for_paper, rendering
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +23,8 @@ FORMATS = (".png", ".svg", ".pdf")
 """How a picture's name may end."""
 LABEL_BOX = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 COLOURS = LINES
+RESOLUTION: dict[Style, int] = {"screen": 150, "paper": 300}
+"""Dots per inch of files; in SVG and PDF only surfaces are dots."""
 
 
 def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tuple[Figure, Any]":
@@ -36,6 +39,14 @@ def blank(width: float, height: float, columns: int = 1, rows: int = 1) -> "tupl
     return figure, figure.subplots(rows, columns)
 
 
+def words(text: str) -> "Figure":
+    """A figure that says why there is nothing to see."""
+    figure, axes = blank(5.0, 1.0)
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, text, ha="center", va="center", fontsize=10)
+    return figure
+
+
 def verbatim(figure: "Figure") -> "Figure":
     """The figure with all text printed as it is: a $ in a name does not begin a formula."""
     from matplotlib.text import Text
@@ -45,11 +56,16 @@ def verbatim(figure: "Figure") -> "Figure":
     return figure
 
 
-def write_figure(figure: "Figure", path: Path) -> None:
+def write_figure(figure: "Figure", path: Path, style: Style = "screen") -> None:
     """Writes a picture, complete or not at all; raises ConfigError where it cannot be written."""
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
+    is_svg = path.suffix.lower() == ".svg"
+    fitted = for_paper(figure) if style == "paper" else figure
     try:
-        verbatim(figure).savefig(beside, dpi=150, bbox_inches="tight")
+        with rendering():
+            verbatim(fitted).savefig(beside, dpi=RESOLUTION[style], bbox_inches=None if style == "paper" else "tight")
+        if is_svg and style == "screen":
+            beside.write_bytes(following_the_page(beside.read_bytes()))
         beside.replace(path)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written: {error.strerror}") from error
@@ -100,9 +116,19 @@ def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
     shaded = colour.copy()
     shaded[:, :3] *= (0.45 + 0.55 * np.clip(towards, 0, 1))[:, None]
     flat: Any = corners[order, :, :2]
-    axes.add_collection(PolyCollection(flat, facecolors=shaded[order], edgecolors="face", linewidths=0.1), autolim=False)
+    faces = PolyCollection(flat, facecolors=shaded[order], edgecolors="face", linewidths=0.1, rasterized=True)
+    axes.add_collection(faces, autolim=False)
     axes.set(aspect="equal", xlim=limits(X[:, 0]), ylim=limits(X[:, 1]))
     axes.set_axis_off()
+
+
+def same_scale(panels: "Sequence[Axes]") -> None:
+    """Makes surfaces beside one another equally large, each about its own centre."""
+    for name in ("x", "y"):
+        spans = [getattr(axes, f"get_{name}lim")() for axes in panels]
+        half = max(high - low for low, high in spans) / 2
+        for axes, (low, high) in zip(panels, spans, strict=True):
+            getattr(axes, f"set_{name}lim")((low + high) / 2 - half, (low + high) / 2 + half)
 
 
 def levels(F: Ints, values: Floats, low: float | None = None, high: float | None = None) -> Floats:

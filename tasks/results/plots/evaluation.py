@@ -8,6 +8,8 @@ from kinetree.errors import ConfigError
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.tasks.results.formats.colours import VERMILION
 from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, blank
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import frame_rate, over_time
 from kinetree.tasks.views.results import evaluation_remarks
 
 if TYPE_CHECKING:
@@ -21,11 +23,14 @@ def evaluation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     stored = fetch("evaluation")
     if stored.summary is None:
         raise ConfigError("plot 'errors': this run has no truth; compare it with one: kinetree evaluate RUN TRUTH --plot FILE")
-    return evaluation_figure(stored)
+    return evaluation_figure(stored, frame_rate(fetch))
 
 
-def evaluation_figure(evaluation: Evaluation) -> "Figure":
-    """The figure of one evaluation that has a truth."""
+def evaluation_figure(evaluation: Evaluation, fps: float | None) -> "Figure":
+    """The figure of one evaluation that has a truth.
+
+    fps : frames a second; None where it is not known
+    """
     figure, axes = blank(11.0, 7.5, columns=2, rows=2)
     (over, beside), (below, unused) = axes
     scored = [j for j, row in enumerate(evaluation.joints) if row.scored]
@@ -39,14 +44,17 @@ def evaluation_figure(evaluation: Evaluation) -> "Figure":
             beside.errorbar(evaluation.joints[j].percent, k, xerr=share[:, j].std(), **bar)
         else:
             beside.annotate("missing", (0.0, k), fontsize=7, va="center", color=VERMILION)
-    over.set(ylabel="error / height, %", ylim=(0, None), title=_title(evaluation))
+    over.set(ylabel="error / height, %", ylim=(0, None))
+    over_time(over, evaluation.frames, fps, label=False)
+    heading(over, _title(evaluation))
     names = [f"{evaluation.joints[j].name}  {_length(evaluation, j)}" for j in scored]
     beside.set(yticks=range(len(scored)), xlim=(0, None), xlabel="mean ± deviation over the frames, % of the height")
     beside.set_yticklabels(names, fontsize=7)
     beside.set_ylim(max(len(scored), 1) - 0.5, -0.5)
     below.plot(evaluation.frames, evaluation.detection, color=COLOURS[0], lw=1.1, label="R_detection (2009, Eq. 8)")
     below.plot(evaluation.frames, evaluation.distance, color=COLOURS[1], lw=1.1, label="E_dist / height (2009, Eq. 9)")
-    below.set(xlabel="frame", ylim=(0, 1.05))
+    below.set(ylim=(0, 1.05))
+    over_time(below, evaluation.frames, fps, both=False)
     below.legend(fontsize=7, loc="center right")
     unused.set_axis_off()
     handles, labels = over.get_legend_handles_labels()

@@ -6,7 +6,9 @@ import numpy as np
 
 from kinetree.schemas.array import Floats
 from kinetree.tasks.results.formats.colours import BLUE, ORANGE, VERMILION
-from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, levels, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, levels, same_scale, surface, view
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import frame_rate, over_time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,15 +17,16 @@ if TYPE_CHECKING:
 
 def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """C(t) with cuts and their cues, intervals shaded alternately (2014, Fig. 5); below, each cue relative to its threshold."""
-    series, cut = fetch("correlation"), fetch("intervals")
+    series, cut, fps = fetch("correlation"), fetch("intervals"), frame_rate(fetch)
     figure, (axes, below) = blank(9.0, 6.0, rows=2)
     t = np.array(cut.frames)
     between = (t[:-1] + t[1:]) / 2
     for row, name in enumerate(cut.cue_names):
         below.plot(between, cut.strengths[row], label=name, color=COLOURS[row], lw=1, ls=("-", "--", "-.", ":")[row % 4])
     below.axhline(1.0, color="black", lw=0.6)
-    below.set(xlabel="frame", ylabel="cue / its threshold", xlim=(t[0] - 0.5, t[-1] + 0.5), ylim=(0, None))
+    below.set(ylabel="cue / its threshold", xlim=(t[0] - 0.5, t[-1] + 0.5), ylim=(0, None))
     below.legend(fontsize=7, ncols=len(cut.cue_names))
+    over_time(below, cut.frames, fps, both=False)
     for number, (begin, end) in enumerate(zip(cut.begin, cut.end, strict=True)):
         axes.axvspan(t[begin] - 0.5, t[end] + 0.5, color=BLUE if number % 2 else ORANGE, alpha=0.12, lw=0)
     axes.plot(between, series.correlation, color="black", marker=".", lw=1)
@@ -32,7 +35,8 @@ def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         axes.annotate(" + ".join(cues), (t[end] + 0.7, 0.5), xycoords=("data", "axes fraction"), fontsize=7)
     axes.set(ylabel="C(t)", xlim=(t[0] - 0.5, t[-1] + 0.5))
     count = len(cut.begin)
-    axes.set_title(f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
+    over_time(axes, cut.frames, fps, label=False)
+    heading(axes, f"Correlation of μ histograms; {count} interval{'s' if count > 1 else ''}")
     return figure
 
 
@@ -46,6 +50,7 @@ def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         surface(axes, mesh.vertices @ axis, mesh.faces, levels(mesh.faces, geodesics.mu))
         _draw_leaves(axes, leaves, frame, axis)
         axes.set_title(f"frame {frame}", fontsize=9)
+    same_scale(figure.axes)
     return figure
 
 

@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgba
 from kinetree.schemas.array import Floats, Ints
 from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view
 from kinetree.tasks.results.plots.structure import bones, part_colours
+from kinetree.tasks.results.plots.style import heading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +31,7 @@ def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     figure, grid = blank(3.0 * columns, 4.4 * -(-count // columns), columns, -(-count // columns))
     every = np.atleast_1d(grid).ravel()
     for axes in every[count:]:
-        axes.set_axis_off()
+        axes.remove()
     axis = view([here.vertices], up)
     for cone, axes in enumerate(every[: count - 1]):
         surface(axes, here.vertices @ axis, here.faces, _shades(annulus[cone], here.faces, BLACK))
@@ -62,9 +63,7 @@ def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         for k in np.flatnonzero(~integrated.rigid[cone, : int(annuli.annulus.max(initial=-1)) + 1]):
             axes.axvspan(k - 0.5, k + 0.5, color=COLOURS[1], alpha=0.12, lw=0)
         axes.set(ylabel=f"cone {cone}", xlim=(-0.7, integrated.rigid.shape[1] - 0.3))
-    every[0].set_title(
-        f"Merge-error in interval {interval}; orange: joint here, shaded: joint in some interval, dashed: θ_r", fontsize=9
-    )
+    heading(every[0], f"Merge-error in interval {interval}; orange: joint here, shaded: joint in some interval, dashed: θ_r")
     if len(thresholds):
         every[-1].plot(thresholds, integrated.clusters, color="black", marker=".", lw=1)
         every[-1].axvline(integrated.theta, color="black", lw=0.8, ls="--")
@@ -93,7 +92,7 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     bar.set_label("standard deviation of a bone's length, % of the root of the area", fontsize=8)
     bar.ax.tick_params(labelsize=7)
     count, redundant = int((~areas.rigid).sum()), int((~links.in_tree).sum())
-    before.set_title(f"{count} non-rigid areas, {len(links.bone)} bones; dotted: {redundant} redundant", fontsize=9)
+    heading(before, f"{count} non-rigid areas, {len(links.bone)} bones; dotted: {redundant} redundant")
     bones(after, skeleton, skeleton.rest @ axis)
     after.set_title(f"{skeleton.kinds.count('joint')} joints", fontsize=9)
     return figure
@@ -116,7 +115,7 @@ def lengths(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     axes.set(ylim=(len(seen) - 0.4, -0.6), yticks=range(len(seen)))
     axes.set_yticklabels([f"{i} – {j}" for i, j in links.bone[seen].tolist()], fontsize=7)
     axes.set_xlabel("standard deviation of the bone's length before it is fixed, % of its mean", fontsize=8)
-    axes.set_title("Bones between areas; hollow: redundant", fontsize=9)
+    heading(axes, "Bones between areas; hollow: redundant")
     return figure
 
 

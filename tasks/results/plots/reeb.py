@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinetree.schemas.array import Floats
-from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, blank, graded, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, Fetch, blank, graded, same_scale, surface, view
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import frame_rate, over_time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,9 +45,10 @@ def coherence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     axes.step(runs.frames, runs.ends, where="mid", color=COLOURS[0], label="ends")
     axes.step(runs.frames, runs.loops, where="mid", color=COLOURS[1], label="loops")
     axes.axhline(runs.wanted_ends, color=COLOURS[0], lw=0.8, ls=":")
-    axes.set(xlabel="frame", ylim=(-0.3, max(int(runs.ends.max(initial=1)), runs.wanted_ends) + 1))
+    axes.set(ylim=(-0.3, max(int(runs.ends.max(initial=1)), runs.wanted_ends) + 1))
+    over_time(axes, runs.frames, frame_rate(fetch))
     branches = ", ".join(str(list(d)) for d in runs.wanted_branches) or "none"
-    axes.set_title(f"shaded: coherent; {runs.wanted_ends} ends, branch degrees {branches}", fontsize=9)
+    heading(axes, f"shaded: coherent; {runs.wanted_ends} ends, branch degrees {branches}")
     axes.legend(fontsize=8, frameon=False, loc="upper right", ncols=2)
     return figure
 
@@ -84,6 +87,7 @@ def description(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         surface(axes, mesh.vertices @ axis, mesh.faces, np.full((len(mesh.faces), 4), PALE))
         _drawn(axes, motion.position @ axis, edge, COLOURS[0])
         axes.set_title(f"frame {frame}", fontsize=9)
+    same_scale(figure.axes)
     return figure
 
 

@@ -3,22 +3,22 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.colors import to_rgba
-from numpy.typing import NDArray
 
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.results.scene import part_colouring
+from kinetree.tasks.results.formats.colours import KINDS, pale_part_colours
 from kinetree.tasks.results.formats.rig import skinned
-from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, same_scale, surface, view
+from kinetree.tasks.results.plots.style import heading
+from kinetree.tasks.results.plots.timeline import joint_labels, over_time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Indices = NDArray[np.int64]
-PALE = ("#7FB8DB", "#EFB27F", "#7FCEB9", "#E5BCD3", "#F2CF7F", "#AAD9F4", "#BFBFBF", "#F7F1A0")
-"""Pale enough that a skeleton is seen over them."""
+
+BONE = "#0a0a0a"
+"""Black over a body, which stays so on a dark page."""
 
 
 def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
@@ -31,40 +31,45 @@ def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         surface(axes, skinned(found, found.frames.index(frame)) @ axis, found.faces, colour)
         bones(axes, found, found.positions[found.frames.index(frame)] @ axis)
         axes.set_title(f"frame {frame}", fontsize=9)
+    same_scale(figure.axes)
     return figure
 
 
 def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """The tree of joints by name, from the root outwards: lengths of bones and range of turning."""
     found = fetch("skeleton")
-    place = _layout(found.parents)
+    place, labels = _layout(found.parents), joint_labels(fetch, found.names)
     depth = place[:, 0].max() + 1
     figure, axes = blank(max(7.0, 2.1 * depth), max(2.5, 0.42 * (place[:, 1].max() + 2)))
     unit = f" {found.unit}" if found.unit else ""
     for j, parent in enumerate(found.parents):
         if parent >= 0:
             axes.plot(*zip(place[parent], place[j], strict=True), color="0.6", lw=1, zorder=1)
-        colour = {"root": "black", "joint": COLOURS[1], "leaf": COLOURS[0]}[found.kinds[j]]
-        axes.plot(*place[j], "o", color=colour, ms=6, zorder=2)
-        told = found.names[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
+        axes.plot(*place[j], "o", color=KINDS[found.kinds[j]], ms=6, zorder=2)
+        told = labels[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
         told += f", {found.degrees[j]:.0f}°" if found.kinds[j] == "joint" else ""
         axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
     axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
     axes.set_axis_off()
-    axes.set_title("Joints (orange), end effectors (blue): length of the bone to the parent, range of turning", fontsize=9)
+    heading(axes, "Joints (orange), end effectors (blue): length of the bone to the parent, range of turning")
     return figure
 
 
 def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """How far every joint is to be believed in every frame, and by what its place is uncertain."""
     found = fetch("skeleton")
+    labels = joint_labels(fetch, found.names)
     inner = [j for j, kind in enumerate(found.kinds) if kind != "leaf"]
     figure, (axes, beside) = blank(10.0, max(2.5, 0.25 * len(inner) + 1.2), columns=2)
-    picture = axes.imshow(found.confidence[:, inner].T, aspect="auto", vmin=0, vmax=1, cmap="cividis", interpolation="nearest")
-    figure.colorbar(picture, ax=axes, label="confidence")
-    ticks = np.unique(np.linspace(0, len(found.frames) - 1, 8).astype(int))
-    axes.set(yticks=range(len(inner)), xlabel="frame", xticks=ticks, xticklabels=[found.frames[t] for t in ticks])
-    axes.set_yticklabels([found.names[j] for j in inner], fontsize=7)
+    edges = np.concatenate([[found.frames[0]], np.array(found.frames[1:]), [found.frames[-1] + 1]]) - 0.5
+    rows = np.arange(len(inner) + 1) - 0.5
+    picture = axes.pcolormesh(edges, rows, found.confidence[:, inner].T, vmin=0, vmax=1, cmap="cividis", rasterized=True)
+    axes.set_ylim(len(inner) - 0.5, -0.5)
+    bar = figure.colorbar(picture, ax=axes)
+    bar.set_label("confidence", fontsize=8)
+    axes.set(yticks=range(len(inner)), xlim=(found.frames[0] - 0.5, found.frames[-1] + 0.5))
+    over_time(axes, found.frames, found.fps)
+    axes.set_yticklabels([labels[j] for j in inner], fontsize=7)
     size = float(np.linalg.norm(np.ptp(found.vertices, axis=0)))
     beside.barh(range(len(inner)), found.drift[inner] / size * 100, color=COLOURS[0])
     beside.set(ylim=(len(inner) - 0.5, -0.5), yticks=range(len(inner)), xlabel="parts disagree by, % of the body's diagonal")
@@ -78,36 +83,28 @@ def part_colours(found: Skeleton) -> Floats:
     return label_colours(np.asarray(found.label), found.faces)
 
 
-def label_colours(label: Ints, F: Ints, shade: Indices | None = None) -> Floats:
+def label_colours(label: Ints, F: Ints, colours: Floats | None = None) -> Floats:
     """(face, 4) a pale colour for each label, white where a face has none or lies between two.
 
-    label : (vertex,) −1 for none
-    F     : (face, corner)
-    shade : (label,) number of its colour; None chooses so that neighbours differ
+    label   : (vertex,) −1 for none
+    F       : (face, corner)
+    colours : (label + 1, rgb) as `pale_part_colours` gives them; None for those of these labels
     """
-    chosen = label_shades(label, F) if shade is None else shade
+    rgb = pale_part_colours(label, F) if colours is None else colours
     corners = label[F]
     own = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], -1)
-    colour: Floats = np.ones((len(own), 4))
-    rgb = np.array([to_rgba(c) for c in PALE])
-    colour[own >= 0] = rgb[chosen[own[own >= 0]]]
-    return colour
-
-
-def label_shades(label: Ints, F: Ints) -> Indices:
-    """(label,) number of a pale colour for each label, different from those of its neighbours."""
-    return part_colouring(label.astype(np.int64), F, len(PALE))
+    return np.concatenate([rgb[own], np.ones((len(own), 1))], axis=1)
 
 
 def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
     """Bones and joints over a body, in the view's own axes; the root is a square, end effectors are small."""
     for j, parent in enumerate(found.parents):
         if parent >= 0:
-            axes.plot(*X[[parent, j], :2].T, color="black", lw=1.4, zorder=3)
-    shape: dict[str, Any] = {"root": ("s", 6, "black"), "joint": ("o", 5, COLOURS[1]), "leaf": (".", 5, COLOURS[0])}
+            axes.plot(*X[[parent, j], :2].T, color=BONE, lw=1.4, zorder=3)
+    shape: dict[str, Any] = {"root": ("s", 6), "joint": ("o", 5), "leaf": (".", 5)}
     for j, kind in enumerate(found.kinds):
-        marker, size, colour = shape[kind]
-        axes.plot(*X[j, :2], marker, ms=size, color=colour, mec="white", mew=0.4, zorder=4)
+        marker, size = shape[kind]
+        axes.plot(*X[j, :2], marker, ms=size, color=KINDS[kind], mec="white", mew=0.4, zorder=4)
 
 
 def _layout(parents: tuple[int, ...]) -> Floats:

@@ -112,18 +112,20 @@ def test_figures_that_are_written_at_once_do_not_share_settings():
     begun, first_is_done, fonts = threading.Event(), threading.Event(), []
 
     class First(Figure):
-        def savefig(self, *_, **__):
+        def savefig(self, file, **_):
+            file.write(b"<svg>")
             other.start()
             begun.wait(0.5)  # in vain where they wait for each other
 
     class Second(Figure):
-        def savefig(self, *_, **__):
+        def savefig(self, file, **_):
+            file.write(b"<svg>")
             begun.set()
             first_is_done.wait()
             fonts.append(rcParams["svg.fonttype"])
 
-    other = threading.Thread(target=rendered, args=(Second(),), kwargs={"vector": True})
-    rendered(First(), vector=True)
+    other = threading.Thread(target=rendered, args=(Second(),))
+    rendered(First())
     first_is_done.set()
     other.join()
     assert fonts == ["none"]

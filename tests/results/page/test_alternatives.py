@@ -1,0 +1,42 @@
+"""Alternative texts say what a picture shows of this run."""
+
+import re
+
+import numpy as np
+from results.rigged_bodies import spider
+from results.sample_report import page_artifacts
+
+from kinetree.schemas.results.excerpt import ExcerptParams
+from kinetree.schemas.results.report import ReportParams
+from kinetree.tasks.results.page.alternatives import angles_words, confidence_words, tree_words
+from kinetree.tasks.results.plots.motion import joint_angles
+from kinetree.tasks.results.report import report
+
+
+def test_the_joint_that_turns_most_is_named_with_its_frame() -> None:
+    body = spider()
+    total = joint_angles(body)
+    arm = body.names.index("arm")
+    text = angles_words(body, body.names, total)
+    assert f"arm {total[:, arm].max():.0f}° in frame {body.frames[int(total[:, arm].argmax())]}" in text
+
+
+def test_the_frame_of_least_confidence_is_named() -> None:
+    body = spider()
+    confidence = np.array(body.confidence)
+    confidence[3, body.names.index("knee")] = 0.125
+    assert "knee 0.12 in frame 3" in confidence_words(spider(confidence=confidence), body.names)
+
+
+def test_the_tree_is_told_from_its_root() -> None:
+    assert tree_words(spider(), spider().names).startswith("trunk carries arm, tail, knee; arm carries hand")
+
+
+def test_every_picture_of_a_page_says_more_than_its_caption() -> None:
+    text = report(**page_artifacts(ExcerptParams(frames=4, views=1)), params=ReportParams(title="")).text.tobytes().decode()
+    figures = re.findall(r'<img alt="(.*?)" src.*?<figcaption>(.*?)</figcaption>', text, re.DOTALL)
+    assert len(figures) > 8
+    for alternative, caption in figures:
+        assert alternative
+        assert alternative != caption
+        assert re.search(r"\d|No |carries", alternative)
