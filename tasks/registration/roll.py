@@ -39,14 +39,16 @@ def roll(
     nodes, frames = graph(deformation_graph), tuple(candidates)
     cluster = stiffness.cluster.astype(np.int64)
     angle, misfit = (np.stack([getattr(c, name) for c in candidates.values()]) for name in ("angle", "misfit"))
-    begins = [span.start for span in take_spans(frames)[1:]]
+    takes = take_spans(frames)
+    begins = [take.start for take in takes[1:]]
     chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame), begins=begins).astype(np.int32)
     limb = np.array(previous.limb) if previous is not None else np.full(len(nodes.node), -1, np.int32)
     corrected = np.array(stiffness.stiffness)
     if (chosen >= 0).any():
         limb = _rolled_limbs(nodes, cluster, chosen)
         pairs = zip(refit, candidates.values(), chosen, strict=True)
-        corrected = learned_stiffness(nodes, [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs])
+        poses = [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs]
+        corrected = learned_stiffness(nodes, poses, takes=takes)
     return Roll(
         frames=frames,
         candidate=chosen,

@@ -12,6 +12,7 @@ from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
 from kinetree.tasks.numerics.registration.stiffness import learned_stiffness, refit_pass
 from kinetree.tasks.registration.pose import graph, pose, tracked_pose
@@ -29,7 +30,8 @@ def stiffness(
     """Learns from all poses of the pass before which edges bend and which nodes move as one (ours)."""
     nodes = graph(deformation_graph)
     poses = [pose(r) for r in refit] or [tracked_pose(t, recovery, frame) for frame, t in tracking.items()]
+    takes = take_spans(tuple(tracking))
     cluster = previous.cluster if previous is not None else np.full(len(nodes.node), -1)
     if refit_pass(index[0]).clusters:
-        cluster = rigid_clusters(nodes, poses)
-    return Stiffness(stiffness=learned_stiffness(nodes, poses), cluster=cluster)
+        cluster = rigid_clusters(nodes, poses, takes=takes)
+    return Stiffness(stiffness=learned_stiffness(nodes, poses, takes=takes), cluster=cluster)

@@ -10,6 +10,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
@@ -30,6 +31,7 @@ def rigid_parts(
         limited_confidence(np.stack([a.confidence for a in aligned])),
         leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         settings=parts_settings(params),
+        takes=take_spans(tuple(alignment)),
     )
     return RigidParts(
         frames=tuple(alignment),

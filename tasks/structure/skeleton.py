@@ -14,6 +14,7 @@ from kinetree.schemas.structure.further_pose import FurtherPose
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.pose_refinement import PoseRefinement
 from kinetree.schemas.structure.skeleton import ArticulatedBody, Skeleton
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure.joint_rotations import joint_degrees
 
 
@@ -33,7 +34,9 @@ def skeleton(
         fields |= _with_further(fields, further_pose)
     if further_pose or any(run.moved.any() for run in pose_refinement):
         turns = np.array([kind == "joint" for kind in kinematic_tree.kinds])
-        fields["degrees"] = joint_degrees(fields["rotation"], np.array(kinematic_tree.parents), turns)
+        fields["degrees"] = joint_degrees(
+            fields["rotation"], np.array(kinematic_tree.parents), turns, take_spans(fields["frames"])
+        )
     return Skeleton(fps=sequence.fps, unit=sequence.unit, **fields)
 
 

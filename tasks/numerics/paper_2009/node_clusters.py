@@ -11,6 +11,7 @@ from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated
 from kinetree.tasks.numerics.structure.part_labels import relabelled
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 ELIMINATIONS = 2
 """Eliminations, each followed by a round of labels and motions, as for the default method's rigid parts."""
@@ -80,7 +81,8 @@ def rigid_clusters(
     X = np.ascontiguousarray((x - shift) / size)
     Q = (V - area @ V / area.sum()) / size
     faces = np.array(F, np.int64)
-    body = NormalisedBody(Q, vertex_normals(V, F), faces, X, confidence, area / size**2, *rings(faces, len(V)))
+    N, spans = vertex_normals(V, F), score_spans(len(x), None)
+    body = NormalisedBody(Q, N, faces, X, confidence, area / size**2, *rings(faces, len(V)), spans)
     limits = EliminationSettings(removal_cost=removal_cost)
     label, R, t = _fitted(Q, X, confidence, body.area, label, limits.floor)
     for _ in range(ELIMINATIONS):

@@ -17,6 +17,8 @@ from kinetree.tasks.numerics.geometry.rigid_fit import rotation_gain
 from kinetree.tasks.numerics.registration.deformation import Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
+_Offer = tuple[float, int, int, int, int, tuple[float, ...]]
+
 
 class RigidClustersSettings(NamedTuple):
     """How much a cluster may bend, and how far a node reaches."""
@@ -42,11 +44,18 @@ class _Moments(NamedTuple):
     C: Floats
 
 
-def rigid_clusters(graph: DeformationGraph, poses: Sequence[Pose], settings: RigidClustersSettings | None = None) -> Ints:
+def rigid_clusters(
+    graph: DeformationGraph,
+    poses: Sequence[Pose],
+    settings: RigidClustersSettings | None = None,
+    *,
+    takes: Sequence[slice] | None = None,
+) -> Ints:
     """Which nodes have moved as one rigid body in all frames (ours, after Ward 1963).
 
     graph   : of the reference mesh
-    poses   : (frame,) in any order; at least one
+    poses   : (frame,) those of a take in any order; at least one
+    takes   : positions of the frames of each take, of which the dearest decides; None takes all as one
     returns : (node,) number of the cluster, in the order of each cluster's first node
     """
     settings = settings or RigidClustersSettings()
@@ -54,7 +63,8 @@ def rigid_clusters(graph: DeformationGraph, poses: Sequence[Pose], settings: Rig
     moments = _moments(graph, poses, spacing, settings.extent)
     length = np.linalg.norm(graph.g[graph.edge[:, 0]] - graph.g[graph.edge[:, 1]], axis=1)
     near = graph.edge[length < settings.longest * spacing[graph.edge].max(axis=1)]
-    label = _merged(moments, near, settings.cost)
+    begins = np.array([take.start for take in takes] if takes else [0])
+    label = _merged(moments, near, np.append(begins, len(poses)), settings.cost)
     return np.unique(label, return_inverse=True)[1].astype(np.int64)
 
 
@@ -79,23 +89,27 @@ def _moments(graph: DeformationGraph, poses: Sequence[Pose], spacing: Floats, ex
     return _Moments(m.copy(), m[:, None] * g, m * ((g * g).sum(axis=1) + own), m[:, None, None] * P, pp, C)
 
 
-def _merged(moments: _Moments, edge: Ints, limit: float) -> Ints:
-    """(node,) the first node of its cluster; `moments` is changed in place."""
+def _merged(moments: _Moments, edge: Ints, borders: Ints, limit: float) -> Ints:
+    """(node,) the first node of its cluster; `moments` is changed in place.
+
+    borders : (take + 1,) first frame of each take, and how many frames there are
+    limit   : of what two clusters may cost
+    """
     nodes = len(moments.M)
-    label, own, version = np.arange(nodes), np.zeros(nodes), np.zeros(nodes, np.int64)
+    label, own, version = np.arange(nodes), np.zeros((nodes, len(borders) - 1)), np.zeros(nodes, np.int64)
     around: list[set[int]] = [set() for _ in range(nodes)]
     for a, b in edge.tolist():
         around[a].add(b)
         around[b].add(a)
-    waiting = [(_merged_cost(a, b, *moments), a, b, 0, 0) for a, b in edge.tolist()]
+    waiting = [_offer(_merged_cost(a, b, borders, *moments), a, b, 0, 0) for a, b in edge.tolist()]
     heapq.heapify(waiting)
     while waiting:
-        cost, a, b, version_a, version_b = heapq.heappop(waiting)
+        cost, a, b, version_a, version_b, growth = heapq.heappop(waiting)
         if version[a] != version_a or version[b] != version_b:
             continue
         if cost > limit:
             break
-        own[a] += own[b] + cost
+        own[a] += own[b] + growth
         for moment in moments:
             moment[a] += moment[b]
         label[label == b] = a
@@ -104,27 +118,36 @@ def _merged(moments: _Moments, edge: Ints, limit: float) -> Ints:
         for k in sorted(around[a]):
             around[k] = (around[k] - {b}) | {a}
             first, second = min(a, k), max(a, k)
-            more = _merged_cost(first, second, *moments) - own[a] - own[k]
-            heapq.heappush(waiting, (more, first, second, int(version[first]), int(version[second])))
+            more = _merged_cost(first, second, borders, *moments) - own[a] - own[k]
+            heapq.heappush(waiting, _offer(more, first, second, int(version[first]), int(version[second])))
     return label
 
 
+def _offer(growth: Floats, a: int, b: int, version_a: int, version_b: int) -> _Offer:
+    """Two clusters, by what merging them costs in the dearest take; growth : (take,) of the mean residual."""
+    return float(growth.max()), a, b, version_a, version_b, tuple(growth.tolist())
+
+
 @compiled
-def _merged_cost(a: int, b: int, M: Floats, G: Floats, gg: Floats, P: Floats, pp: Floats, C: Floats) -> float:
-    """Mean residual over frames if a and b move as one; summed in sorted order, so that the order of frames does not matter."""
-    residual = np.empty(P.shape[1])
+def _merged_cost(a: int, b: int, borders: Ints, M: Floats, G: Floats, gg: Floats, P: Floats, pp: Floats, C: Floats) -> Floats:
+    """(take,) mean residual if a and b move as one; summed in sorted order, so that the order of frames does not matter."""
+    out = np.empty(len(borders) - 1)
     H = np.empty((3, 3))
     mass = M[a] + M[b]
     rest = gg[a] + gg[b]
     for x in range(3):
         rest -= (G[a, x] + G[b, x]) ** 2 / mass
-    for t in range(len(residual)):
-        posed = pp[a, t] + pp[b, t]
-        for x in range(3):
-            shift = (P[a, t, x] + P[b, t, x]) / mass
-            posed -= shift * shift * mass
-            for y in range(3):
-                H[x, y] = C[a, t, x, y] + C[b, t, x, y] - shift * (G[a, y] + G[b, y])
-        residual[t] = max(rest + posed - 2.0 * rotation_gain(H), 0.0)
-    residual.sort()
-    return residual.mean()
+    for k in range(len(out)):
+        residual = np.empty(borders[k + 1] - borders[k])
+        for i in range(len(residual)):
+            t = borders[k] + i
+            posed = pp[a, t] + pp[b, t]
+            for x in range(3):
+                shift = (P[a, t, x] + P[b, t, x]) / mass
+                posed -= shift * shift * mass
+                for y in range(3):
+                    H[x, y] = C[a, t, x, y] + C[b, t, x, y] - shift * (G[a, y] + G[b, y])
+            residual[i] = max(rest + posed - 2.0 * rotation_gain(H), 0.0)
+        residual.sort()
+        out[k] = residual.mean()
+    return out

@@ -64,17 +64,28 @@ def refit_pass(number: int) -> Pass:
     return PASSES[min(number, len(PASSES) - 1)]
 
 
-def learned_stiffness(graph: DeformationGraph, poses: Sequence[Pose], settings: StiffnessSettings | None = None) -> Floats:
+def learned_stiffness(
+    graph: DeformationGraph,
+    poses: Sequence[Pose],
+    settings: StiffnessSettings | None = None,
+    *,
+    takes: Sequence[slice] | None = None,
+) -> Floats:
     """S = s₀² / (s₀² + q²), q the root mean square over frames of an edge's relative residual (ours).
 
+    Of several takes the one in which an edge bends most decides: what bends in one take is no stiffer for others that hold it.
+
     graph   : of the reference mesh
-    poses   : (frame,) in any order; at least one
+    poses   : (frame,) those of a take in any order; at least one
+    takes   : positions of the frames of each take; None takes all as one
     returns : (edge,) without unit, above 0, at most 1
     """
     settings = settings or StiffnessSettings()
     g = graph.g
+    strain_of_frame = np.stack([strains(graph.edge, *pose, g) for pose in poses])
     # sorted, so that the sum does not depend on the order in which frames arrive
-    strain = np.sort(np.stack([strains(graph.edge, *pose, g) for pose in poses]), axis=0).mean(axis=0)
+    by_take = [np.sort(strain_of_frame[take], axis=0).mean(axis=0) for take in takes or [slice(None)]]
+    strain = np.max(by_take, axis=0)
     return settings.bending**2 / (settings.bending**2 + strain)
 
 

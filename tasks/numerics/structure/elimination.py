@@ -20,6 +20,7 @@ class NormalisedBody(NamedTuple):
     weight      : (frame, vertex) confidence, 0 to 1
     area        : (vertex,) summing to 1
     start, ring : neighbours of every vertex, see `neighbours.rings`
+    spans       : (span, 2) frames over which costs are measured, see `score_spans`
     """
 
     V: Floats
@@ -30,6 +31,7 @@ class NormalisedBody(NamedTuple):
     area: Floats
     start: Ints
     ring: Ints
+    spans: Ints
 
 
 class EliminationSettings(NamedTuple):
@@ -184,7 +186,7 @@ def _cost(
     slip, loose = settings.slip, settings.own_residual
     quiet, sampled = settings.noise_square * (1.0 + 2.0 * slip**2) / 3.0, member[:count]
     V, N, x, w, area = body.V, body.N, body.x, body.weight, body.area
-    return fine * removal_cost(V, N, x, w, area, sampled, part, other, touches, R, t, bone, slip, loose, quiet)
+    return fine * removal_cost(V, N, x, w, area, sampled, part, other, touches, R, t, bone, slip, loose, quiet, body.spans)
 
 
 @compiled

@@ -1,10 +1,13 @@
 """How far parts turn against each other: ranges of angles, displacement of a surface, rotations that follow others (ours)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotation
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 MOST_COMPARED = 96
 """Frames whose rotations are compared each with each, about; for time."""
@@ -25,15 +28,22 @@ def turning_range(turns: Floats) -> float:
     return float(np.degrees(np.sort(third)[-rank]))
 
 
-def joint_degrees(R: Floats, parents: Ints, turns: Flags) -> Floats:
+def widest_turning_range(turns: Floats, spans: Ints) -> float:
+    """The widest `turning_range` of rotations (frame, 3, 3) over any of the spans (span, 2), see `score_spans`; degrees."""
+    return max(turning_range(turns[begin:end]) for begin, end in spans)
+
+
+def joint_degrees(R: Floats, parents: Ints, turns: Flags, takes: Sequence[slice] | None = None) -> Floats:
     """(joint,) range of turning of every joint against its parent, degrees; 0 where it does not turn.
 
     R       : (frame, joint, 3, 3)
     parents : (joint,) −1 for the root
     turns   : (joint,) whether a joint turns: not the root, and no leaf
+    takes   : positions of the frames of each take; None takes all as one
     """
+    spans = score_spans(len(R), takes)
     against = (np.einsum("txy,txz->tyz", R[:, p], R[:, j]) for j, p in enumerate(parents))
-    return np.array([turning_range(r) if turn else 0.0 for r, turn in zip(against, turns, strict=True)])
+    return np.array([widest_turning_range(r, spans) if turn else 0.0 for r, turn in zip(against, turns, strict=True)])
 
 
 def mean_rotation(turns: Floats) -> Floats:

@@ -14,11 +14,12 @@ from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_names import joint_names
-from kinetree.tasks.numerics.structure.joint_rotations import turning_range
+from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.pruning import Dropped, Pruned, PruningSettings, pruned
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
 
@@ -62,7 +63,7 @@ class KinematicTree(NamedTuple):
     positions         : (frame, joint, xyz) mesh unit
     rotation          : (frame, joint, 3, 3) from the reference, of the part that turns about the joint; a leaf's its parent's
     confidence        : (frame, joint) 0 to 1
-    degrees           : (joint,) range of turning against the parent, 0 for root and leaves
+    degrees           : (joint,) range of turning against the parent, the widest of all takes, 0 for root and leaves
     drift             : (joint,) distance between the joint as its two parts alone would carry it, mesh unit
     support           : (joint,) frames in which its parts were seen
     label             : (vertex,) joint whose rigid part a vertex belongs to, −1 where the surface is not rigid
@@ -143,7 +144,7 @@ def kinematic_tree(
     used, label, R, t, residual = _used(label, R, t, residual)
     seen = None if confidence is None else confident_share(label, area, confidence, len(x), R.shape[1])
     parts = MovingParts(label, R, t, residual, seen)
-    left = pruned(MovingSurface(V, F, x, area), parts, leaves, evidence, settings=chosen.pruning)
+    left = pruned(MovingSurface(V, F, x, area, takes), parts, leaves, evidence, settings=chosen.pruning)
     tree = left.part_tree.tree
     label = np.argsort(tree.order)[left.parts.label]
     tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)
@@ -157,7 +158,8 @@ def kinematic_tree(
     if chosen.second_ends:
         leaves = np.concatenate([leaves, second_ends(V, F, label, tree.parents, leaves)])
     ends = end_effectors(V, F, label, tree.parents, leaves)
-    body, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, drift, support, chosen)
+    spans = score_spans(len(x), takes)
+    body, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, drift, support, spans, chosen)
     return body, _derivation(left, used, given, body, order, R, t)
 
 
@@ -171,6 +173,7 @@ def _assembled(
     confidence: Floats,
     drift: Floats,
     support: Ints,
+    spans: Ints,
     chosen: KinematicTreeSettings,
 ) -> tuple[KinematicTree, Ints]:
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
@@ -184,7 +187,7 @@ def _assembled(
     X = placed(motion, parents)
     tips = X[:, ends[:, 0]] + np.einsum("texy,ey->tex", motion.R[:, ends[:, 0]], rest[parts:] - motion.rest[ends[:, 0]])
     turns = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)
-    degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, parts))])
+    degrees = np.array([0.0, *(widest_turning_range(turns[:, p], spans) for p in range(1, parts))])
     influence, weight = heaviest(W)
     body = KinematicTree(
         names=names,

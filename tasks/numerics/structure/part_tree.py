@@ -1,5 +1,6 @@
 """One tree of all parts by the joints between them, and how clear each joint is (2014, Sec. 6.3)."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,15 +9,17 @@ from scipy.spatial import KDTree
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
-from kinetree.tasks.numerics.structure.joint_rotations import swing, turning_range
+from kinetree.tasks.numerics.structure.joint_rotations import swing, widest_turning_range
 from kinetree.tasks.numerics.structure.rotation_centres import (
     Borders,
     Joints,
     RotationCentresSettings,
     blend_error,
     borders,
+    drift,
     rotation_centres,
 )
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.spanning_tree import RootedTree, rooted, spanning
 
 
@@ -40,15 +43,17 @@ class PartTreeSettings(NamedTuple):
 class MovingSurface(NamedTuple):
     """A body's surface in motion.
 
-    V, F : (vertex, xyz) reference, mesh unit · (face, corner)
-    x    : (frame, vertex, xyz) mesh unit
-    area : (vertex,) mesh unit²
+    V, F  : (vertex, xyz) reference, mesh unit · (face, corner)
+    x     : (frame, vertex, xyz) mesh unit
+    area  : (vertex,) mesh unit²
+    takes : positions of the frames of each take; None takes all as one
     """
 
     V: Floats
     F: Ints
     x: Floats
     area: Floats
+    takes: Sequence[slice] | None = None
 
     @property
     def size(self) -> float:
@@ -86,6 +91,7 @@ class PartTree(NamedTuple):
     tree            : of the parts
     degrees         : (part,) range of turning against the parent, by place in the tree; 0 for the root
     ratio           : (part,) displacement of the smaller side by turning, in drifts of the joint; infinite for the root
+                      both the largest over all frames and over each take
     """
 
     borders: Borders
@@ -111,17 +117,28 @@ def part_tree(body: MovingSurface, parts: MovingParts, settings: PartTreeSetting
     centres = rotation_centres(R, t, met.pair, met.centre, met.radius, parts.residual, parts.confidence)
     degrees, ratio = np.zeros(len(mass)), np.full(len(mass), np.inf)
     N = None if parts.confidence is None else smoothed_normals(V, body.F)
+    spans = score_spans(len(body.x), body.takes)
+    drifts = _drifts(parts, met, centres, spans)
     for k in range(1, len(mass)):
         part, above, row = tree.order[k], tree.order[tree.parents[k]], tree.border[k]
-        turns = relative_rotation(R, above, part)
-        degrees[k] = turning_range(turns)
-        displacements = []
-        for p in (part, above):
-            own = label == p
-            normals = None if N is None else N[own]
-            displacements.append(swing(V[own], body.area[own], centres.rest[row], turns, p == above, normals))
-        ratio[k] = min(displacements) / (centres.drift[row] + chosen.noise * body.size)
+        turns, scores = relative_rotation(R, above, part), []
+        degrees[k] = widest_turning_range(turns, spans)
+        for (begin, end), off in zip(spans, drifts, strict=True):
+            displacements = []
+            for p in (part, above):
+                own = label == p
+                normals = None if N is None else N[own]
+                displacements.append(swing(V[own], body.area[own], centres.rest[row], turns[begin:end], p == above, normals))
+            scores.append(min(displacements) / (off[row] + chosen.noise * body.size))
+        ratio[k] = max(scores)
     return PartTree(met, centres, tree, degrees, ratio)
+
+
+def _drifts(parts: MovingParts, met: Borders, centres: Joints, spans: Ints) -> list[Floats]:
+    """Drift of every border, over each of the spans."""
+    R, t, seen = parts.R, parts.t, parts.confidence
+    frames = [slice(begin, end) for begin, end in spans[1:]]
+    return [centres.drift, *(drift(R[f], t[f], met.pair, centres.rest, None if seen is None else seen[f]) for f in frames)]
 
 
 def relative_rotation(R: Floats, above: int, part: int) -> Floats:

@@ -27,8 +27,11 @@ def removal_cost(
     slip: float,
     loose: float,
     quiet: float,
+    spans: Ints,
 ) -> float:
     """L4 norm over frames of the root mean square motion that the part explains and other parts do not.
+
+    The largest such norm over any of the spans counts: over all frames, or over those of a take that turns what others hold.
 
     Each vertex is explained by another part, or by a blend of two whose shares are the same in all frames, as in skinning.
     A slice of a joint is exactly such a blend, a bone between two others nearly one: so only short parts may be explained by
@@ -44,13 +47,14 @@ def removal_cost(
     slip    : weight of a displacement along the surface against one across it, 0 to 1
     loose   : share of the part's own residual that is taken off
     quiet   : mean squared residual of noise, which all vertices have and which is not taken off, mesh unit²
+    spans   : (span, 2) see `score_spans`
     returns : mesh unit
     """
     frames, count = x.shape[0], len(other)
     loss, mass = np.zeros(frames), np.zeros(frames)
     r = np.empty((count + 1, frames, 3))
     E = np.empty((count + 1, count + 1))
-    own_square = np.empty(len(member))
+    own_square = np.empty((len(spans), len(member)))
     for k in range(len(member)):
         v = member[k]
         for a in range(count):
@@ -62,17 +66,20 @@ def removal_cost(
         m, n, u, with_part = _best_blend(E, count, count + 1)
         if without_part < with_part:
             m, n, u = i, j, w
-        weight_sum = 0.0
         for f in range(frames):
             for c in range(3):
                 with_it = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
                 blend = w * r[i, f, c] + (1.0 - w) * r[j, f, c]
                 loss[f] += area[v] * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - with_it * with_it)
             mass[f] += area[v] * weight[f, v]
-            weight_sum += weight[f, v]
-        own_square[k] = E[count, count] / max(weight_sum, 1e-6)
-    own = loose * max(median_of(own_square, len(member)) - quiet, 0.0)
-    return np.sqrt(max(_frame_norm(loss, mass) - own, 0.0))
+        for s in range(len(spans)):
+            own_square[s, k] = _mean_square(r[count], weight, v, spans[s, 0], spans[s, 1])
+    largest = 0.0
+    for s in range(len(spans)):
+        own = loose * max(median_of(own_square[s], len(member)) - quiet, 0.0)
+        norm = _frame_norm(loss[spans[s, 0] : spans[s, 1]], mass[spans[s, 0] : spans[s, 1]])
+        largest = max(largest, norm - own)
+    return np.sqrt(largest)
 
 
 @compiled
@@ -125,6 +132,16 @@ def _residuals(
             for i in range(3):
                 n = R[f, home, i, 0] * N[v, 0] + R[f, home, i, 1] * N[v, 1] + R[f, home, i, 2] * N[v, 2]
                 out[f, i] += w * (1.0 - slip) * across * n
+
+
+@compiled
+def _mean_square(r: Floats, weight: Floats, v: int, begin: int, end: int) -> float:
+    """Mean squared residual of a vertex over some frames; r (frame, xyz) as `_residuals` writes it."""
+    total, weight_sum = 0.0, 0.0
+    for f in range(begin, end):
+        total += r[f, 0] * r[f, 0] + r[f, 1] * r[f, 1] + r[f, 2] * r[f, 2]
+        weight_sum += weight[f, v]
+    return total / max(weight_sum, 1e-6)
 
 
 @compiled

@@ -1,5 +1,6 @@
 """Rigid parts of a body from the trajectories of its vertices (2014, Sec. 6.1 and 6.2; by elimination, not by growth: ours)."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from kinetree.tasks.numerics.structure.elimination import EliminationSettings, N
 from kinetree.tasks.numerics.structure.oversegmentation import ConeRuns, OversegmentationSettings, cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.part_labels import connected, relabelled
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, unevenness
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.topology.extrema import extrema
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
 
@@ -96,6 +98,7 @@ def rigid_parts(
     leaves: Ints | None = None,
     *,
     settings: RigidPartsSettings,
+    takes: Sequence[slice] | None = None,
 ) -> RigidParts:
     """The rigid parts that the motion shows, each of which costs enough to remove; one if nothing turns.
 
@@ -103,6 +106,7 @@ def rigid_parts(
     x          : (frame, vertex, xyz) mesh unit
     confidence : (frame, vertex) 0 to 1; if not given every vertex was followed
     leaves     : (leaf,) vertices at the tips of the limbs; found on V, F if not given, and there may be none
+    takes      : positions of the frames of each take; None takes all as one
     returns    : parts numbered by their first vertex; `cut` was made at a sample of a large surface's vertices, and every other
                  vertex has the values of the nearest one in the sample
     """
@@ -116,7 +120,8 @@ def rigid_parts(
     size, centre, shift = float(np.sqrt(surface.area.sum())), surface.centre, x[:, sample].mean(axis=1, keepdims=True)
     X = np.ascontiguousarray((x[:, sample] - shift) / size, np.float64)
     weight = np.ones(X.shape[:2]) if confidence is None else np.array(confidence[:, sample], np.float64)
-    parts = _normalised_parts(surface, faces, (V[sample] - centre) / size, X, weight, tip, chosen, limits)
+    spans = score_spans(len(x), takes)
+    parts = _normalised_parts(surface, faces, (V[sample] - centre) / size, X, weight, tip, spans, chosen, limits)
     t = size * parts.t + shift - parts.R @ centre
     cut = parts.cut._replace(
         tip=sample[parts.cut.tip], **{name: getattr(parts.cut, name)[nearest] for name in ("cone", "ring", "initial")}
@@ -164,12 +169,14 @@ def _normalised_parts(
     x: Floats,
     weight: Floats,
     leaves: Ints,
+    spans: Ints,
     chosen: RigidPartsSettings,
     limits: EliminationSettings,
 ) -> RigidParts:
     """Parts of one component; lengths in the root of its area, but for those of `surface`."""
     unit = float(np.sqrt(surface.area.sum()))
-    body = NormalisedBody(V, vertex_normals(surface.position, F), F, x, weight, surface.area / unit**2, *rings(F, len(V)))
+    N, area = vertex_normals(surface.position, F), surface.area / unit**2
+    body = NormalisedBody(V, N, F, x, weight, area, *rings(F, len(V)), spans)
     first = chosen.first_cut
     patch = patches(surface, V, body.start, body.ring, first.patches)
     cones, initial = _first_cut(surface, body, patch, leaves, first)

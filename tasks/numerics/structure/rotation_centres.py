@@ -109,7 +109,7 @@ def rotation_centres(
     chosen = settings or RotationCentresSettings()
     a, b = pair[:, 0], pair[:, 1]
     M, d = R[:, a] - R[:, b], t[:, b] - t[:, a]
-    certain = np.ones(M.shape[:2]) if confidence is None else np.minimum(confidence[:, a], confidence[:, b]) + 1e-3
+    certain = _certain(confidence, pair, len(R))
     floor = np.sqrt((residual[:, a] ** 2 + residual[:, b] ** 2).mean(axis=0)) + 1e-4 * radius
     c, w, sigma, r = centre, certain, floor, np.maximum(radius, np.finfo(float).tiny)
     for _ in range(ROUNDS):
@@ -124,8 +124,28 @@ def rotation_centres(
         w = certain / (1.0 + (away / (chosen.outlier * usual)) ** 2)
         usual = np.maximum(np.sqrt((w * away**2).sum(axis=0) / w.sum(axis=0)), floor)
         sigma = usual * np.sqrt(_lasting(error, w, chosen.frames_alike))
-    drift = np.sqrt((certain * away**2).sum(axis=0) / certain.sum(axis=0))
-    return Joints(c, drift)
+    return Joints(c, drift(R, t, pair, c, confidence))
+
+
+def drift(R: Floats, t: Floats, pair: Ints, centre: Floats, confidence: Floats | None = None) -> Floats:
+    """(border,) root mean square distance between a point as its two parts carry it, mesh unit.
+
+    R, t, pair, confidence : as in `rotation_centres`
+    centre                 : (border, xyz) the point in the reference
+    """
+    a, b = pair[:, 0], pair[:, 1]
+    error = np.einsum("tjxy,jy->tjx", R[:, a] - R[:, b], centre) - (t[:, b] - t[:, a])
+    certain = _certain(confidence, pair, len(R))
+    square: Floats = (certain * np.linalg.norm(error, axis=2) ** 2).sum(axis=0) / certain.sum(axis=0)
+    return np.sqrt(square)
+
+
+def _certain(confidence: Floats | None, pair: Ints, frames: int) -> Floats:
+    """(frame, border) weight of every frame: the confidence of the less certain of two parts."""
+    if confidence is None:
+        return np.ones((frames, len(pair)))
+    weight: Floats = np.minimum(confidence[:, pair[:, 0]], confidence[:, pair[:, 1]]) + 1e-3
+    return weight
 
 
 def _lasting(error: Floats, w: Floats, alike: float) -> Floats:

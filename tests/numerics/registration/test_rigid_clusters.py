@@ -38,6 +38,14 @@ def test_a_body_that_never_bends_is_one_cluster(body):
     assert rigid_clusters(body, [at_rest(body), turned]).max() == 0
 
 
+def test_bones_that_one_take_bends_are_two_clusters_though_others_hold_them(body):
+    poses = [*[at_rest(body)] * 60, folded(body, 0.12), folded(body, 0.2)]
+    assert rigid_clusters(body, poses).max() == 0
+    label = rigid_clusters(body, poses, takes=[slice(0, 60), slice(60, 62)])
+    np.testing.assert_array_equal(label, rigid_clusters(body, poses[60:]))
+    assert label.max() == 1
+
+
 def test_roll_about_its_own_axis_parts_a_tube_too(body):
     upper = body.g[:, 2] > 0
     R = np.tile(np.eye(3), (len(body.g), 1, 1))

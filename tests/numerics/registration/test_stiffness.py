@@ -67,6 +67,15 @@ def test_a_frame_at_rest_makes_nothing_softer(body, sequence):
     assert (learned_stiffness(body, [*sequence[1], at_rest(body)]) >= learned_stiffness(body, sequence[1])).all()
 
 
+def test_what_bends_in_one_take_is_no_stiffer_for_takes_that_hold_it(body, sequence):
+    poses = [*sequence[1], *[at_rest(body)] * 9]
+    alone = learned_stiffness(body, sequence[1])
+    takes = [slice(0, len(ANGLES)), slice(len(ANGLES), len(poses))]
+    np.testing.assert_array_equal(learned_stiffness(body, poses, takes=takes), alone)
+    np.testing.assert_array_equal(learned_stiffness(body, sequence[1], takes=takes[:1]), alone)
+    assert learned_stiffness(body, poses).min() > 1.5 * alone.min()
+
+
 def test_a_refit_with_learned_stiffness_is_no_worse_and_keeps_the_turning(body, sequence):
     targets, poses = sequence
     s = learned_stiffness(body, poses)

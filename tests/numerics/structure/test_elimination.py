@@ -7,6 +7,7 @@ from shipped import ELIMINATION
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.structure.elimination import NormalisedBody, eliminated, rims
 from kinetree.tasks.numerics.structure.part_motion import fit
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
 def hinge(angles, bands=10):
@@ -16,7 +17,7 @@ def hinge(angles, bands=10):
     x = np.stack([bent(V, a, 0.001) for a in angles])
     area = np.full(len(V), 1 / len(V))
     N = V * [1, 1, 0] / np.linalg.norm(V[:, :2] + 1e-9, axis=1)[:, None]
-    body = NormalisedBody(V, N, F, x, np.ones(x.shape[:2]), area, *rings(F, len(V)))
+    body = NormalisedBody(V, N, F, x, np.ones(x.shape[:2]), area, *rings(F, len(V)), score_spans(len(x), None))
     label = np.minimum(((V[:, 2] * 12 + 5) / 10 * bands).astype(np.int64), bands - 1)
     R, t = np.empty((len(x), bands, 3, 3)), np.empty((len(x), bands, 3))
     fit(V, x, body.weight, area, label, np.ones(bands, bool), False, 10_000, 1e-10, R, t)

@@ -66,3 +66,15 @@ def test_joints_turn_against_their_parents_and_leaves_do_not() -> None:
     degrees = joint_degrees(R, np.array([-1, 0, 1]), np.array([False, True, False]))
     assert degrees == pytest.approx([0.0, 60.0, 0.0], abs=2)
     assert degrees[1] == pytest.approx(turning_range(parent.transpose(0, 2, 1) @ child))
+
+
+def test_a_joint_turns_as_far_as_in_the_take_that_turns_it_most() -> None:
+    child = np.tile(np.eye(3), (40, 1, 1))
+    child[16:18] = about((0.0, 0.0, 1.0), np.array([0.5, 0.5]))
+    R, turns = np.stack([np.tile(np.eye(3), (40, 1, 1)), child], axis=1), np.array([False, True])
+    takes = [slice(0, 14), slice(14, 20), slice(20, 40)]
+    assert joint_degrees(R, np.array([-1, 0]), turns)[1] == pytest.approx(0.0, abs=1e-5), "two of many may be wrong"
+    assert joint_degrees(R, np.array([-1, 0]), turns, takes)[1] == pytest.approx(np.rad2deg(0.5))
+    between = np.stack([R[:, 0], np.where(np.arange(40)[:, None, None] < 20, np.eye(3), child[16])], axis=1)
+    held = joint_degrees(between, np.array([-1, 0]), turns, [slice(0, 20), slice(20, 40)])
+    assert held[1] == pytest.approx(np.rad2deg(0.5)), "held otherwise in another take"

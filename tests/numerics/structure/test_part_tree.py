@@ -9,9 +9,9 @@ from limbs import tube
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 
 
-def of(body: Known) -> PartTree:
+def of(body: Known, takes: list[slice] | None = None) -> PartTree:
     parts = MovingParts(body.label, body.R, body.t, body.residual)
-    return part_tree(MovingSurface(body.V, body.F, body.x, body.area), parts)
+    return part_tree(MovingSurface(body.V, body.F, body.x, body.area, takes), parts)
 
 
 def test_links_of_a_chain_hang_on_each_other() -> None:
@@ -54,3 +54,18 @@ def test_part_that_meets_no_other_hangs_on_the_nearest() -> None:
     found = of(moved(V, F, np.eye(3)[label], joints, np.array([-1, 0, 1]), swings(20, 3)))
     place = found.tree.order.tolist().index(2)
     assert found.tree.order[found.tree.parents[place]] == 1
+
+
+def test_joint_that_one_take_turns_is_as_clear_as_in_that_take() -> None:
+    turn = np.tile(np.eye(3), (48, 2, 1, 1))
+    turn[18:22, 1] = swings(4, 1, 15)[:, 0]
+    body = chain((0.0,), turn)
+    takes = [slice(0, 16), slice(16, 24), slice(24, 48)]
+    whole, judged = of(body), of(body, takes)
+    own = slice(16, 24)
+    alone = of(body._replace(x=body.x[own], R=body.R[own], t=body.t[own]))
+    assert judged.degrees[1] == pytest.approx(alone.degrees[1])
+    assert judged.ratio[1] == pytest.approx(alone.ratio[1], rel=0.05)
+    assert whole.degrees[1] < 0.7 * alone.degrees[1]
+    assert whole.ratio[1] < 0.7 * alone.ratio[1]
+    assert of(body, [slice(0, 48)]).ratio[1] == whole.ratio[1]
