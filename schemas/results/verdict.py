@@ -7,7 +7,19 @@ from kinetree.schemas.dims import FRAME, JOINT
 
 Level = Literal["good", "except", "unusable"]
 Kind = Literal[
-    "rigid", "unexplained", "lost", "off", "outside", "uncertain", "weak", "asymmetric", "short", "still", "unpaired", "small"
+    "rigid",
+    "unexplained",
+    "lost",
+    "off",
+    "outside",
+    "uncertain",
+    "weak",
+    "asymmetric",
+    "small",
+    "close",
+    "short",
+    "still",
+    "unpaired",
 ]
 
 
@@ -28,7 +40,8 @@ class Finding(Params):
     short       : few frames
     still       : no joint turns enough
     unpaired    : joints found on one side alone
-    small       : joints that turn little.
+    small       : joints that turn little
+    close       : joints very near the one that they hang on.
     """
     severity: Literal["grave", "fault", "note"]
     """grave: do not use the result; fault: do not use what is named; note: good to know."""
@@ -37,7 +50,7 @@ class Finding(Params):
     joints: tuple[str, ...] = ()
     """The skeleton's names; empty where it is said of the whole body. asymmetric: left and right in turn."""
     amount: float = 0.0
-    """How much, at worst. off, outside, unexplained, asymmetric: share of the diagonal of the body's box; lost: share of the
+    """How much, at worst. off, outside, unexplained, asymmetric, close: share of the diagonal of the body's box; lost: of the
     frames; uncertain, weak: least mean confidence; small, still: greatest range in degrees; short: frames."""
 
 

@@ -39,6 +39,7 @@ def subject(found: Finding, verdict: Verdict) -> str:
         "still": "hardly any motion",
         "unpaired": joints,
         "small": joints,
+        "close": joints,
     }
     return words[found.kind]
 
@@ -71,7 +72,12 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
     ),
     "still": lambda f, joints, frames: f"no joint turns by more than {f.amount:.0f}°: where they are is known badly",
     "unpaired": lambda f, joints, frames: f"{joints}: not found on the other side, where it turns too little or was missed",
-    "small": lambda f, joints, frames: f"{joints}: turning by at most {f.amount:.0f}°, so that the place is known badly",
+    "small": lambda f, joints, frames: (
+        f"{joints}: turning by at most {f.amount:.0f}°, which may be no joint, or one whose place is known badly"
+    ),
+    "close": lambda f, joints, frames: (
+        f"{joints}: only {_percent(f.amount)} from the joint before it, so that the two may be one"
+    ),
 }
 
 

@@ -96,8 +96,14 @@ def test_bones_of_unlike_length_on_both_sides_are_found() -> None:
 def test_notes_leave_a_result_good() -> None:
     assert kinds(evidence(unpaired=[3])) == ["unpaired"]
     assert verdict(evidence(unpaired=[3])).level == "good"
-    assert kinds(changed("degrees", 2, 9.0)) == ["small"]
-    assert verdict(changed("degrees", 2, 9.0)).level == "good"
+
+
+def test_a_joint_that_hardly_turns_or_is_very_near_another_is_doubtful() -> None:
+    for name, value, kind in (("degrees", 9.0, "small"), ("length", 0.02, "close")):
+        found = verdict(changed(name, 3, value))
+        assert (found.level, [(f.kind, f.joints, f.amount) for f in found.findings]) == ("except", [(kind, (3,), value)])
+    both = evidence(degrees=np.array([0, 9, 40, 40, 0.0]), length=np.array([0, 0.02, 0.02, 0.2, 0.2]), pairs=[])
+    assert [(f.kind, f.joints) for f in verdict(both).findings] == [("small", (1,)), ("close", (2,))]
 
 
 def test_a_body_that_hardly_moves_is_no_good_and_one_that_never_turns_is_unusable() -> None:
