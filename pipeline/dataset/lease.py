@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from kinetree.errors import StoreError
-from kinetree.pipeline.storage.heartbeat import BEAT_SECONDS, LOST_SECONDS, identity, is_here, lives_here
+from kinetree.pipeline.storage.heartbeat import BEAT_SECONDS, has_beaten, identity, is_here, lives_here
 
 LEASE = ".lease"
 """Name of the file in the folder."""
@@ -101,9 +101,12 @@ def _is_held(file: int) -> bool:
     told = _read(file)
     if not told:
         return False
-    if is_here(told):
-        return lives_here(told)
-    return time.time() - max(float(told.get("epoch", 0.0)), os.fstat(file).st_mtime) < LOST_SECONDS
+    try:
+        if is_here(told):
+            return lives_here(told)
+        return has_beaten((float(told.get("epoch", 0.0)), os.fstat(file).st_mtime), time.time())
+    except (KeyError, TypeError, ValueError):  # no lease of ours
+        return False
 
 
 def _read(file: int) -> dict[str, Any]:

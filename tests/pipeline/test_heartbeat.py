@@ -59,6 +59,25 @@ def test_run_on_another_machine_lives_while_its_heart_beats(store):
     assert not lives(far, store)
 
 
+def test_beat_far_in_the_future_is_none(store):
+    ahead = time.time() + 30 * 86400
+    far = run(machine="elsewhere", epoch=ahead)
+    assert not lives(far, store)
+    store.place.put("runs/one.beat", b"alive")
+    assert lives(far, store), "the other machine's clock is wrong, and it beats"
+    os.utime(store.place.root / "runs" / "one.beat", (ahead, ahead))
+    assert not lives(far, store)
+    assert store.place.names("runs") == ["one.beat"]
+
+
+def test_beat_by_the_clock_of_the_place_counts_though_this_machines_clock_is_behind(store, monkeypatch):
+    far = run(machine="elsewhere")
+    store.place.put("runs/one.beat", b"alive")
+    behind = time.time() - 86400
+    monkeypatch.setattr(time, "time", lambda: behind)
+    assert lives(far, store)
+
+
 def test_heart_beats_while_the_block_lasts_and_leaves_nothing(store, monkeypatch):
     monkeypatch.setattr(heartbeat, "BEAT_SECONDS", 0.001)
     with beating(store, "one"):

@@ -77,6 +77,13 @@ def test_a_holder_on_another_machine_lives_while_it_touches_its_lease(tmp_path):
         assert mine.take(tmp_path)
 
 
+def test_a_lease_touched_far_in_the_future_is_free(tmp_path):
+    elsewhere(tmp_path, age=-LOST_SECONDS + 60)
+    assert holder(tmp_path)["host"] == "far"
+    elsewhere(tmp_path, age=-LOST_SECONDS - 60)
+    assert holder(tmp_path) is None
+
+
 def test_a_holder_touches_its_lease(tmp_path, monkeypatch):
     monkeypatch.setattr("kinetree.pipeline.dataset.lease.BEAT_SECONDS", 0.01)
     with Leases() as mine:
@@ -89,7 +96,7 @@ def test_a_holder_touches_its_lease(tmp_path, monkeypatch):
         assert (tmp_path / LEASE).stat().st_mtime > 0
 
 
-@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[1]", b"{}", b'{"epoch": 1'])
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[1]", b"{}", b'{"epoch": 1', b'{"epoch": "x"}', b'{"epoch": [1]}'])
 def test_what_is_no_lease_is_none(tmp_path, content):
     (tmp_path / LEASE).write_bytes(content)
     assert holder(tmp_path) is None
