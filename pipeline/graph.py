@@ -8,9 +8,7 @@ import contextlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
-
-import networkx as nx
+from typing import TYPE_CHECKING, Any
 
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
 from kinetree.pipeline.identity.key import code_parts, keep_code
@@ -18,8 +16,10 @@ from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space
 from kinetree.schemas.array import Artifact
 
-AnyTask = Task[..., Any]
+if TYPE_CHECKING:  # a graph that is kept in order does without
+    import networkx as nx
 
+AnyTask = Task[..., Any]
 
 ASIDE = 2
 """A task is aside where the longest way through it is shorter by more tasks than this than the longest of all."""
@@ -193,6 +193,8 @@ class Graph:
 
         An edge is `previous` where the artifact is read at the previous member alone.
         """
+        import networkx as nx
+
         drawn: nx.DiGraph[str] = nx.DiGraph()
         for task in self.tasks:
             drawn.add_node(
@@ -289,6 +291,8 @@ def _selection_is_known_at_its_index(graph: Graph, task: AnyTask) -> None:
 
 def _ordered(graph: Graph) -> tuple[AnyTask, ...]:
     """Topological order, ties in the order of declaration."""
+    import networkx as nx
+
     edges: nx.DiGraph[str] = nx.DiGraph()
     edges.add_nodes_from(task.name for task in graph.tasks)
     edges.add_edges_from((read.name, task.name) for task in graph.tasks for read in graph.before(task))

@@ -12,14 +12,13 @@ import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from kinetree.errors import NodesFailedError, UnknownNodeError
 from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
 from kinetree.pipeline.inspection.diff import difference
-from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.look import Difference, RunList, RunSummary, html_table
 from kinetree.pipeline.inspection.origins import found
@@ -38,6 +37,9 @@ from kinetree.pipeline.storage.files import Files, Settling
 from kinetree.pipeline.storage.gc import advising
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.array import Artifact
+
+if TYPE_CHECKING:  # networkx is imported when a graph is asked for
+    from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 
 A = TypeVar("A", bound=Artifact)
 Outside = tuple[Given, list[str]]
@@ -212,7 +214,7 @@ class Pipeline:
             where = f"{name} is made from {missing[0]}{more}, which has no up-to-date result"
             raise UnknownNodeError(f"{where}: {first}; kinetree run computes what is missing")
 
-    def graph(self, *, expanded: bool = False) -> DrawnGraph:
+    def graph(self, *, expanded: bool = False) -> "DrawnGraph":
         """The graph of tasks, or expanded of nodes; each node's `data` is a TaskPlan or Planned, edges name arguments."""
         there = self.inspect()
         return there.nodes if expanded else there.graph
@@ -221,7 +223,7 @@ class Pipeline:
         """The state of one node and the reason for it; raises UnknownNodeError."""
         return self.inspect().why(node)
 
-    def lineage(self, node: str) -> DrawnGraph:
+    def lineage(self, node: str) -> "DrawnGraph":
         """The part of the graph of nodes from which this node is made and which is made from it."""
         return self.inspect().lineage(node)
 

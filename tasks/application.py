@@ -11,15 +11,15 @@ if TYPE_CHECKING:
 
 
 def _methods() -> "Mapping[str, Graph]":
-    from kinetree.tasks.methods import METHODS
+    from kinetree.pipeline.graph_cache import kept_graphs
 
-    return METHODS
+    return kept_graphs("kinetree.tasks.methods:METHODS")
 
 
 def _data_sets() -> "Graph":
-    from kinetree.tasks.methods import DATA_SETS
+    from kinetree.pipeline.graph_cache import kept_graphs
 
-    return DATA_SETS
+    return kept_graphs("kinetree.tasks.methods:DATA_SETS")[""]
 
 
 def _command(name: str, summary: str, *examples: str) -> Command:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from kinetree.pipeline.identity.code_cache import CodeCache, Identified
 from kinetree.pipeline.identity.definitions import Code
-from kinetree.pipeline.identity.modules import IMPORTS, STATEMENTS, Definition
+from kinetree.pipeline.identity.modules import IMPORTS, PACKAGE, STATEMENTS, Definition
 from kinetree.schemas.array import Artifact
 
 DIGEST_BYTES = 20
@@ -113,7 +113,7 @@ def keep_code() -> None:
 
 @cache
 def _identified(module: str, name: str) -> Identified:
-    if not _is_own(module):
+    if not is_own_code(module):
         return _computed(module, name)
     kept, task = _kept_code(), f"{module}:{name}"
     if task not in kept.known:
@@ -122,7 +122,7 @@ def _identified(module: str, name: str) -> Identified:
 
 
 def _computed(module: str, name: str) -> Identified:
-    code = _code(CODE_ROOTS if _is_own(module) else (*CODE_ROOTS, module.partition(".")[0]))
+    code = _code(CODE_ROOTS if is_own_code(module) else (*CODE_ROOTS, module.partition(".")[0]))
     with _collection_paused():
         reached = code.reached(module, name)
     found: dict[Definition, str] = {}
@@ -147,26 +147,62 @@ def _collection_paused() -> Iterator[None]:
             gc.enable()
 
 
+def code_state() -> str:
+    """Digest of all texts that code digests of our own tasks can be made of; read once, like the digests themselves."""
+    return _kept_code().path.stem
+
+
+def is_code_as_read() -> bool:
+    """Whether no file of our own code was edited since it was digested: what is imported only now is what was planned with."""
+    return _stamps() == _kept_stamps()
+
+
+def is_own_code(module: str) -> bool:
+    """Whether a module is of the packages that always count; others' texts change too often to be worth keeping."""
+    return f"{module}.".startswith(tuple(f"{root}." for root in CODE_ROOTS))
+
+
+def source_of(module: str) -> Path | None:
+    """The file of a module of our own code, which is not imported; None where there is none."""
+    paths = _paths(CODE_ROOTS)
+    return paths.get(module) or paths.get(f"{module}{PACKAGE}")
+
+
 def forget_code() -> None:
     """Makes the code be read again, for a process that reloads its modules after an edit."""
-    _identified.cache_clear()
-    _code.cache_clear()
-    _kept_code.cache_clear()
-
-
-def _is_own(module: str) -> bool:
-    """Whether a task is defined in the packages that always count; others' texts change too often to be worth keeping."""
-    return f"{module}.".startswith(tuple(f"{root}." for root in CODE_ROOTS))
+    for kept in (_identified, _code, _paths, _kept_code, _kept_stamps):
+        kept.cache_clear()
 
 
 @cache
 def _kept_code() -> CodeCache:
+    _kept_stamps()  # before the texts are read: an edit between the two is one that is noticed
     return CodeCache.of(_code(CODE_ROOTS).texts)
 
 
 @cache
+def _kept_stamps() -> Mapping[str, tuple[int, int]]:
+    return _stamps()
+
+
+def _stamps() -> Mapping[str, tuple[int, int]]:
+    """Time and size of every file of our own code."""
+    found: dict[str, tuple[int, int]] = {}
+    for name, path in (row for root in CODE_ROOTS for row in _files(root)):
+        with contextlib.suppress(OSError):
+            told = path.stat()
+            found[name] = told.st_mtime_ns, told.st_size
+    return found
+
+
+@cache
 def _code(roots: tuple[str, ...]) -> Code:
-    return Code(_Texts({name: path for root in roots for name, path in _files(root)}), HARMLESS)
+    return Code(_Texts(_paths(roots)), HARMLESS)
+
+
+@cache
+def _paths(roots: tuple[str, ...]) -> dict[str, Path]:
+    return {name: path for root in roots for name, path in _files(root)}
 
 
 def _files(root: str) -> Iterator[tuple[str, Path]]:

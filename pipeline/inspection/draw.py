@@ -1,9 +1,10 @@
 """The graph as text: mermaid, dot or JSON; nodes grouped by task unless expanded."""
 
 import json
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-import networkx as nx
+if TYPE_CHECKING:
+    import networkx as nx
 
 Format = Literal["mermaid", "dot", "json"]
 GATHERS = ("tuple", "mapping")

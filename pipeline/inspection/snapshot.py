@@ -10,13 +10,10 @@ there.timings                             seconds, memory and bytes by task
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeVar, overload
-
-import networkx as nx
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from kinetree.errors import UnknownNodeError
 from kinetree.pipeline import views
-from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.plan import Plan, Planned
 from kinetree.pipeline.inspection.timings import Estimate, Timings, estimated
@@ -24,6 +21,9 @@ from kinetree.pipeline.node import Node, label, parse
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.schemas.array import Artifact
+
+if TYPE_CHECKING:  # networkx is imported when a graph is asked for
+    from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 
 A = TypeVar("A", bound=Artifact)
 
@@ -52,16 +52,20 @@ class Snapshot:
         return estimated(self.schedule, self.history.records())
 
     @cached_property
-    def graph(self) -> DrawnGraph:
+    def graph(self) -> "DrawnGraph":
         """The graph of tasks; each one's `data` is its TaskPlan, edges have argument, form and previous."""
+        from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
+
         drawn = DrawnGraph(self.schedule.graph.networkx())
         for row in self.plan.tasks:
             drawn.nodes[row.task]["data"] = row
         return drawn
 
     @cached_property
-    def nodes(self) -> DrawnGraph:
+    def nodes(self) -> "DrawnGraph":
         """The graph of nodes; each one's `data` is its Planned, edges have argument, form and previous."""
+        from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
+
         drawn = DrawnGraph()
         for row in self.plan.nodes:
             drawn.add_node(row.node, task=row.task, state=row.state, data=row)
@@ -86,8 +90,12 @@ class Snapshot:
         """The state of one node and the reason for it; raises UnknownNodeError."""
         return self.plan[self.entry(node).label]
 
-    def lineage(self, node: str) -> DrawnGraph:
+    def lineage(self, node: str) -> "DrawnGraph":
         """The part of the graph of nodes from which this node is made and which is made from it."""
+        import networkx as nx
+
+        from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
+
         name = self.entry(node).label
         related = nx.ancestors(self.nodes, name) | nx.descendants(self.nodes, name) | {name}
         return DrawnGraph(self.nodes.subgraph(related))

@@ -2,19 +2,20 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-
-from packaging.requirements import InvalidRequirement, Requirement
-from packaging.version import InvalidVersion
+from typing import TYPE_CHECKING
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.storage.store import Record
+
+if TYPE_CHECKING:  # few runs distrust a version
+    from packaging.requirements import Requirement
 
 
 @dataclass(frozen=True)
 class MadeWith:
     """Libraries with versions, as requirements say them: "scipy<1.17", "numpy==2.1.0"."""
 
-    requirements: tuple[Requirement, ...] = ()
+    requirements: "tuple[Requirement, ...]" = ()
 
     @staticmethod
     def of(texts: Iterable[str]) -> "MadeWith":
@@ -33,7 +34,9 @@ class MadeWith:
 EVERY_VERSION_TRUSTED = MadeWith()
 
 
-def _requirement(text: str) -> Requirement:
+def _requirement(text: str) -> "Requirement":
+    from packaging.requirements import InvalidRequirement, Requirement
+
     try:
         requirement = Requirement(text)
     except InvalidRequirement:
@@ -43,7 +46,9 @@ def _requirement(text: str) -> Requirement:
     return requirement
 
 
-def _has(requirement: Requirement, version: str) -> bool:
+def _has(requirement: "Requirement", version: str) -> bool:
+    from packaging.version import InvalidVersion
+
     try:
         return requirement.specifier.contains(version, prereleases=True)
     except InvalidVersion:

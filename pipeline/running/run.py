@@ -20,6 +20,7 @@ from kinetree.errors import (
     StoreError,
     StoreFullError,
 )
+from kinetree.pipeline.graph_cache import import_functions
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import DONE, Entry
 from kinetree.pipeline.planning.schedule import Schedule
@@ -135,6 +136,8 @@ class _Loop:
             begun = self.jobs.begin()
             if begun is None:
                 return
+            if not self.launch.is_elsewhere:
+                import_functions(begun.schedule.graph)
             self._open.append(begun)
             self._end_jobs()
 

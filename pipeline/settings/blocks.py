@@ -2,7 +2,7 @@
 
 import importlib.resources
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -33,9 +33,7 @@ class Reading:
     @staticmethod
     def of(methods: Mapping[str, Graph], presets: str | None) -> "Reading":
         """For the graphs of an application and its package of presets."""
-        tasks = [task for graph in methods.values() for task in graph.tasks]
-        paths = {task.name: task.params.path_fields() for task in tasks if task.params is not None}
-        return Reading(paths, importlib.resources.files(presets) if presets is not None else None)
+        return Reading(_PathsOf(methods), importlib.resources.files(presets) if presets is not None else None)
 
     @property
     def preset_names(self) -> list[str]:
@@ -53,6 +51,26 @@ class Reading:
         if folder is None or name not in names:
             raise ConfigError(f"compute {name!r}: no such compute settings; {nearest(name, names)}")
         return folder / f"{name}.yaml"
+
+
+class _PathsOf(Mapping[str, frozenset[tuple[str, ...]]]):
+    """The parameters that are paths, by task; graphs are looked through in order, as far as a name needs it."""
+
+    def __init__(self, methods: Mapping[str, Graph]) -> None:
+        self._methods = methods
+
+    def __getitem__(self, name: str) -> frozenset[tuple[str, ...]]:
+        params = next((graph.by_name[name].params for graph in self._methods.values() if name in graph.by_name), None)
+        if params is None:
+            raise KeyError(name)
+        return params.path_fields()
+
+    def __iter__(self) -> Iterator[str]:
+        names = dict.fromkeys(task.name for graph in self._methods.values() for task in graph.tasks if task.params is not None)
+        return iter(names)
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
 
 
 def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -> tuple[dict[str, Any], str]:
@@ -213,7 +231,7 @@ def _is_same(a: Path, b: Path) -> bool:
 def with_paths(blocks: Mapping[str, Any], paths: Paths, change: Callable[[str], str]) -> dict[str, Any]:
     """The blocks with every path in them changed; the address of a service is none."""
     changed = dict(blocks)
-    for keys in [("output",), ("store",), *((task, *keys) for task, fields in paths.items() for keys in fields)]:
+    for keys in [("output",), ("store",), *((task, *keys) for task in blocks for keys in paths.get(task, ()))]:
         changed = _with_path(changed, keys, change)
     return changed
 

@@ -9,7 +9,6 @@ from kinetree.pipeline.task import origin
 from kinetree.schemas.input.source import BadFrame, Source, SourceParams
 from kinetree.tasks.input.frames.found import frames_at
 from kinetree.tasks.input.frames.measured import measures_of_frames
-from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.bad_frames import (
     FrameMeasures,
     bad_frames,
@@ -28,6 +27,8 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     if params.synth is not None:
         if params.input:
             raise SourceError(f"source.input ({params.input}) and source.synth exclude each other; leave one out")
+        from kinetree.tasks.input.synth import recipe  # what generates bodies takes a second to import
+
         return _chosen(_generated(recipe(params.synth), params.synth.frames), params.frames, "the synthetic sequence")
     if not params.input:
         raise SourceError("no input: name a folder of meshes with --input, or source.input in the config")
@@ -79,6 +80,8 @@ def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -
 
 def _generated(written: str, frames: int) -> dict[int, Source]:
     """Every frame of a synthetic sequence."""
+    from kinetree.tasks.input.synth import body
+
     generated = body(written)
     unit, fps = generated.figure.unit, generated.fps
     stated = {"path": "synth", "kind": "synth", "recipe": written, "fps": fps, "unit": unit}

@@ -3,7 +3,8 @@
 import pytest
 
 from kinetree.pipeline.identity import key
-from kinetree.pipeline.identity.code_cache import FILES_KEPT, CodeCache
+from kinetree.pipeline.identity.code_cache import CodeCache
+from kinetree.pipeline.identity.kept import FILES_KEPT
 from kinetree.tasks.input.mesh import mesh
 
 TEXTS = {"a.b": "def f(): return 1\n", "a.c": "X = 2\n"}

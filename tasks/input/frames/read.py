@@ -11,7 +11,6 @@ from kinetree.pipeline.storage.groups import is_array, opened_array, user_arrays
 from kinetree.schemas.array import Bools as Flags
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
-from kinetree.tasks.input.synth import body
 from kinetree.tasks.numerics.input.animated import Animated, read_animated
 from kinetree.tasks.numerics.input.calibration import Calibration, read_calibration
 from kinetree.tasks.numerics.input.formats import read_mesh
@@ -32,6 +31,8 @@ def surface(frame_source: Source) -> tuple[Floats, Ints]:
     """
     path = Path(frame_source.path)
     if frame_source.part is not None and frame_source.kind == "synth":
+        from kinetree.tasks.input.synth import body  # what generates bodies takes a second to import
+
         V, corners = body(frame_source.recipe).frame(frame_source.part)
         F = corners.astype(np.int32)
         now = digest(["synth", frame_source.recipe, frame_source.part])

@@ -4,12 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats
-from kinetree.tasks.numerics.geometry.normals import face_areas
 from kinetree.tasks.numerics.input.body_changes import body_changes, other_bodies
 
 
@@ -61,6 +58,11 @@ def frame_measures(V: Floats, F: Faces) -> FrameMeasures:
 
     V, F : (vertex, xyz) mesh unit · (face, corner)
     """
+    from scipy.sparse import coo_array  # to look at frames that were measured before does without
+    from scipy.sparse.csgraph import connected_components
+
+    from kinetree.tasks.numerics.geometry.normals import face_areas
+
     tail = BadFrameSettings().tail
     scale = float(np.abs(V[F]).max()) or 1.0
     X = np.clip(V / scale, -1.0, 1.0)  # a stray vertex that no face has may lie anywhere

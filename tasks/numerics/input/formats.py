@@ -13,9 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from trimesh.exchange.gltf import load_glb
-from trimesh.exchange.ply import load_ply
-from trimesh.geometry import triangulate_quads
 
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
@@ -124,6 +121,8 @@ def _refuse_coarse(V: Floats, F: Any, name: str) -> None:
 
 def _triangles(polygons: Any) -> Ints:
     """(face, corner)"""
+    from trimesh.geometry import triangulate_quads
+
     return np.asarray(triangulate_quads(polygons), dtype=np.int64).reshape(-1, 3)
 
 
@@ -140,6 +139,8 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
         raise MeshError("its header has two elements of one name; the file is damaged, export it again")
     if re.search(rb"^\s*format\s+ascii", header, re.MULTILINE):
         refuse_wrong_rows(rows, body)
+    from trimesh.exchange.ply import load_ply
+
     try:
         mesh = load_ply(BytesIO(raw), skip_materials=True, fix_texture=False)
     except ValueError as error:
@@ -220,6 +221,8 @@ def _glb(raw: bytes) -> tuple[Any, Any]:
     if encoded or any("bufferView" not in a or "sparse" in a for a in header.get("accessors", [])):
         what = ", ".join(sorted(encoded)) or "sparse or compressed arrays"
         raise MeshError(f"uses {what}, which is not read; export it uncompressed")
+    from trimesh.exchange.gltf import load_glb
+
     scene = load_glb(BytesIO(raw), resolver=None, skip_materials=True)
     meshes = {key: mesh for key, mesh in scene["geometry"].items() if "faces" in mesh}
     world = {scene["base_frame"]: np.eye(4)}
