@@ -1,7 +1,6 @@
 """What kinetree imports where there is nothing to compute: no library that computes, stores, draws or starts workers."""
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -10,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from shapes import sphere
+
+from kinetree.pipeline.storage.files import SETTLED_SECONDS
 
 COMPUTING = {
     "bokeh", "dask", "distributed", "matplotlib", "networkx", "numba", "obstore", "scipy", "skimage", "trimesh", "zarr",
@@ -54,8 +55,7 @@ def imported(*arguments: str) -> set[str]:
 @pytest.mark.parametrize("written", [files, packed])
 def test_commands_that_compute_nothing_import_no_library_that_computes(written, tmp_path):
     output, source = tmp_path / "out", written(tmp_path)
-    for file in (source, *source.glob("*")):
-        os.utime(file, (time.time() - 100,) * 2)  # of files that were written just now nothing is remembered
+    time.sleep(SETTLED_SECONDS + 0.1)  # nothing is remembered of files that were written just now
     begin = ["--input", str(source), "--output", str(output), "--until", "mesh"]
     assert "scipy" in imported("run", *begin, "--quiet"), "there was something to compute"
     for command in (["run", *begin, "--quiet"], ["plan", *begin], ["runs", str(output)], ["config", str(output)], ["tasks"]):
