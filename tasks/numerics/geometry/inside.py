@@ -18,12 +18,12 @@ def inside(P: Floats, V: Floats, F: npt.NDArray[np.integer[Any]]) -> Flags:
     P    : (point, xyz) mesh unit
     V, F : (vertex, xyz) mesh unit · (face, corner) closed, outside counter-clockwise
     """
-    votes = np.zeros(len(P), np.int64)
     faces = np.ascontiguousarray(F, np.int64)
-    for direction in _DIRECTIONS:
-        A = _frame(direction)
-        votes += _crossings(np.ascontiguousarray(P @ A.T), np.ascontiguousarray(V @ A.T), faces) > 0
-    return np.asarray(votes >= 2)
+    first, second = (_leaves(P, V, faces, direction) for direction in _DIRECTIONS[:2])
+    undecided = np.flatnonzero(first != second)
+    if len(undecided):
+        first[undecided] = _leaves(P[undecided], V, faces, _DIRECTIONS[2])
+    return first
 
 
 def crossed(A: Floats, B: Floats, V: Floats, F: npt.NDArray[np.integer[Any]]) -> Flags:
@@ -53,10 +53,18 @@ def _frame(direction: Floats) -> Floats:
     return np.stack([x, np.cross(z, x), z])
 
 
+def _leaves(P: Floats, V: Floats, F: Ints, direction: Floats) -> Flags:
+    """(point,) whether a ray in a direction leaves the surface more often than it enters it."""
+    A = _frame(direction)
+    return np.asarray(_crossings(np.ascontiguousarray(P @ A.T), np.ascontiguousarray(V @ A.T), F) > 0)
+
+
 @compiled
 def _crossings(P: Floats, V: Floats, F: Ints) -> Ints:
     """(point,) how often a ray along the third axis leaves the surface, less how often it enters."""
     out = np.zeros(len(P), np.int64)
+    along = np.argsort(P[:, 0])
+    first = P[along, 0]
     for f in range(len(F)):
         a, b, c = V[F[f, 0]], V[F[f, 1]], V[F[f, 2]]
         x0, x1 = min(a[0], b[0], c[0]), max(a[0], b[0], c[0])
@@ -65,9 +73,11 @@ def _crossings(P: Floats, V: Floats, F: Ints) -> Ints:
         area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         if area == 0.0:
             continue
-        for i in range(len(P)):
-            x, y = P[i, 0], P[i, 1]
-            if x < x0 or x > x1 or y < y0 or y > y1 or P[i, 2] > top:
+        for k in range(np.searchsorted(first, x0), len(P)):
+            i, x, y = along[k], P[along[k], 0], P[along[k], 1]
+            if x > x1:
+                break
+            if y < y0 or y > y1 or P[i, 2] > top:
                 continue
             u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
             v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.geometry.edge_rings import averaged_normals, edge_rings
 from kinetree.tasks.numerics.paper_2009.graph_deformation import Forces, along_branches, deformed_graph, least_turns
 from kinetree.tasks.numerics.registration.correspondence import Target, local_matches
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed
@@ -127,7 +127,8 @@ def uncovered_share(body: SkinnedBody, pose: FramePose, frame: Target) -> float:
 
 def model_quality(body: SkinnedBody, x: Floats, frame: Target) -> VertexConfidence:
     """How well the model's surface x (vertex, xyz) lies on a frame; that much is uncovered does not lower its confidence."""
-    return vertex_confidence(body.V, x, smoothed_normals(x, body.F), body.F, frame, usual=1.0)
+    n = averaged_normals(x, body.F, *edge_rings(body.F, len(x)))
+    return vertex_confidence(body.V, x, n, body.F, frame, usual=1.0)
 
 
 def posed_surface(model: Model, body: SkinnedBody, pose: ModelPose) -> Floats:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.edge_rings import edge_rings
 from kinetree.tasks.numerics.registration.recovery import failures
 
 
@@ -38,7 +38,7 @@ def stretches(rest: Floats, x: Floats, F: Ints) -> Floats:
     F       : (face, corner) of both
     returns : (vertex,) without unit, 1 where nothing is stretched; 1 for a vertex without edges or with edges of no length
     """
-    start, ring = rings(F, len(rest))
+    start, ring, _ = edge_rings(np.ascontiguousarray(F, np.int64), len(rest))
     return _stretches(rest, x, start, ring)
 
 

@@ -175,7 +175,7 @@ def add_equations(
     R, X         : (part, 3, 3) · (part, xyz) the pose and its joints
     """
     P = len(parents)
-    lever = np.zeros((P, 3))
+    lever, J = np.zeros((P, 3)), np.empty((P, 3))
     used, is_used = np.zeros(P, np.int64), np.zeros(P, np.bool_)
     for i in range(len(vertex)):
         if plane[i] + point[i] <= 0.0:
@@ -197,20 +197,26 @@ def add_equations(
                 for x in range(3):
                     lever[b, x] += w * (X[a, x] - X[b, x])
                 a = b
-        _add_row(H, g, lever, used, count, d[i], n[i], plane[i], point[i], P)
+        _add_row(H, g, lever, J, used, count, d[i], n[i], plane[i], point[i], P)
         for k in range(count):
             is_used[used[k]] = False
             for x in range(3):
                 lever[used[k], x] = 0.0
+    for i in range(3 * P):
+        for j in range(i - i % 3):
+            H[j, i] = H[i, j]
 
 
 @compiled
 def _add_row(
-    H: Floats, g: Floats, lever: Floats, used: Ints, count: int, d: Floats, n: Floats, plane: float, point: float, P: int
-) -> None:
-    """Adds the equation of one vertex, from the levers of the parts that move it."""
+    H: Floats, g: Floats, lever: Floats, J: Floats, used: Ints, count: int, d: Floats, n: Floats, plane: float, point: float,
+    P: int,
+) -> None:  # fmt: skip
+    """Adds the equation of one vertex, from the levers of the parts that move it, below the diagonal of H.
+
+    J : (part, xyz) working space
+    """
     off = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
-    J = np.zeros((count, 3))
     for k in range(count):
         a, r = used[k], lever[used[k]]
         for x in range(3):
@@ -222,15 +228,28 @@ def _add_row(
             H[3 * a + x, 3 * P + z] += point * r[y]
             H[3 * a + x, 3 * P + y] -= point * r[z]
     for k in range(count):
+        a = used[k]
+        r0, r1, r2 = lever[a, 0], lever[a, 1], lever[a, 2]
+        p0, p1, p2 = plane * J[k, 0], plane * J[k, 1], plane * J[k, 2]
         for m in range(k + 1):
-            a, b, r, o = used[k], used[m], lever[used[k]], lever[used[m]]
-            dot = r[0] * o[0] + r[1] * o[1] + r[2] * o[2]
-            for x in range(3):
-                for y in range(3):
-                    h = plane * J[k, x] * J[m, y] - point * o[x] * r[y] + (point * dot if x == y else 0.0)
-                    H[3 * a + x, 3 * b + y] += h
-                    if k != m:
-                        H[3 * b + y, 3 * a + x] += h
+            b = used[m]
+            o0, o1, o2 = lever[b, 0], lever[b, 1], lever[b, 2]
+            j0, j1, j2 = J[m, 0], J[m, 1], J[m, 2]
+            q0, q1, q2, whole = point * o0, point * o1, point * o2, point * (r0 * o0 + r1 * o1 + r2 * o2)
+            own = (
+                (p0 * j0 - q0 * r0 + whole, p0 * j1 - q0 * r1, p0 * j2 - q0 * r2),
+                (p1 * j0 - q1 * r0, p1 * j1 - q1 * r1 + whole, p1 * j2 - q1 * r2),
+                (p2 * j0 - q2 * r0, p2 * j1 - q2 * r1, p2 * j2 - q2 * r2 + whole),
+            )
+            i, j = 3 * a, 3 * b
+            if a >= b:
+                for x in range(3):
+                    for y in range(3):
+                        H[i + x, j + y] += own[x][y]
+            else:
+                for x in range(3):
+                    for y in range(3):
+                        H[j + y, i + x] += own[x][y]
     for x in range(3):
         g[3 * P + x] += plane * off * n[x] + point * d[x]
         H[3 * P + x, 3 * P + x] += point

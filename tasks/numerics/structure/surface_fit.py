@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.articulated_fit import rotations
 from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, add_equations, joints
@@ -132,13 +133,20 @@ def _hold(H: Floats, g: Floats, R: Floats, parents: Ints, expected: Floats, firm
     above[0] = np.eye(3)
     M = above @ expected @ R.transpose(0, 2, 1)
     away = np.stack([M[:, 2, 1] - M[:, 1, 2], M[:, 0, 2] - M[:, 2, 0], M[:, 1, 0] - M[:, 0, 1]], axis=1) / 2
-    for a, p in enumerate(parents):
-        block, i = firm[a] * np.eye(3), slice(3 * a, 3 * a + 3)
-        H[i, i] += block
-        g[i] += firm[a] * away[a]
-        if p >= 0:
-            j = slice(3 * p, 3 * p + 3)
-            H[j, j] += block
-            H[i, j] -= block
-            H[j, i] -= block
-            g[j] -= firm[a] * away[a]
+    _add_holds(H, g, away, parents, firm)
+
+
+@compiled
+def _add_holds(H: Floats, g: Floats, away: Floats, parents: Ints, firm: Floats) -> None:
+    """Adds firm |turn of a − turn of its parent − away|² to the normal equations."""
+    for a in range(len(parents)):
+        p = parents[a]
+        for x in range(3):
+            i, j = 3 * a + x, 3 * p + x
+            H[i, i] += firm[a]
+            g[i] += firm[a] * away[a, x]
+            if p >= 0:
+                H[j, j] += firm[a]
+                H[i, j] -= firm[a]
+                H[j, i] -= firm[a]
+                g[j] -= firm[a] * away[a, x]

@@ -66,11 +66,13 @@ def searched(body: SkinnedBody, pose: FramePose, target: Target) -> Matches:
     tree = cKDTree(np.hstack([x[s], target.beta * n[s]]), balanced_tree=False)
     forward = target.nearest(x[s], n[s])
     forward = local_matches(x[s], n[s], forward, target.V, target.N, target.start, target.ring, target.beta)
-    both = np.concatenate([forward, target.sample])
-    back = s[tree.query(np.hstack([target.V[both], target.beta * target.N[both]]))[1]]
-    mutual = body.meets[body.label[s], body.label[back[: len(forward)]]]
+    # many points of the body find the same vertex: each is asked for once
+    asked, back = np.zeros(len(target.V), np.bool_), np.empty(len(target.V), np.int64)
+    asked[forward] = asked[target.sample] = True
+    back[asked] = s[tree.query(np.hstack([target.V[asked], target.beta * target.N[asked]]))[1]]
+    mutual = body.meets[body.label[s], body.label[back[forward]]]
     V, N = target.V[target.sample], target.N[target.sample]
-    backward = local_matches(V, N, back[len(forward) :], x, n, body.start, body.ring, target.beta)
+    backward = local_matches(V, N, back[target.sample], x, n, body.start, body.ring, target.beta)
     return Matches(x, n, forward, mutual, backward)
 
 

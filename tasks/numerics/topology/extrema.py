@@ -10,7 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.topology.persistence import loop_counts, loop_spans, neighbours, region_above, superlevel_peaks
+from kinetree.tasks.numerics.topology.persistence import (
+    in_faces,
+    loop_counts,
+    loop_spans,
+    neighbours,
+    region_above,
+    superlevel_peaks,
+)
 
 
 class ExtremaSettings(NamedTuple):
@@ -45,7 +52,7 @@ def extrema(mu: Floats, F: npt.NDArray[np.integer], threshold: float = 0.20, rou
     roundness : a body on which μ varies by less than this share of its maximum is round and has no extrema
     returns   : Extrema; the highest maximum of each component has that component's whole range as its persistence
     """
-    used = mu[np.unique(F)] if len(F) else np.zeros(1)
+    used = mu[in_faces(F, len(mu))] if len(F) else np.zeros(1)
     low, high = float(used.min()), float(used.max())
     span = high - low
     if span <= roundness * max(abs(low), abs(high)):
@@ -94,6 +101,6 @@ def peaks_and_loops(mu: Floats, F: npt.NDArray[np.integer], settings: ExtremaSet
     returns : (peak,) persistences of all maxima, share of max μ − min μ, highest first · (loop,) see `loop_spans`
     """
     chosen = settings or ExtremaSettings()
-    span = float(np.ptp(mu[np.unique(F)]))
+    span = float(np.ptp(mu[in_faces(F, len(mu))]))
     peaks = superlevel_peaks(mu, F, chosen.least_peak * span).persistence / span
     return np.sort(peaks)[::-1], loop_spans(loop_counts(mu, F, chosen.levels))

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.edge_rings import edge_rings
 
 
 class Peaks(NamedTuple):
@@ -62,10 +63,10 @@ def loop_counts(f: Floats, F: npt.NDArray[np.integer], levels: int = 200) -> Int
     levels  : evenly spaced between min f and max f, both left out
     returns : (level,) from low to high; zeros where f is constant
     """
-    used = np.unique(F)
-    if not len(used) or not f[used].max() > f[used].min():
+    used = f[in_faces(F, len(f))]
+    if not len(used) or not used.max() > used.min():
         return np.zeros(levels, dtype=np.int64)
-    low, high = float(f[used].min()), float(f[used].max())
+    low, high = float(used.min()), float(used.max())
     # the levels below each vertex: a vertex exactly on a level lies above it, for all three counts
     step = np.searchsorted(low + (high - low) * np.arange(1, levels + 1) / (levels + 1), f, side="right").astype(np.int64)
     start, ring = neighbours(F, len(f))
@@ -88,16 +89,40 @@ def loop_spans(counts: Ints) -> Floats:
     return np.array(sorted(spans, reverse=True))
 
 
+def in_faces(F: npt.NDArray[np.integer], vertices: int) -> Flags:
+    """(vertex,) whether a face (face, corner) has the vertex as a corner."""
+    used = np.zeros(vertices, np.bool_)
+    used[F] = True
+    return used
+
+
 def neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
     """Neighbours of every vertex in one array: v's are ring[start[v] : start[v + 1]], repeated where faces share them.
 
     F       : (face, corner)
     returns : start (vertex + 1,), ring (entry,)
     """
-    tail = F[:, [0, 1, 2, 1, 2, 0]].ravel().astype(np.int64)
-    head = F[:, [1, 2, 0, 0, 1, 2]].ravel().astype(np.int64)
-    start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=vertices))]).astype(np.int64)
-    return start, head[np.argsort(tail, kind="stable")]
+    return _neighbours(np.ascontiguousarray(F, np.int64), vertices)
+
+
+@compiled
+def _neighbours(F: Ints, vertices: int) -> tuple[Ints, Ints]:
+    """See `neighbours`; of each vertex in the order of the faces, what follows it in a face before what it follows."""
+    start = np.zeros(vertices + 1, np.int64)
+    for f in range(len(F)):
+        for i in range(3):
+            start[F[f, i] + 1] += 2
+    for v in range(vertices):
+        start[v + 1] += start[v]
+    filled, ring = start[:-1].copy(), np.empty(start[-1], np.int64)
+    for f in range(len(F)):
+        for back in range(2):
+            for i in range(3):
+                a, b = F[f, i], F[f, (i + 1) % 3]
+                tail, head = (b, a) if back else (a, b)
+                ring[filled[tail]] = head
+                filled[tail] += 1
+    return start, ring
 
 
 @compiled
@@ -130,11 +155,30 @@ def _face_edges(F: npt.NDArray[np.integer], step: Ints) -> tuple[Ints, Ints, Int
 
     returns : (face, corner) edge numbers, (edge,) first level, (edge,) end
     """
-    tail, head = F.ravel().astype(np.int64), F[:, [1, 2, 0]].ravel().astype(np.int64)
-    key = np.minimum(tail, head) * len(step) + np.maximum(tail, head)
-    unique, edge = np.unique(key, return_inverse=True)
-    a, b = step[unique // len(step)], step[unique % len(step)]
-    return edge.reshape(F.shape).astype(np.int64), np.minimum(a, b), np.maximum(a, b)
+    faces = np.ascontiguousarray(F, np.int64)
+    return _numbered_edges(faces, step, *edge_rings(faces, len(step))[:2])
+
+
+@compiled
+def _numbered_edges(F: Ints, step: Ints, start: Ints, ring: Ints) -> tuple[Ints, Ints, Ints]:
+    """See `_face_edges`; edges are numbered by their lower vertex, then by the other."""
+    number = np.empty(len(ring), np.int64)
+    first, end = np.empty(len(ring) // 2, np.int64), np.empty(len(ring) // 2, np.int64)
+    count = 0
+    for v in range(len(start) - 1):
+        for q in range(start[v], start[v + 1]):
+            if ring[q] > v:
+                number[q], first[count], end[count] = count, min(step[v], step[ring[q]]), max(step[v], step[ring[q]])
+                count += 1
+    edge = np.empty(F.shape, np.int64)
+    for f in range(len(F)):
+        for i in range(3):
+            a, b = F[f, i], F[f, (i + 1) % 3]
+            q = start[min(a, b)]
+            while ring[q] != max(a, b):
+                q += 1
+            edge[f, i] = number[q]
+    return edge, first, end
 
 
 @compiled
