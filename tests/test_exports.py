@@ -275,7 +275,7 @@ def test_export_of_what_was_never_run_says_so(configured, tmp_path):
     shutil.rmtree(tmp_path / "out")
     (tmp_path / "walk.yaml").write_text(json.dumps(configured))
     with pytest.raises(
-        UnknownNodeError, match=r"from complete_skeleton and 2 more, which has no up-to-date result: sequence: stale"
+        UnknownNodeError, match=r"from complete_skeleton and 3 more, which has no up-to-date result: mesh\[frame=0\]: stale"
     ):
         export(str(tmp_path / "walk.yaml"), "glb")
     assert not (tmp_path / "out").exists()

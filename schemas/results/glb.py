@@ -24,6 +24,8 @@ class GlbParams(Params):
     guessed from the size of the body: m, cm or mm."""
     rest: RestChoice = "reference"
     """Rest pose: the body as it is in the reference frame, or a person in a T-pose or an A-pose."""
+    surface: Literal["input", "parts"] = "input"
+    """Textures and colours of the input, where it has them, or the colours of the parts."""
 
 
 class Glb(PlacedFile):
@@ -31,3 +33,5 @@ class Glb(PlacedFile):
 
     rest: RestChoice
     """Rest pose of the file; only a person has others than that of the reference."""
+    missing: tuple[str, ...] = ()
+    """Sentences on textures that could not be had."""

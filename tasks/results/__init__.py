@@ -1,6 +1,7 @@
 """Results for people and programs: comparison with the truth, exported files, figures, the report."""
 
 from kinetree.tasks.results.alignment_figures import alignment_figures
+from kinetree.tasks.results.appearance import appearance
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
@@ -34,6 +35,7 @@ RESULTS = (
     truth,
     evaluation,
     complete_skeleton,
+    appearance,
     glb,
     bvh,
     skeleton_json,

@@ -1,6 +1,7 @@
 """Exports the animated body as GLB, for animators."""
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.results.appearance import Appearance
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.results.glb import Glb, GlbParams
 from kinetree.schemas.structure.joint_names import JointNames
@@ -11,13 +12,22 @@ from kinetree.tasks.results.formats.placement import known_front, placed, placem
 from kinetree.tasks.results.formats.rest_pose import at_rest
 from kinetree.tasks.results.formats.takes import of_takes
 
+NO_APPEARANCE = Appearance.none()
+
 
 @task()
-def glb(skeleton: CompleteSkeleton, joint_names: JointNames, up_direction: UpDirection, params: GlbParams) -> Glb:
+def glb(
+    skeleton: CompleteSkeleton,
+    joint_names: JointNames,
+    up_direction: UpDirection,
+    params: GlbParams,
+    appearance: Appearance = NO_APPEARANCE,
+) -> Glb:
     """Writes skeleton.glb, the reference mesh skinned to the animated skeleton, upright and in metres (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
     named, rest = at_rest(renamed(skeleton, joint_names), joint_names, known.up, params.rest)
     body = placed(named, upright_rotation(known.up, front=known_front(joint_names)), known.metres)
     origin = {"input_unit": skeleton.unit, "input_up": known.up, "metres_of_input_unit": known.metres}
-    files = {f"skeleton{name}.glb": gltf(own, origin) for name, own in of_takes(body).items()}
-    return Glb.of(files, rest=rest, **known._asdict())
+    shown = appearance if params.surface == "input" else NO_APPEARANCE
+    files = {f"skeleton{name}.glb": gltf(own, origin, shown) for name, own in of_takes(body).items()}
+    return Glb.of(files, rest=rest, missing=shown.missing, **known._asdict())

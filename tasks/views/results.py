@@ -95,7 +95,7 @@ def bvh_remarks(bvh: Bvh) -> tuple[str, ...]:
 @remarks_of(Glb)
 def glb_remarks(glb: Glb) -> tuple[str, ...]:
     """Says what is assumed of the input."""
-    return placed_remarks(glb, "glb.scale")
+    return (*placed_remarks(glb, "glb.scale"), *glb.missing)
 
 
 @remarks_of(Trc)

@@ -18,8 +18,10 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.input.hull import hull
 from kinetree.tasks.input.isosurface import isosurface
+from kinetree.tasks.input.mesh import mesh
 from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.input.source import source
+from kinetree.tasks.results.appearance import appearance
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
@@ -100,6 +102,7 @@ GRAPH = Graph.of(
         source,
         hull,
         isosurface,
+        mesh,
         alignment,
         projection,
         sequence,
@@ -107,6 +110,7 @@ GRAPH = Graph.of(
         complete_skeleton,
         up_direction,
         joint_names,
+        appearance,
         glb,
         bvh,
         skeleton_json,

@@ -44,6 +44,8 @@ for model in sorted(here.glob("*.glb")):
         filepath=str(model.with_suffix(".fbx")),
         object_types={"ARMATURE", "MESH"},
         apply_scale_options="FBX_SCALE_ALL",
+        path_mode="COPY",
+        embed_textures=True,
         add_leaf_bones=False,
         bake_anim_use_all_actions=False,
         bake_anim_use_nla_strips=False,

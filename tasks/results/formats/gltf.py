@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.schemas.array import Floats
+from kinetree.schemas.array import Floats, Ints
+from kinetree.schemas.results.appearance import Appearance, SurfaceMaterial
 from kinetree.schemas.results.glb import ASSUMED_FPS
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
@@ -20,19 +21,20 @@ from kinetree.tasks.results.formats.colours import linear, part_colours
 from kinetree.tasks.results.formats.rig import children, local_offsets, local_rotations, quaternions, rest_frames, seconds
 
 COMPONENT_TYPES = {"float32": 5126, "uint32": 5125, "uint16": 5123, "uint8": 5121}
-ELEMENT_TYPES = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
+ELEMENT_TYPES = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 VERTICES, ELEMENTS = 34962, 34963
 """Codes of the specification: types of numbers, shapes of elements, targets of buffer views."""
 
 
-def gltf(skeleton: Skeleton, origin: Mapping[str, Any] | None = None) -> bytes:
+def gltf(skeleton: Skeleton, origin: Mapping[str, Any] | None = None, appearance: Appearance | None = None) -> bytes:
     """The reference mesh skinned to the animated joints, as the bytes of a GLB file.
 
     Node 0 holds the joints, in the skeleton's order, and neither rotates nor scales them, because Blender reads the lengths of
     bones without what is above them. The y axis of every joint points along its bone in the reference pose.
 
-    skeleton : with y up, in metres
-    origin   : what the file tells of the input's coordinates
+    skeleton   : with y up, in metres
+    origin     : what the file tells of the input's coordinates
+    appearance : textures and colours of the input; parts are coloured where there is none, or it has no frame
     """
     block = _Block()
     joints = len(skeleton.names)
@@ -48,8 +50,11 @@ def gltf(skeleton: Skeleton, origin: Mapping[str, Any] | None = None) -> bytes:
             *_joints(skeleton, B),
             {"name": "body", "mesh": 0, "skin": 0},
         ],
-        "meshes": [{"name": "body", "primitives": [_primitive(block, skeleton)]}],
-        "materials": [{"name": "parts", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}],
+        **(
+            _mesh_of_parts(block, skeleton)
+            if appearance is None or appearance.frame is None
+            else _mesh_of_input(block, skeleton, appearance)
+        ),
         "skins": [
             {
                 "name": "skeleton",
@@ -78,12 +83,16 @@ class _Block:
         if bounded:
             rows = array.reshape(len(array), -1)
             element |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        view = {"buffer": 0, "byteOffset": len(self.bytes), "byteLength": array.nbytes}
-        self._views.append(view | ({"target": target} if target else {}))
         self._accessors.append(element | ({"normalized": True} if share else {}))
-        self.bytes += np.ascontiguousarray(array, array.dtype.newbyteorder("<")).tobytes()
-        self.bytes += bytes(-len(self.bytes) % 4)
+        self.put(np.ascontiguousarray(array, array.dtype.newbyteorder("<")).tobytes(), target)
         return len(self._accessors) - 1
+
+    def put(self, raw: bytes, target: int | None = None) -> int:
+        """Adds bytes and returns their view."""
+        view = {"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(raw)}
+        self._views.append(view | ({"target": target} if target else {}))
+        self.bytes += raw + bytes(-len(raw) % 4)
+        return len(self._views) - 1
 
     def json(self) -> dict[str, Any]:
         """The block's part of the document."""
@@ -102,22 +111,69 @@ def _joints(skeleton: Skeleton, B: Floats) -> list[dict[str, Any]]:
     return nodes
 
 
-def _primitive(block: _Block, skeleton: Skeleton) -> dict[str, Any]:
-    """The reference mesh with normals, part colours and skinning weights."""
-    V = skeleton.vertices.astype(np.float32)
-    N = smoothed_normals(skeleton.vertices, skeleton.faces, rounds=0)
-    N[np.linalg.norm(N, axis=1) == 0] = (0.0, 0.0, 1.0)
+def _mesh_of_parts(block: _Block, skeleton: Skeleton) -> dict[str, Any]:
+    """The reference mesh in the colours of its parts."""
     rgb = np.rint(255 * linear(part_colours(skeleton.label, skeleton.faces)))
     colour = np.concatenate([rgb, np.full((len(rgb), 1), 255.0)], axis=1).astype(np.uint8)[skeleton.label]
-    joint, weight = influences(skeleton)
-    attributes = {
-        "POSITION": block.add(V, VERTICES, bounded=True),
-        "NORMAL": block.add(N.astype(np.float32), VERTICES),
-        "COLOR_0": block.add(colour, VERTICES, share=True),
-        "JOINTS_0": block.add(joint, VERTICES),
-        "WEIGHTS_0": block.add(weight, VERTICES),
+    every = np.arange(len(skeleton.vertices), dtype=np.int32)
+    attributes = _attributes(block, skeleton, every) | {"COLOR_0": block.add(colour, VERTICES, share=True)}
+    indices = block.add(skeleton.faces.astype(np.uint32).ravel(), ELEMENTS)
+    return {
+        "meshes": [{"name": "body", "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}],
+        "materials": [_material("parts")],
     }
-    return {"attributes": attributes, "indices": block.add(skeleton.faces.astype(np.uint32).ravel(), ELEMENTS), "material": 0}
+
+
+def _mesh_of_input(block: _Block, skeleton: Skeleton, appearance: Appearance) -> dict[str, Any]:
+    """The reference mesh with the texture coordinates, textures and colours of its file, a primitive for each material."""
+    attributes = _attributes(block, skeleton, np.array(appearance.vertex))
+    if appearance.has_uv:
+        attributes["TEXCOORD_0"] = block.add(appearance.uv.astype(np.float32), VERTICES)
+    if appearance.has_colour:
+        rgba = np.concatenate([appearance.colour, np.ones((len(appearance.colour), 1))], axis=1)
+        attributes["COLOR_0"] = block.add(np.rint(65535 * np.clip(rgba, 0, 1)).astype(np.uint16), VERTICES, share=True)
+    used = np.unique(appearance.material).tolist()
+    shown = sorted({m.picture for m in (appearance.materials[k] for k in used) if m.picture is not None and appearance.has_uv})
+    primitives = []
+    for n, k in enumerate(used):
+        indices = appearance.faces[appearance.material == k].astype(np.uint32).ravel()
+        primitives.append({"attributes": attributes, "indices": block.add(indices, ELEMENTS), "material": n})
+    content, ends = appearance.content.tobytes(), np.cumsum(appearance.sizes)
+    told = {
+        "meshes": [{"name": "body", "primitives": primitives}],
+        "materials": [_textured(appearance.materials[k], shown) for k in used],
+    }
+    if not shown:
+        return told
+    pictures = [content[ends[i] - appearance.sizes[i] : ends[i]] for i in shown]
+    images = [{"bufferView": block.put(raw), "mimeType": appearance.media[i]} for i, raw in zip(shown, pictures, strict=True)]
+    return told | {"textures": [{"source": n} for n in range(len(images))], "images": images}
+
+
+def _textured(material: SurfaceMaterial, shown: Sequence[int]) -> dict[str, Any]:
+    """A material of the input."""
+    more: dict[str, Any] = {} if material.colour == (1.0, 1.0, 1.0, 1.0) else {"baseColorFactor": list(material.colour)}
+    if material.picture in shown:
+        more["baseColorTexture"] = {"index": shown.index(material.picture)}
+    return _material(material.name, **more)
+
+
+def _material(name: str, **more: Any) -> dict[str, Any]:
+    """A material that does not shine."""
+    return {"name": name, "pbrMetallicRoughness": {**more, "metallicFactor": 0.0, "roughnessFactor": 0.8}}
+
+
+def _attributes(block: _Block, skeleton: Skeleton, vertex: Ints) -> dict[str, int]:
+    """Positions, normals and skinning weights of some vertices of the reference mesh, in this order."""
+    N = smoothed_normals(skeleton.vertices, skeleton.faces, rounds=0)
+    N[np.linalg.norm(N, axis=1) == 0] = (0.0, 0.0, 1.0)
+    joint, weight = influences(skeleton)
+    return {
+        "POSITION": block.add(skeleton.vertices[vertex].astype(np.float32), VERTICES, bounded=True),
+        "NORMAL": block.add(N[vertex].astype(np.float32), VERTICES),
+        "JOINTS_0": block.add(joint[vertex], VERTICES),
+        "WEIGHTS_0": block.add(weight[vertex], VERTICES),
+    }
 
 
 def influences(skeleton: Skeleton) -> tuple[NDArray[Any], NDArray[np.float32]]:

@@ -1,0 +1,225 @@
+"""Texture coordinates, colours and textures of one frame, as its file has them, for the corners of its faces.
+
+Geometry is read by `formats`, `animated` and `zipped`, which know nothing of appearance; what is read here is held against it.
+Sources: Wavefront OBJ and MTL (Bourke's notes); Turk 1994 for PLY with the properties of MeshLab; glTF 2.0, Sec. 3.7.2 and 3.9.
+"""
+
+from collections.abc import Callable
+from io import BytesIO
+from typing import Any, NamedTuple
+
+import numpy as np
+from trimesh.exchange.ply import load_ply
+from trimesh.geometry import triangulate_quads
+
+from kinetree.errors import MeshError
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
+from kinetree.tasks.numerics.input.gltf_appearance import Material, SurfaceAppearance, glb_appearance
+from kinetree.tasks.numerics.input.pictures import Picture, picture
+
+Beside = Callable[[str], bytes | None]
+"""Bytes of a file that lies beside the mesh, by its name; None where it is not there or may not be opened."""
+
+
+def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, moves: bool = False) -> SurfaceAppearance | None:
+    """The appearance of a mesh from the bytes of its file; None where it has none or nothing of it is known.
+
+    suffix : of the format
+    faces  : (face, corner) as geometry is read, which the file must agree with
+    beside : what opens files that the mesh names
+    moves  : whether it was read as one file that holds all frames
+    raises : MeshError where it has an appearance that does not fit its faces
+    """
+    read: dict[str, Callable[[bytes, Beside], SurfaceAppearance | None]]
+    read = {".obj": _obj, ".ply": _ply, ".drc": _draco, ".glb": lambda raw, _: glb_appearance(raw, faces, moves)}
+    if suffix.lower() not in read:
+        return None
+    found = read[suffix.lower()](raw, beside)
+    if found is not None and (found.faces.shape != faces.shape or (found.faces != faces).any()):
+        raise MeshError("its texture coordinates and colours are of other faces than its surface")
+    return found
+
+
+class _Corners(NamedTuple):
+    """Polygons by their corners: vertex, texture coordinate (−1: none) and material."""
+
+    vertex: list[int]
+    coordinate: list[int]
+    polygons: list[list[int]]
+    material: list[int]
+
+
+def _obj(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
+    colours: list[list[float]] = []
+    uv: list[list[float]] = []
+    libraries: list[str] = []
+    used: list[str] = [""]
+    corners, current, vertices = _Corners([], [], [], []), 0, 0
+    for line in raw.decode("utf-8", "replace").replace("\\\r\n", " ").replace("\\\n", " ").splitlines():
+        key, _, rest = line.strip().partition(" ")
+        words = rest.split()
+        if key == "v":
+            vertices += 1
+            colours += [[float(w) for w in words[3:6]]] if len(words) == 6 else []
+        elif key == "vt":
+            uv.append([float(w) for w in (*words, "0")[:2]])
+        elif key == "mtllib":
+            libraries.append(rest.strip())
+        elif key == "usemtl":
+            used += [] if rest.strip() in used else [rest.strip()]
+            current = used.index(rest.strip())
+        elif key == "f":
+            _add_polygon(corners, words, vertices, len(uv), current)
+    F, V_of, at = _triangulated(corners)
+    materials, pictures, missing = _materials(used, libraries, beside)
+    held = np.array([*uv, [0.0, 0.0]]) * (1.0, -1.0) + (0.0, 1.0)  # glTF's begin in the upper left
+    colour = _linear(np.array(colours)) if colours and len(colours) == vertices else None
+    if not uv and colour is None and len(used) == 1:
+        return None
+    return SurfaceAppearance(
+        faces=V_of[F],
+        uv=held[np.array(corners.coordinate)[F]] if uv else None,
+        colour=None if colour is None else colour[V_of[F]],
+        material=np.array(corners.material)[at],
+        materials=materials,
+        pictures=pictures,
+        missing=missing,
+    )
+
+
+def _add_polygon(corners: _Corners, words: list[str], vertices: int, coordinates: int, material: int) -> None:
+    """One face of an OBJ; negative indices count back from what was read so far."""
+    begin = len(corners.vertex)
+    for word in words:
+        v, _, rest = word.partition("/")
+        t = rest.partition("/")[0]
+        corners.vertex.append(int(v) + vertices if int(v) < 0 else int(v) - 1)
+        at = -1 if not t else int(t) + coordinates if int(t) < 0 else int(t) - 1
+        corners.coordinate.append(at if 0 <= at < coordinates else -1)
+    corners.polygons.append(list(range(begin, len(corners.vertex))))
+    corners.material.append(material)
+
+
+def _triangulated(corners: _Corners) -> tuple[Ints, Ints, Ints]:
+    """(face, corner) of corners, in the order of the geometry's triangles · vertex of each corner · polygon of each face."""
+    F = np.asarray(triangulate_quads(corners.polygons), dtype=np.int64).reshape(-1, 3)
+    begins = np.array([p[0] for p in corners.polygons])
+    return F, np.array(corners.vertex), np.searchsorted(begins, F.min(axis=1), side="right") - 1
+
+
+def _materials(
+    used: list[str], libraries: list[str], beside: Beside
+) -> tuple[tuple[Material, ...], tuple[Picture, ...], tuple[str, ...]]:
+    """The materials of an OBJ by name, from the files that it names; the first is that of faces without one."""
+    told: dict[str, dict[str, str]] = {}
+    missing: list[str] = []
+    for name in libraries:
+        text = beside(name)
+        missing += [f"{name} is not there"] if text is None else []
+        current: dict[str, str] = {}
+        for line in (text or b"").decode("utf-8", "replace").splitlines():
+            key, _, rest = line.strip().partition(" ")
+            if key == "newmtl":
+                current = told.setdefault(rest.strip(), {})
+            else:
+                current[key.lower()] = rest.strip()
+    pictures: list[Picture] = []
+    held: dict[str, int | None] = {}
+    materials = []
+    for name in used:
+        own = told.get(name, {})
+        file = own.get("map_kd", "")
+        if file and file not in held:
+            held[file] = _entered(file, beside, pictures, missing)
+        shown = held.get(file)
+        rgb = [float(w) for w in own.get("kd", "").split()[:3]]
+        colour = (*rgb, 1.0) if len(rgb) == 3 and shown is None else (1.0, 1.0, 1.0, 1.0)
+        materials.append(Material(name or "body", tuple(float(np.clip(c, 0, 1)) for c in colour), shown))
+    return tuple(materials), tuple(pictures), tuple(missing)
+
+
+def _entered(file: str, beside: Beside, pictures: list[Picture], missing: list[str]) -> int | None:
+    """Adds a picture and returns its place; None where it cannot be had, which `missing` says."""
+    name = file if beside(file) is not None else file.split()[-1]  # options may stand before the name
+    raw = beside(name)
+    found = picture(raw) if raw is not None else f"{name} is not there"
+    if isinstance(found, str):
+        missing.append(found if raw is None else f"{name}: {found}")
+        return None
+    pictures.append(found)
+    return len(pictures) - 1
+
+
+def _ply(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
+    header = raw.partition(b"end_header")[0].decode("ascii", "replace")
+    mesh = load_ply(BytesIO(raw), skip_materials=True, fix_texture=False)
+    rows, polygons = (mesh["metadata"]["_ply_raw"][k]["data"] for k in ("vertex", "face"))
+    F = np.asarray(triangulate_quads(mesh["faces"]), dtype=np.int64).reshape(-1, 3)
+    colour = _columns(rows, ("red", "green", "blue"))
+    uv = next((c for names in _PLY_UV if (c := _columns(rows, names)) is not None), None)
+    corner_uv = _column(polygons, "texcoord")
+    if corner_uv is not None and corner_uv.shape == (len(F), 6):
+        at_corners: Floats | None = corner_uv.reshape(-1, 3, 2)
+    else:
+        at_corners = None if uv is None else uv[F]
+    if colour is None and at_corners is None:
+        return None
+    pictures: list[Picture] = []
+    missing: list[str] = []
+    names = [line.split(None, 2)[2].strip() for line in header.splitlines() if line.lower().startswith("comment texturefile ")]
+    shown = _entered(names[0], beside, pictures, missing) if names and at_corners is not None else None
+    return SurfaceAppearance(
+        faces=F,
+        uv=None if at_corners is None else at_corners * (1.0, -1.0) + (0.0, 1.0),
+        colour=None if colour is None else _linear(colour / 255.0)[F],
+        material=np.zeros(len(F), np.int64),
+        materials=(Material("body", (1.0, 1.0, 1.0, 1.0), shown),),
+        pictures=tuple(pictures),
+        missing=tuple(missing),
+    )
+
+
+_PLY_UV = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+
+
+def _columns(rows: Any, names: tuple[str, ...]) -> Floats | None:
+    """(row, name) some properties of a PLY's element; None where one is lacking."""
+    columns = [_column(rows, name) for name in names]
+    held = [np.ravel(c) for c in columns if c is not None and c.size]
+    return np.column_stack(held) if len(held) == len(names) else None
+
+
+def _column(rows: Any, name: str) -> Floats | None:
+    """One property, a list's as (row, item)."""
+    held = rows if isinstance(rows, dict) else {key: rows[key] for key in rows.dtype.names or ()}
+    if name not in held:
+        return None
+    values = held[name]
+    if getattr(values, "dtype", None) is not None and values.dtype.names:
+        values = values["f1"]
+    return np.asarray(values, dtype=np.float64)
+
+
+def _draco(raw: bytes, _: Beside) -> SurfaceAppearance | None:
+    from importlib import import_module
+
+    mesh = import_module("DracoPy").decode(raw)
+    F = np.asarray(mesh.faces, dtype=np.int64)
+    colour, uv = getattr(mesh, "colors", None), getattr(mesh, "tex_coord", None)
+    if colour is None and uv is None:
+        return None
+    return SurfaceAppearance(
+        faces=F,
+        uv=None if uv is None else (np.asarray(uv, np.float64) * (1.0, -1.0) + (0.0, 1.0))[F],
+        colour=None if colour is None else _linear(np.asarray(colour, np.float64)[:, :3] / 255.0)[F],
+        material=np.zeros(len(F), np.int64),
+        materials=(Material("body", (1.0, 1.0, 1.0, 1.0), None),),
+        pictures=(),
+        missing=(),
+    )
+
+
+def _linear(srgb: Floats) -> Floats:
+    """Linear light of sRGB colours from 0 to 1 (IEC 61966-2-1)."""
+    c = np.clip(srgb, 0.0, 1.0)
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)

@@ -1,0 +1,63 @@
+"""The appearance of one frame's file on the cleaned mesh, whose seams are welded (ours)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Faces, Floats, Ints, Labels
+from kinetree.tasks.numerics.input.gltf_appearance import SurfaceAppearance
+
+
+class Seamed(NamedTuple):
+    """The cleaned mesh with one copy of a vertex for each texture coordinate and colour that it has.
+
+    vertex   : (surface_vertex,) vertex of the cleaned mesh, ascending
+    faces    : (face, corner) copies; the corners of each face of the cleaned mesh, in its order
+    uv       : (surface_vertex, 2), or (surface_vertex, 0) where there are none
+    colour   : (surface_vertex, 3), or (surface_vertex, 0) where there are none
+    material : (face,)
+    """
+
+    vertex: Labels
+    faces: Faces
+    uv: Floats
+    colour: Floats
+    material: Labels
+
+
+def seamed(found: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None:
+    """Brings what the corners of a file's faces look like to the faces of the cleaned mesh; None where a face has none.
+
+    A face of the cleaned mesh is the first of the file's with the same three vertices, in any order.
+
+    vertex_map : (input_vertex,) vertex of the cleaned mesh, −1 where it was dropped
+    F          : (face, corner) of the cleaned mesh
+    """
+    there = vertex_map[found.faces]
+    whole = np.flatnonzero((there >= 0).all(axis=1))
+    n = int(max(F.max(), there.max())) + 1
+    keys, first = np.unique(_key(there[whole], n), return_index=True)
+    wanted = _key(F, n)
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1) if len(keys) else np.zeros(len(F), np.int64)
+    if not len(keys) or (keys[at] != wanted).any():
+        return None
+    face = whole[first[at]]
+    corner = np.argmax(there[face][:, None, :] == F[:, :, None], axis=2)
+    columns = [F[..., None].astype(np.float64)]
+    columns += [values[face[:, None], corner] for values in (found.uv, found.colour) if values is not None]
+    rows = np.concatenate(columns, axis=2)
+    copies, index = np.unique(rows.reshape(-1, rows.shape[2]), axis=0, return_inverse=True)
+    split = 1 if found.uv is None else 3
+    return Seamed(
+        vertex=copies[:, 0].astype(np.int32),
+        faces=index.reshape(-1, 3).astype(np.int32),
+        uv=copies[:, 1:split],
+        colour=copies[:, split:],
+        material=found.material[face].astype(np.int32),
+    )
+
+
+def _key(F: Ints, n: int) -> Ints:
+    """(face,) a number for the three vertices of each face, whatever their order."""
+    a, b, c = np.sort(F.astype(np.int64), axis=1).T
+    return (a * n + b) * n + c

@@ -1,0 +1,45 @@
+"""Opened seams: every face of the cleaned mesh looks as the file's face at its place."""
+
+import numpy as np
+from shapes import sphere
+from textured import MTL, corner_uv, obj, png
+
+from kinetree.tasks.numerics.input.formats import mesh_of
+from kinetree.tasks.numerics.input.mesh import clean
+from kinetree.tasks.numerics.input.surface_appearance import surface_appearance
+from kinetree.tasks.numerics.results.appearance import seamed
+
+
+def read(V, F, uv):
+    raw = obj(V, F, uv).encode()
+    X, G = mesh_of(raw, "frame", ".obj")
+    return clean(X, G), surface_appearance(raw, ".obj", G, {"skin.mtl": MTL.encode(), "skin.png": png()}.get)
+
+
+def test_seams_are_welded_in_the_mesh_and_open_in_its_appearance():
+    V, F = sphere(2)
+    cleaned, found = read(V, F, corner_uv(V, F))
+    assert len(cleaned.V) == len(V)
+    made = seamed(found, cleaned.vertex_map, cleaned.F)
+    np.testing.assert_array_equal(made.vertex[made.faces], cleaned.F)
+    np.testing.assert_allclose(made.uv[made.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
+    assert len(V) < len(made.vertex) < 3 * len(F)  # copies at seams alone
+    assert len(np.unique(np.column_stack([made.vertex, made.uv]), axis=0)) == len(made.vertex)
+
+
+def test_faces_that_cleaning_turned_keep_the_look_of_their_corners():
+    V, F = sphere(2)
+    inside_out = F.copy()
+    inside_out[::3] = inside_out[::3, [0, 2, 1]]
+    cleaned, found = read(V, inside_out, corner_uv(V, inside_out))
+    assert cleaned.flipped > 0
+    made = seamed(found, cleaned.vertex_map, cleaned.F)
+    np.testing.assert_allclose(made.uv[made.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
+
+
+def test_face_that_the_file_does_not_have_leaves_no_appearance():
+    V, F = sphere(1)
+    cleaned, found = read(V, F, corner_uv(V, F))
+    other = cleaned.F.copy()
+    other[0] = (other[0, 0], other[0, 1], (other[0, 2] + 7) % len(cleaned.V))
+    assert seamed(found, cleaned.vertex_map, other) is None

@@ -1,0 +1,150 @@
+"""From a textured file to skeleton.glb: what is kept, what is refused, and what Blender and the validator make of it."""
+
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from results.blender_reader import opened
+from results.gltf_reader import Glb as Read
+from results.gltf_validator import issues
+from results.plain_names import plain
+from results.rigged_bodies import skinned, spider
+from textured import MTL, corner_uv, obj, png
+
+from kinetree.pipeline import views
+from kinetree.pipeline.identity.key import file_digest
+from kinetree.schemas.input.mesh import MeshParams
+from kinetree.schemas.input.source import Source
+from kinetree.schemas.results.appearance import Appearance
+from kinetree.schemas.results.glb import GlbParams
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.input.frames.read import mesh_digest, packed_frames
+from kinetree.tasks.input.mesh import mesh
+from kinetree.tasks.results.appearance import appearance
+from kinetree.tasks.results.glb import glb
+
+UP = UpDirection(up="y", confidence=1.0)
+FILES = {"frame.obj": None, "skin.mtl": MTL.encode(), "skin.png": png()}
+
+
+def write(folder, **changes):
+    """A textured OBJ of the spider in a folder, with the files that it names; `changes` replace the text of files by stem."""
+    folder.mkdir(parents=True, exist_ok=True)
+    body = spider()
+    text = obj(body.vertices, body.faces, corner_uv(body.vertices, body.faces))
+    for name, raw in FILES.items():
+        data = changes.get(name.partition(".")[0] if raw is not None else "obj", text.encode() if raw is None else raw)
+        if data is not None:
+            (folder / name).write_bytes(data)
+    return Source(content=file_digest(folder / "frame.obj"), path=str(folder / "frame.obj"))
+
+
+def shown(source):
+    """The appearance of a frame, and the skeleton whose reference mesh it is."""
+    surface = mesh(source, MeshParams())
+    body = spider(vertices=surface.vertices, faces=surface.faces)
+    return appearance(body, {3: source}, {3: surface}), body
+
+
+def exported(found, body, **params):
+    files = views.files(glb(body, plain(body), UP, GlbParams(scale=1.0, **params), found), ())
+    return files["skeleton.glb"]
+
+
+def test_textured_obj_with_seams_is_welded_for_the_skeleton_and_textured_in_the_file(tmp_path):
+    found, body = shown(write(tmp_path))
+    assert (found.frame, found.missing) == (3, ())
+    assert len(body.vertices) == len(spider().vertices)  # the copies at seams are welded
+    file = Read(exported(found, body))
+    uv = corner_uv(body.vertices, body.faces) * (1, -1) + (0, 1)
+    np.testing.assert_allclose(file.attribute("TEXCOORD_0")[file.faces], uv, atol=1e-6)
+    np.testing.assert_allclose(file.attribute("POSITION")[file.faces], body.vertices[body.faces], rtol=1e-6)
+    size = np.linalg.norm(np.ptp(body.vertices, axis=0))
+    for t in (0, 5, 11):
+        assert np.abs(file.skinned(t)[file.faces] - skinned(body)[t][body.faces]).max() < 2e-6 * size
+    (image,) = file.json["images"]
+    view = file.json["bufferViews"][image["bufferView"]]
+    assert file.buffer[view["byteOffset"] :][: view["byteLength"]] == png()
+    (primitive,) = file.json["meshes"][0]["primitives"]
+    assert "COLOR_0" not in primitive["attributes"]  # which would darken the texture
+    material = file.json["materials"][primitive["material"]]["pbrMetallicRoughness"]
+    assert file.json["textures"][material["baseColorTexture"]["index"]]["source"] == 0
+
+
+def test_parts_are_coloured_where_they_are_asked_for_or_there_is_nothing_else(tmp_path):
+    found, body = shown(write(tmp_path))
+    assert exported(found, body, surface="parts") == exported(Appearance.none(), body)
+    assert "images" not in Read(exported(Appearance.none(), body)).json
+
+
+def test_zip_of_textured_frames_has_its_texture(tmp_path):
+    write(tmp_path / "walk")
+    with zipfile.ZipFile(tmp_path / "walk.zip", "w") as archive:
+        for name in FILES:
+            archive.write(tmp_path / "walk" / name, f"walk/{name}")
+    digest = mesh_digest(*packed_frames(tmp_path / "walk.zip", "animated").mesh(0))
+    found, _ = shown(Source(content=digest, path=str(tmp_path / "walk.zip"), part=0, kind="animated"))
+    assert found.content.tobytes() == png()
+    assert found.has_uv
+
+
+@pytest.mark.parametrize("named", ["../secret.png", "/etc/hostname", "..\\secret.png"])
+def test_no_file_outside_the_folder_is_opened(tmp_path, named):
+    (tmp_path / "secret.png").write_bytes(png((1, 2, 3)))
+    found, body = shown(write(tmp_path / "walk", skin=f"newmtl skin\nmap_Kd {named}\n".encode()))
+    assert found.media == ()
+    assert [text.endswith(f"{named} is not there") for text in found.missing] == [True]
+    made = glb(body, plain(body), UP, GlbParams(scale=1.0), found)
+    assert views.remarks(made) == found.missing
+
+
+def test_link_out_of_the_folder_is_not_followed(tmp_path):
+    source = write(tmp_path / "walk")
+    (tmp_path / "walk" / "skin.png").unlink()
+    (tmp_path / "secret.png").write_bytes(png())
+    (tmp_path / "walk" / "skin.png").symlink_to(tmp_path / "secret.png")
+    assert shown(source)[0].media == ()
+
+
+def test_damaged_picture_is_said_and_the_rest_is_kept(tmp_path):
+    source = write(tmp_path)
+    (tmp_path / "skin.png").write_bytes(png()[:30])
+    found, body = shown(source)
+    assert "skin.png: cannot be read as a picture" in found.missing[0]
+    assert "TEXCOORD_0" in Read(exported(found, body)).json["meshes"][0]["primitives"][0]["attributes"]
+
+
+def test_reference_that_is_no_frame_has_no_appearance(tmp_path):
+    source = write(tmp_path)
+    surface = mesh(source, MeshParams())
+    assert appearance(spider(vertices=spider().vertices + 1.0), {3: source}, {3: surface}).frame is None
+
+
+def test_frames_in_a_bucket_have_none_and_nothing_is_said_to_be_wrong(tmp_path):
+    surface = mesh(write(tmp_path), MeshParams())
+    body = spider(vertices=surface.vertices, faces=surface.faces)
+    found = appearance(body, {3: Source(content="", path="s3://bucket/frame.obj")}, {3: surface})
+    assert (found.frame, found.missing) == (None, ())
+
+
+def test_validator_finds_nothing_to_say(tmp_path):
+    found, body = shown(write(tmp_path))
+    (tmp_path / "skeleton.glb").write_bytes(exported(found, body))
+    told = issues(tmp_path / "skeleton.glb")
+    assert told["messages"] == [], json.dumps(told)[:2000]
+
+
+def test_blender_has_the_texture_and_its_coordinates(tmp_path: Path):
+    found, body = shown(write(tmp_path))
+    (tmp_path / "skeleton.glb").write_bytes(exported(found, body))
+    told = opened(tmp_path / "skeleton.glb", 10.0, [0])
+    (image,) = told["images"]
+    assert image[1] == [4, 4]
+    assert told["materials"] == [[image[0]]]
+    place = np.array(told["skin"][0])[told["corners"]].reshape(-1, 3, 3) @ [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+    truth = skinned(body)[0][body.faces]
+    np.testing.assert_allclose(place, truth, atol=1e-4 * np.ptp(truth))
+    uv = np.array(told["uv"][0]).reshape(-1, 3, 2)
+    np.testing.assert_allclose(uv, corner_uv(body.vertices, body.faces), atol=1e-5)
