@@ -24,6 +24,9 @@ ASKED_AT_ONCE = 16
 RETRIES: Any = {"max_retries": 8, "retry_timeout": timedelta(minutes=3)}
 """A service that answers 503 is asked again, after pauses that grow."""
 _STATUS = re.compile(r"non-2xx status code: (\d{3})")
+_CERTIFICATE = re.compile(r"^\s*error: InvalidCertificate\(", re.MULTILINE)
+"""In the causes of an error: to ask again is of no use."""
+_UNKNOWN_NAME = re.compile(r"^\s*\"dns error\",$", re.MULTILINE)
 _OVERLOADED = ("408", "429")
 """Statuses below 500 that say nothing of the request: too slow, too many."""
 
@@ -163,6 +166,11 @@ class Bucket:
                     f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {failure}, also when asked again; check"
                     " AWS_ENDPOINT_URL, then run again to go on"
                 ) from None
+            if _CERTIFICATE.search(str(error)):
+                raise StoreError(
+                    f"{self._name} {self.url}: cannot {verb} {path or 'it'}: its certificate is not trusted on this machine;"
+                    " check AWS_ENDPOINT_URL, or trust who signed it"
+                ) from None
             raise StoreError(
                 f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {_short(error)}; check the address, and"
                 " AWS_ENDPOINT_URL, AWS_REGION and the credentials in the environment"
@@ -183,12 +191,17 @@ def _client_options() -> Any:
 def _failure_of_service(error: Exception) -> str:
     """What a service said that is no refusal of what was asked, in words; empty where it refused.
 
-    obstore has one kind of error for all of it; the first line of its text is the request and what came of it.
+    obstore has one kind of error for all of it; the first line of its text is the request and what came of it, the others
+    are its causes, a line each.
     """
     told = str(error).partition("\n")[0]
     status = _STATUS.search(told)
     if status is None:
-        return "the service does not answer" if "HTTP error: " in told else ""
+        is_silent = "HTTP error: " in told and not _CERTIFICATE.search(str(error))
+        what = (
+            "no machine of the service's name is found" if _UNKNOWN_NAME.search(str(error)) else "the service does not answer"
+        )
+        return what if is_silent else ""
     is_failure = status[1].startswith("5") or status[1] in _OVERLOADED
     return f"the service answers {status[1]}" if is_failure else ""
 

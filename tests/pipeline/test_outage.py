@@ -2,8 +2,12 @@
 
 import importlib
 import signal
+import ssl
+import subprocess
 import sys
+import threading
 from datetime import timedelta
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import numpy as np
 import pytest
@@ -53,6 +57,41 @@ def test_service_that_is_gone_does_not_answer(url, monkeypatch):
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:1")
     with pytest.raises(ServiceError, match="the service does not answer"):
         Store.at(url)
+
+
+def test_name_that_nobody_has_may_be_known_later(url, monkeypatch):
+    monkeypatch.setenv("AWS_ENDPOINT_URL", "https://bucket.nowhere.invalid")
+    with pytest.raises(ServiceError, match="no machine of the service's name is found, also when asked again"):
+        Store.at(url)
+
+
+@pytest.fixture
+def untrusted(tmp_path):
+    """The address of a server on this machine whose certificate nobody signed but itself."""
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    made = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=localhost"]
+    made += ["-addext", "subjectAltName=IP:127.0.0.1", "-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(made, check=True, capture_output=True)
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(certificate, key)
+    server = ThreadingHTTPServer(("127.0.0.1", 0), QuietHandler)
+    server.socket = context.wrap_socket(server.socket, server_side=True)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"https://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    server.server_close()
+
+
+class QuietHandler(BaseHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+def test_certificate_that_is_not_trusted_is_no_outage(url, untrusted, monkeypatch):
+    monkeypatch.setenv("AWS_ENDPOINT_URL", untrusted)
+    with pytest.raises(StoreError, match="certificate is not trusted on this machine; check AWS_ENDPOINT_URL") as refused:
+        Store.at(url)
+    assert not isinstance(refused.value, ServiceError)
 
 
 def test_array_that_cannot_be_asked_for_is_not_damaged(toys, url, service):
