@@ -44,7 +44,8 @@ class _Register(Generic[V]):
 
 
 _REMARKS: _Register[Callable[[Any], Words]] = _Register("remarks")
-_TEXT: _Register[Callable[[Any], Words]] = _Register("text")
+_TEXT: "_Register[tuple[Callable[..., Words], tuple[type[Artifact], ...]]]" = _Register("text")
+_SUMMARIES: _Register[Callable[[Any], Mapping[str, Any]]] = _Register("summary")
 _FILES: "_Register[Callable[[Any, Index], Mapping[str, bytes]]]" = _Register("files")
 _GROUPS: _Register[str] = _Register("group")
 _PAGES: _Register[tuple[str, Callable[[Any, Run], bytes]]] = _Register("page")
@@ -69,11 +70,24 @@ def remarks_of(cls: type[A]) -> Callable[[Callable[[A], Words]], Callable[[A], W
     return register
 
 
-def text_of(cls: type[A]) -> Callable[[Callable[[A], Words]], Callable[[A], Words]]:
-    """Registers the result itself as lines of text, where shapes and statistics do not show it."""
+def text_of(cls: type[A], *beside: "type[Artifact]") -> Callable[[Callable[..., Words]], Callable[..., Words]]:
+    """Registers the result itself as lines of text, where shapes and statistics do not show it.
 
-    def register(view: Callable[[A], Words]) -> Callable[[A], Words]:
-        _TEXT.add(cls, view)
+    beside : classes of other results that the text speaks of; the view is given them too, None where there are none
+    """
+
+    def register(view: Callable[..., Words]) -> Callable[..., Words]:
+        _TEXT.add(cls, (view, beside))
+        return view
+
+    return register
+
+
+def summary_of(cls: type[A]) -> Callable[[Callable[[A], Mapping[str, Any]]], Callable[[A], Mapping[str, Any]]]:
+    """Registers what run.json says of a result that stands for the whole sequence, as JSON values."""
+
+    def register(view: Callable[[A], Mapping[str, Any]]) -> Callable[[A], Mapping[str, Any]]:
+        _SUMMARIES.add(cls, view)
         return view
 
     return register
@@ -124,10 +138,24 @@ def remarks(artifact: "Artifact") -> Words:
     return view(artifact) if view else ()
 
 
-def text(artifact: "Artifact") -> Words:
-    """The result itself as lines of text; empty where nobody registered any."""
-    view = _TEXT.of(type(artifact))
-    return view(artifact) if view else ()
+def text(artifact: "Artifact", others: "Callable[[type[Artifact]], Artifact | None]" = lambda _: None) -> Words:
+    """The result itself as lines of text; empty where nobody registered any.
+
+    others : gives the result of another class, None where there is none
+    """
+    found = _TEXT.of(type(artifact))
+    return found[0](artifact, *map(others, found[1])) if found else ()
+
+
+def summary(artifact: "Artifact") -> Mapping[str, Any]:
+    """What run.json says of this; empty where nobody registered anything."""
+    view = _SUMMARIES.of(type(artifact))
+    return view(artifact) if view else {}
+
+
+def has_summary(cls: "type[Artifact]") -> bool:
+    """Whether run.json says something of artifacts of this class."""
+    return _SUMMARIES.of(cls) is not None
 
 
 def rows(artifact: "Artifact") -> list[dict[str, Any]]:
@@ -176,5 +204,5 @@ def _import_provided() -> None:
 def _place(view: Any) -> str:
     """Where a view is defined; a module that is imported again replaces its own."""
     if isinstance(view, tuple):
-        return _place(view[1])
+        return _place(next(part for part in view if callable(part)))
     return f"{view.__module__}.{view.__qualname__}" if callable(view) else repr(view)

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "VIEWS"]
 VIEWS = tuple(
     f"kinetree.tasks.views.{shelf}"
-    for shelf in ("input", "topology", "registration", "structure", "paper_2014", "paper_2009", "results")
+    for shelf in ("input", "topology", "registration", "structure", "paper_2014", "paper_2009", "results", "verdict")
 )
-"""What people see of results, a module a shelf; each is imported when somebody looks."""
+"""What people see of results, a module a shelf and one for the verdict; each is imported when somebody looks."""
 provide(*VIEWS)
 
 

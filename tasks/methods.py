@@ -16,6 +16,7 @@ from kinetree.tasks.registration import ALIGNED, REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQUENCES, RESULTS
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.structure import STRUCTURE
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.joint_names import joint_names
@@ -38,7 +39,7 @@ METHODS = {
 }
 """The graph of each method, checked when this module is imported."""
 
-MADE_BY_METHODS = (skeleton, evaluation, frame_confidence, up_direction)
+MADE_BY_METHODS = (skeleton, evaluation, frame_confidence, up_direction, verdict)
 """Whose artifacts, of every sequence, the summary of a data set reads; every method writes them."""
 DATA_SETS = Graph.of((*(linked(task, over="sequence") for task in MADE_BY_METHODS), *OVER_SEQUENCES))
 """The graph that sums up a data set."""

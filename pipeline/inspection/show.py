@@ -1,12 +1,15 @@
 """One node for a person: its schema with shapes and statistics, and where it comes from."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinetree.errors import KinetreeError
 from kinetree.pipeline import views
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.storage.store import Record
 from kinetree.schemas.array import Array, Artifact
 
@@ -25,11 +28,23 @@ def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
     return {
         **content,
         "artifact": entry.artifact,
-        "told": list(views.text(artifact)),
+        "told": list(views.text(artifact, _others(there))),
         "values": artifact.plain(),
         "arrays": {name: statistics(array) for name, array in artifact.arrays().items()},
         "made": _provenance(entry.record) if entry.record else None,
     }
+
+
+def _others(there: Snapshot) -> Callable[[type[Artifact]], Artifact | None]:
+    """Gives the results of other tasks, None where there are none."""
+
+    def other(cls: type[Artifact]) -> Artifact | None:
+        try:
+            return there.artifact(cls)
+        except KinetreeError:
+            return None
+
+    return other
 
 
 def statistics(array: NDArray[Any]) -> dict[str, Any]:

@@ -10,7 +10,16 @@ from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.inspection.history import History, closing, new_name, opening, summary
 from kinetree.pipeline.inspection.look import RunSummary
 from kinetree.pipeline.inspection.snapshot import Snapshot
-from kinetree.pipeline.output.output import RUN_JSON, claim, pages, write_config, write_pages, write_results, write_run_json
+from kinetree.pipeline.output.output import (
+    RUN_JSON,
+    claim,
+    pages,
+    summaries,
+    write_config,
+    write_pages,
+    write_results,
+    write_run_json,
+)
 from kinetree.pipeline.output.ownership import Owned
 from kinetree.pipeline.planning.entry import DONE
 from kinetree.pipeline.running.events import Account, Listener, Watch
@@ -92,15 +101,17 @@ class Session:
         said = [*self.there.notes, *([] if self.is_on_record else [UNRECORDED])]
         notes = {"notes": said} if said else {}
         summed = {**summary(self.account, status, seconds), "files": self.left, **notes}
+        results = summaries(schedule)
+        told = {**summed, **({"results": results} if results else {})}
         if self.is_own:
-            write_run_json(self.config, summed)
+            write_run_json(self.config, told)
         if not self.is_on_record:
-            return RunSummary({"run": self.name, **summed})
+            return RunSummary({"run": self.name, **told})
         before = History.of(store, self.config).last_nodes()
         store.create()  # which somebody may have removed meanwhile
         store.write_run(self.name, closing(self.opened, schedule, before, self.account, summed))
         store.records.pack(self.name, [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
-        return RunSummary({"run": self.name, **summed})
+        return RunSummary({"run": self.name, **told})
 
     def write_pages(self, summed: Mapping[str, Any]) -> None:
         """Leaves the pages that also tell of the run, as `close` summed it up."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from kinetree.schemas.array import Array, Artifact
 from kinetree.schemas.dims import PIXEL_COLUMN, PIXEL_ROW, RGB
+from kinetree.schemas.results.verdict import Level
 
 
 class SequenceFigures(Artifact):
@@ -30,6 +31,10 @@ class SequenceFigures(Artifact):
     """Mean over joints and frames, 0 to 1."""
     outliers: int
     """Frames that the alignment explains clearly worse than the others."""
+    verdict: Level
+    """Whether the result can be relied on."""
+    verdict_words: str
+    """The same in one sentence, with what speaks against it."""
     truth: str
     """Name of the truth; empty where there is none."""
     scored: int | None

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from kinetree.schemas.array import Array, Artifact, Params
 from kinetree.schemas.dims import PIXEL_COLUMN, PIXEL_ROW, RGB, SEQUENCE
 from kinetree.schemas.results.outcomes import SequenceOutcome
+from kinetree.schemas.results.verdict import Level
 
 
 class SequenceRow(Params):
@@ -33,6 +34,10 @@ class SequenceRow(Params):
     """Mean over joints and frames, 0 to 1."""
     outliers: int | None = None
     """Frames that the alignment explains clearly worse than the others."""
+    verdict: Level | None = None
+    """Whether the result can be relied on: good, except (good but for what is named), unusable."""
+    verdict_words: str | None = None
+    """The same in one sentence, with what speaks against it."""
     truth: str | None = None
     """Name of the truth; empty where there is none."""
     scored: int | None = None

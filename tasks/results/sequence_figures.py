@@ -6,16 +6,18 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.sequence_figures import SequenceFigures
+from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.evaluation.body import longest_side
 from kinetree.tasks.numerics.results.thumbnail import thumbnail
 from kinetree.tasks.results.formats.colours import part_colours
+from kinetree.tasks.views.verdict import headline
 
 
 @task(over="sequence")
 def sequence_figures(
-    skeleton: Skeleton, evaluation: Evaluation, frame_confidence: FrameConfidence, up_direction: UpDirection
+    skeleton: Skeleton, evaluation: Evaluation, frame_confidence: FrameConfidence, up_direction: UpDirection, verdict: Verdict
 ) -> SequenceFigures:
     """Sums up one sequence for a table over many (ours)."""
     summary = evaluation.summary
@@ -31,6 +33,8 @@ def sequence_figures(
         bones=sum(parent >= 0 for parent in skeleton.parents),
         confidence=float(np.mean(skeleton.confidence)),
         outliers=int(np.sum(~np.asarray(frame_confidence.inlier))),
+        verdict=verdict.level,
+        verdict_words=headline(verdict),
         truth=evaluation.truth,
         picture=thumbnail(
             np.array(skeleton.vertices),

@@ -24,10 +24,8 @@ from kinetree.schemas.results.sequence_table import SequenceRow, SequenceTable
 from kinetree.schemas.results.tables import Tables
 from kinetree.schemas.results.trc import Trc
 from kinetree.schemas.results.usd import Usd
-from kinetree.schemas.results.verdict import Verdict
 from kinetree.tasks.numerics.results.units import METRES
 from kinetree.tasks.views.topology import UNSURE
-from kinetree.tasks.views.verdict import headline, sentence
 
 leave_group(Segmentation, "segmentation.zarr")
 NAMED_FRAMES = 8
@@ -136,12 +134,6 @@ def tables_remarks(tables: Tables) -> tuple[str, ...]:
         return ("frame rate not known: no velocities and accelerations; set sequence.fps",)
     over = f"{tables.samples} frames ({tables.seconds:.3g} s)"
     return (f"velocities and accelerations: Savitzky-Golay over {over}, polynomials of degree {tables.degree}",)
-
-
-@remarks_of(Verdict)
-def verdict_remarks(verdict: Verdict) -> tuple[str, ...]:
-    """The verdict in one sentence, then every fault."""
-    return (headline(verdict), *(sentence(found, verdict) for found in verdict.findings if found.severity != "note"))
 
 
 @remarks_of(Segmentation)

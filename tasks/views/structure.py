@@ -1,9 +1,12 @@
 """Views of the artifacts of the shelf `structure`."""
 
 from kinetree.pipeline.views import remarks_of, text_of
+from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.results.formats.names import readable_names
+from kinetree.tasks.views.verdict import headline
 
 
 @remarks_of(KinematicTree)
@@ -22,12 +25,18 @@ def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
     return (f"{turning} joint{'s' * (turning != 1)} and {leaves} lea{'f' if leaves == 1 else 'ves'} under {skeleton.names[0]}",)
 
 
-@text_of(Skeleton)
-def skeleton_text(skeleton: Skeleton) -> tuple[str, ...]:
-    """The tree, one line a joint: length of its bone, range of its angle, uncertainty, frames that support it."""
-    names = [f"{_branch(skeleton, joint)}{name}" for joint, name in enumerate(skeleton.names)]
+@text_of(Skeleton, JointNames, Verdict)
+def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: Verdict | None) -> tuple[str, ...]:
+    """The tree, one line a joint: length of its bone, range of its angle, uncertainty, frames that support it.
+
+    Above it the verdict; joints as people call them, with the skeleton's own name where that is another.
+    """
+    known = dict(zip(joint_names.given, readable_names(joint_names), strict=True)) if joint_names else {}
+    labels = [f"{known[n]} ({n})" if known.get(n, n) != n else n for n in skeleton.names]
+    names = [f"{_branch(skeleton, joint)}{label}" for joint, label in enumerate(labels)]
     width = max(map(len, names))
-    return tuple(f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names))
+    above = (headline(verdict), "") if verdict else ()
+    return (*above, *(f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names)))
 
 
 def _branch(skeleton: Skeleton, joint: int) -> str:

@@ -1,7 +1,9 @@
 """The verdict in plain sentences, for the command line, tables and the report."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
+from kinetree.pipeline.views import remarks_of, summary_of, text_of
 from kinetree.schemas.results.verdict import Finding, Level, Verdict
 
 WORDS: dict[Level, str] = {"good": "good", "except": "good except for", "unusable": "do not use"}
@@ -97,6 +99,34 @@ def runs(frames: Sequence[int], among: Sequence[int]) -> str:
     shown = ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in spans[:NAMED])
     more = f" and {len(spans) - NAMED} more intervals" if len(spans) > NAMED else ""
     return f"frame{'s' * (len(frames) > 1)} {shown}{more}"
+
+
+@remarks_of(Verdict)
+def verdict_remarks(verdict: Verdict) -> tuple[str, ...]:
+    """The verdict in one sentence, then every fault."""
+    return (headline(verdict), *(sentence(found, verdict) for found in verdict.findings if found.severity != "note"))
+
+
+@summary_of(Verdict)
+def verdict_summary(verdict: Verdict) -> Mapping[str, Any]:
+    """The verdict and its findings, each with its sentence and its joints as the skeleton and as people call them."""
+    label = dict(zip(verdict.joints, verdict.labels, strict=True))
+    findings = [
+        {
+            **found.model_dump(mode="json"),
+            "labels": [label[name] for name in found.joints],
+            "sentence": sentence(found, verdict),
+        }
+        for found in verdict.findings
+    ]
+    return {"level": verdict.level, "headline": headline(verdict), "findings": findings}
+
+
+@text_of(Verdict)
+def verdict_text(verdict: Verdict) -> tuple[str, ...]:
+    """The verdict, then what speaks against it, then what is only good to know."""
+    marks = {"grave": "✗", "fault": "!", "note": "·"}
+    return (headline(verdict), *(f"  {marks[found.severity]} {sentence(found, verdict)}" for found in verdict.findings))
 
 
 def _frames(found: Finding, verdict: Verdict) -> str:

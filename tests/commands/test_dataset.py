@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 from results.rigged_bodies import spider
-from results.sequence_tables import evaluated
+from results.sequence_tables import evaluated, judged
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.command_line.cli import command_line
@@ -32,6 +32,7 @@ def lab(tmp_path):
     found.store.create()
     made = {"skeleton": body, "evaluation": evaluated(None), "frame_confidence": sure}
     made["up_direction"] = UpDirection(up="z", confidence=1.0)
+    made["verdict"] = judged(body)
     digests = {name: found.store.publish(artifact)[0] for name, artifact in made.items()}
     walk = Outcome("walk", "", "done", "2026-01-01", "run", 3.0, 12, artifacts=digests, files={"report.html": (1, 1)})
     walk.write(found["walk"].config.output)
@@ -46,7 +47,9 @@ def test_the_page_is_made_of_what_lies_in_the_store(lab):
     folder = lab.config.root
     rows = list(csv.DictReader((folder / "summary.csv").read_text().splitlines()))
     assert [(row["name"], row["status"], row["joints"]) for row in rows] == [("dance", "failed", ""), ("walk", "done", "2")]
+    assert [row["verdict"] for row in rows] == ["", "except"]
     page = (folder / "index.html").read_text()
+    assert "good except for left &lt;shoulder&gt;</span>" in page
     assert '<a href="walk/report.html">walk</a>' in page
     assert "mesh[frame=3]: MeshError: torn" in page
     assert [row["frames"] for row in lab.table()] == [None, 12]

@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from kinetree.errors import StoreError, StoreFullError
+from kinetree.pipeline import views
 from kinetree.pipeline.output.output import write_config, write_run_json
 from kinetree.pipeline.settings.config import load
 from kinetree.tasks.application import APPLICATION
@@ -39,6 +40,16 @@ def test_account_is_left_as_json(config):
 def test_message_that_is_no_text_is_left_all_the_same(config):
     write_run_json(config, {"message": "name\udcff.ply"})
     assert json.loads((config.output / "run.json").read_text()) == {"message": "name\udcff.ply"}
+
+
+def test_run_json_says_what_results_have_to_say_in_short_also_where_nothing_ran(toys):
+    toys.run(until=("total",))
+    assert "results" not in json.loads((toys.output / "run.json").read_text())
+    views.summary_of(toys.module.Total)(lambda total: {"frames": list(total.frames)})
+    again = toys.run(until=("total",))
+    assert again.ran == set()
+    told = {"total": {"frames": list(range(len(list(toys.frames.iterdir()))))}}
+    assert json.loads((toys.output / "run.json").read_text())["results"] == again.told["results"] == told
 
 
 def test_nothing_else_is_left_in_the_folder(config):

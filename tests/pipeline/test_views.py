@@ -70,9 +70,22 @@ def test_view_of_the_class_comes_before_that_of_its_base() -> None:
     assert views.files(Gem(), (7,)) == {"stone_7.txt": b"stone"}
 
 
+def test_text_may_speak_of_other_results_where_there_are_any() -> None:
+    class Heap(Dust):
+        """What lies about."""
+
+    @views.text_of(Heap, Stone)
+    def heap_text(heap: Heap, stone: Stone | None) -> tuple[str, ...]:
+        return (f"dust of {stone.weight:g}" if stone else "dust",)
+
+    assert views.text(Heap()) == ("dust",)
+    assert views.text(Heap(), lambda cls: cls(weight=3) if cls is Stone else None) == ("dust of 3",)
+
+
 def test_what_nobody_registered_is_empty() -> None:
     assert views.remarks(Dust()) == views.text(Dust()) == ()
     assert views.files(Dust(), ()) == {}
+    assert (views.summary(Dust()), views.has_summary(Dust)) == ({}, False)
     assert (views.group_name(Dust), views.page_name(Dust), views.leaves_files(Dust)) == ("", "", False)
     with pytest.raises(GraphError, match=r"^Dust has no page that tells of a run$"):
         views.page(Dust(), {})

@@ -6,6 +6,7 @@ from results.rigged_bodies import spider
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.evaluation import Evaluation, Summary
 from kinetree.schemas.results.outcomes import Outcomes, SequenceOutcome
+from kinetree.schemas.results.verdict import Finding, Verdict
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.sequence_figures import sequence_figures
 from kinetree.tasks.results.sequence_table import sequence_table
@@ -27,12 +28,22 @@ def evaluated(summary):
     )  # fmt: skip
 
 
+def judged(body):
+    """Good except for one joint."""
+    weak = Finding(kind="weak", severity="fault", joints=body.names[1:2], amount=0.2)
+    return Verdict(
+        level="except", findings=(weak,), frames=body.frames, joints=body.names,
+        labels=(body.names[0], "left <shoulder>", *body.names[2:]),
+        worst=0.01, state=np.zeros((len(body.frames), len(body.names)), np.int32),
+    )  # fmt: skip
+
+
 def figures_of(summary=None):
     body = spider()
     zero = np.zeros(len(body.frames))
     inlier = np.arange(len(body.frames)) > 1
     sure = FrameConfidence(frames=body.frames, residual=zero, uncovered=zero, unreliable=zero, inlier=inlier)
-    return sequence_figures(body, evaluated(summary), sure, UpDirection(up="z", confidence=1.0))
+    return sequence_figures(body, evaluated(summary), sure, UpDirection(up="z", confidence=1.0), judged(body))
 
 
 def table():

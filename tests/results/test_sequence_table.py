@@ -45,6 +45,17 @@ def test_the_page_links_reports_escapes_names_and_needs_no_network():
     assert "{{" not in page
 
 
+def test_the_page_and_the_table_have_the_verdict_of_every_sequence():
+    files = views.files(table(), ())
+    page = files["index.html"].decode()
+    assert page.count('class="judged except"') == 2
+    assert "good except for left &lt;shoulder&gt;</span>" in page
+    assert "<li>good except <b>2</b></li>" in page
+    rows = list(csv.DictReader(io.StringIO(files["summary.csv"].decode())))
+    assert [row["verdict"] for row in rows] == ["except", "", "except"]
+    assert rows[0]["verdict_words"] == "good except for left <shoulder>"
+
+
 def test_a_table_of_nothing_is_left_as_one():
     empty = views.files(table().model_copy(update={"rows": ()}), ())
     assert empty["summary.csv"].decode().strip() == "name"

@@ -1,5 +1,7 @@
 """The verdict on a body in order and on spoilt ones, and what it is in words."""
 
+import json
+
 import numpy as np
 import pytest
 from results.plain_names import plain
@@ -8,6 +10,7 @@ from results.sample_report import artifacts, confident
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.verdict import Finding, Verdict
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.views.verdict import runs, sentence
@@ -62,6 +65,32 @@ def test_a_body_that_is_wrong_in_many_frames_is_not_to_be_used() -> None:
     found = of(dict.fromkeys(range(6), 6.0))
     assert found.level == "unusable"
     assert views.remarks(found)[0] == "do not use: wrong in 50% of the frames"
+
+
+def test_run_json_has_the_verdict_with_joints_as_people_call_them() -> None:
+    told = json.loads(json.dumps(views.summary(of({7: 6.0}))))
+    assert told["level"] == "except"
+    assert told["headline"].startswith("good except for ")
+    worst = told["findings"][0]
+    assert (worst["kind"], worst["frames"], worst["labels"]) == ("off", [7], ["left shoulder"])
+    assert worst["sentence"].startswith("left shoulder: wrong in frame 7")
+
+
+def test_text_of_the_verdict_marks_faults_and_notes() -> None:
+    first, *rest = views.text(of({7: 6.0}))
+    assert first.startswith("good except for ")
+    assert [line[:4] for line in rest] == ["  ! ", "  · "]
+
+
+def test_skeleton_is_shown_with_the_verdict_and_names_that_people_know() -> None:
+    found, body = of({7: 6.0}), spider()
+    names = plain(body, anatomy=("pelvis", "shoulder_l", *[""] * 5))
+    lines = views.text(body, {JointNames: names, Verdict: found}.get)
+    assert lines[0].startswith("good except for ")
+    assert lines[2].startswith("pelvis (trunk)")
+    assert any("left shoulder (arm)  " in line for line in lines)
+    assert any("─ tail  " in line for line in lines)
+    assert views.text(body)[0].startswith("trunk  ")
 
 
 def test_frames_are_told_as_runs() -> None:

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kinetree.schemas.results.sequence_table import SequenceRow, SequenceTable
-from kinetree.tasks.results.page.document import page_file
+from kinetree.tasks.results.page.document import MARKS, page_file
+from kinetree.tasks.views.verdict import WORDS
 
 REPORT = "report.html"
-HEAD = ("", "sequence", "status", "frames", "joints", "confidence", "true joints found", "error, % of height", "spurious",
-        "seconds of computing", "remarks")  # fmt: skip
-NUMBERS = range(3, 10)
+HEAD = ("", "sequence", "status", "verdict", "frames", "joints", "confidence", "true joints found", "error, % of height",
+        "spurious", "seconds of computing", "remarks")  # fmt: skip
+NUMBERS = range(4, 11)
 """Columns that hold numbers."""
 
 
@@ -40,6 +41,8 @@ def index_page(table: SequenceTable) -> str:
 def _facts(rows: Sequence[SequenceRow]) -> list[tuple[str, str]]:
     states = [row.outcome.status for row in rows]
     facts = [(state, str(states.count(state))) for state in dict.fromkeys(sorted(states))]
+    levels = [row.verdict for row in rows]
+    facts += [(words.removesuffix(" for"), str(levels.count(level))) for level, words in WORDS.items() if level in levels]
     scored = [row for row in rows if row.scored is not None]
     if scored:
         found, total = sum(row.found or 0 for row in scored), sum(row.scored or 0 for row in scored)
@@ -77,6 +80,7 @@ def _row(row: SequenceRow, table: SequenceTable) -> str:
         picture,
         name,
         f'<span class="failed">{status}</span>' if outcome.failures else status,
+        _verdict(row),
         _text(row.frames),
         _text(row.joints),
         "" if row.confidence is None else f"{row.confidence:.2f}",
@@ -87,6 +91,14 @@ def _row(row: SequenceRow, table: SequenceTable) -> str:
         _remarks(outcome.remarks),
     ]
     return "<tr>" + "".join(f"<td{' class=n' if n in NUMBERS else ''}>{cell}</td>" for n, cell in enumerate(cells)) + "</tr>"
+
+
+def _verdict(row: SequenceRow) -> str:
+    """The verdict's mark and its sentence."""
+    if row.verdict is None:
+        return ""
+    mark = f'<b aria-hidden="true">{MARKS[row.verdict]}</b>'
+    return f'<span class="judged {row.verdict}">{mark} {escape(row.verdict_words or "")}</span>'
 
 
 def _remarks(remarks: Sequence[str]) -> str:
