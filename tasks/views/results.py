@@ -228,13 +228,14 @@ def sequence_rows(table: SequenceTable) -> list[dict[str, Any]]:
 @files_of(SequenceTable)
 def sequence_table_files(table: SequenceTable, index: Index) -> Mapping[str, bytes]:
     """The table as CSV, with all sentences as JSON, and as a page."""
+    from kinetree.tasks.results.formats.tables import spreadsheet_cell
     from kinetree.tasks.results.page.index import index_page  # which reads the page's style
 
     rows = sequence_rows(table)
     text = io.StringIO()
     writer = csv.DictWriter(text, list(rows[0]) if rows else ["name"], lineterminator="\r\n")
     writer.writeheader()
-    writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+    writer.writerows({name: spreadsheet_cell(value) for name, value in row.items()} for row in rows)
     full = [
         {**small, "remarks": list(row.outcome.remarks), "failures": list(row.outcome.failures)}
         for small, row in zip(rows, table.rows, strict=True)
@@ -245,11 +246,6 @@ def sequence_table_files(table: SequenceTable, index: Index) -> Mapping[str, byt
         "summary.json": (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode(),
         "index.html": index_page(table).encode(),
     }
-
-
-def _cell(value: Any) -> Any:
-    """A value as a cell that no spreadsheet takes for a formula."""
-    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r") else value
 
 
 def _sequence_row(row: SequenceRow) -> dict[str, Any]:

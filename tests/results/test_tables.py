@@ -54,6 +54,14 @@ def test_motion_has_a_row_for_every_joint_in_every_frame(body):
     np.testing.assert_allclose(numbers[..., 8:11], acceleration, rtol=1e-7, atol=1e-5)
 
 
+def test_text_of_strangers_is_no_formula_of_a_spreadsheet(body):
+    of_stranger = body.model_copy(update={"unit": '=HYPERLINK("http://x")', "names": ("@root", *body.names[1:])})
+    assert {row[-1] for row in rows(of_stranger, "joints")[1:]} == {'\'=HYPERLINK("http://x")'}
+    assert rows(of_stranger, "confidence")[0][2] == "'@root"
+    assert rows(of_stranger, "motion")[1][2] == "'@root"
+    assert min(float(row[3]) for row in rows(of_stranger, "motion")[1:]) < 0, "numbers stay numbers"
+
+
 def test_smoothing_is_said():
     assert views.remarks(tables(spider(), plain(spider()), TablesParams(window=0.7, degree=2))) == (
         "velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",

@@ -128,12 +128,17 @@ def _seconds(skeleton: Skeleton) -> Floats:
     return np.full(len(skeleton.frames), np.nan) if skeleton.fps is None else seconds(skeleton, skeleton.fps)
 
 
+def spreadsheet_cell(value: object) -> object:
+    """A value as a cell that no spreadsheet takes for a formula: text that begins like one gets an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r") else value
+
+
 def _csv(table: Table) -> bytes:
     """A table as the bytes of a CSV file; unknown numbers are empty."""
     file = io.StringIO()
     writer = csv.writer(file)
-    writer.writerow(table.columns)
-    columns = [map(_number, c) if isinstance(c, np.ndarray) else c for c in table.columns.values()]
+    writer.writerow(map(spreadsheet_cell, table.columns))
+    columns = [map(_number, c) if isinstance(c, np.ndarray) else map(spreadsheet_cell, c) for c in table.columns.values()]
     writer.writerows(zip(*columns, strict=True))
     return file.getvalue().encode()
 
