@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+import dask.config
 from dask.local import SynchronousExecutor
 
 from kinetree.errors import ConfigError
@@ -16,6 +17,15 @@ from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.running.pool import Pool
 from kinetree.pipeline.running.sight import Sight
 from kinetree.pipeline.settings.config import Compute
+
+
+UNWATCHED = {
+    "distributed.admin.tick.interval": "1s",
+    "distributed.worker.profile.enabled": False,
+    "distributed.scheduler.active-memory-manager.start": False,
+}
+"""How dask watches processes of our own: its defaults look at every one fifty times a second, and at what a worker computes a
+hundred times, for a performance report; results are too small to be moved about."""
 
 
 class Future(Protocol):
@@ -65,8 +75,11 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
         from kinetree.pipeline.running import clusters
 
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
-        with clusters.connected(compute, client) as found, clusters.followed(found, compute, is_ours=is_ours) as workers:
-            yield _on_client(found, workers, compute)
+        with contextlib.ExitStack() as stack:
+            if is_ours and not compute.cluster and compute.performance_report is None:
+                stack.enter_context(dask.config.set(UNWATCHED))
+            found = stack.enter_context(clusters.connected(compute, client))
+            yield _on_client(found, stack.enter_context(clusters.followed(found, compute, is_ours=is_ours)), compute)
         return
     if compute.performance_report is not None:
         raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")
