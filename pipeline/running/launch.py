@@ -18,7 +18,6 @@ from kinetree.pipeline.running.pool import Pool
 from kinetree.pipeline.running.sight import Sight
 from kinetree.pipeline.settings.config import Compute
 
-
 UNWATCHED = {
     "distributed.admin.tick.interval": "1s",
     "distributed.worker.profile.enabled": False,

@@ -4,6 +4,7 @@ import json
 import threading
 import time
 
+import dask.config
 import pytest
 from distributed import Client, LocalCluster
 from distributed.comm import CommClosedError
@@ -160,6 +161,22 @@ class Queue(LocalCluster):
         threading.Thread(target=later, daemon=True).start()
 """
 """A queue that starts workers when it is their turn."""
+
+
+@pytest.mark.parametrize(("report", "is_profiled"), [(None, False), ("report.html", True)])
+def test_our_own_workers_are_profiled_for_a_report_alone(monkeypatch, tmp_path, report, is_profiled):
+    asked = []
+
+    def refuse(*_, **__):
+        asked.append(dask.config.get("distributed.worker.profile.enabled"))
+        raise ClusterError("enough is known")
+
+    monkeypatch.setattr(clusters, "LocalCluster", refuse)
+    compute = Compute(executor="processes", performance_report=report and str(tmp_path / report))
+    with pytest.raises(ClusterError, match="enough is known"), launcher(compute):
+        pass
+    assert asked == [is_profiled]
+    assert dask.config.get("distributed.worker.profile.enabled")
 
 
 def test_adaptive_workers_come_with_the_work_and_go_with_it(toys):
