@@ -1,17 +1,20 @@
 """Several takes of one body against each take alone: joints found, errors, spurious ones, bone lengths.
 
-    python benchmarks/takes.py [--seeds 0 1 2] [--frames 16] [--vertices 2000] [--trunk wave bow] [--work FOLDER]
+    python benchmarks/takes.py [--figures human quadruped] [--seeds 0 1 2] [--frames 16] [--vertices 2000]
+                               [--trunk own bow] [--head 1] [--alone] [--work FOLDER]
 
-A person of other proportions for every seed is seen in three takes: in one only the arms turn, in one only the legs, in one
-only the trunk. In the second and third the body stands elsewhere and faces another way. `--trunk wave` turns the trunk as the
-figure's own motion does: the spine by 18° and the chest back by 22°, about one axis, and the head about its own. `--trunk bow`
-turns each joint of the trunk by 30° at a time of its own, about an axis across it.
+A body of other proportions for every seed is seen in three takes: in one only the arms or forelegs turn, in one only the legs,
+in one only the trunk. In the second and third the body stands elsewhere and faces another way. `--trunk own` turns the trunk as
+the figure's own motion does: the human's spine by 18° and its chest back by 22°, about one axis, and its head about its own.
+`--trunk bow` turns each joint of the trunk by 30° at a time of its own, about an axis across it. The human's head is round, so
+that its turn about its own axis moves no surface; `--head 0.8` makes it so much narrower than deep.
 """
 
 import argparse
 import json
 import shutil
 import tempfile
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -26,37 +29,59 @@ from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
-TAKES = {"arms": ("shoulder", "elbow", "wrist"), "legs": ("hip_", "knee", "ankle"), "trunk": ("spine", "chest", "neck", "head")}
+TAKES = {
+    "human": {
+        "arms": ("shoulder", "elbow", "wrist"),
+        "legs": ("hip_", "knee", "ankle"),
+        "trunk": ("spine", "chest", "neck", "head"),
+    },
+    "quadruped": {
+        "forelegs": ("shoulder", "elbow", "wrist", "paw"),
+        "hindlegs": ("hip_", "stifle", "hock", "foot"),
+        "trunk": ("loin", "chest", "neck", "head", "tail_1", "tail_2"),
+    },
+}
+"""Which joints turn in each take."""
+MOTION = {"human": "wave", "quadruped": "walk"}
+ACROSS = {"human": ([1, 0, 0], [0, 1, 0]), "quadruped": ([1, 0, 0], [0, 0, 1])}
+"""Axes across the trunk, which its joints bend about in turn."""
 PLACES = (((0, 0, 0), 0), ((900, -400, 0), 100), ((-300, 700, 100), -35))
 """Where the body stands in each take, in the figure's unit, and which way it faces, degrees."""
 FPS = 16.0
 
 
-def motions(figure: dict[str, Any], trunk: str, seconds: float) -> dict[str, Any]:
-    """One motion for every take: the figure's own waving in some joints, the others held."""
-    own = dict(figure["motions"]["wave"])
+def motions(name: str, figure: dict[str, Any], trunk: str, seconds: float) -> dict[str, Any]:
+    """One motion for every take: the figure's own in some joints, the others held."""
+    own = dict(figure["motions"][MOTION[name]])
     if trunk == "bow":
-        for number, joint in enumerate(TAKES["trunk"]):
-            begin, step = number * seconds / 5, seconds / 5
-            keys = [[begin, 0], [begin + step / 2, 30], [begin + step, 0]]
-            own[joint] = [{"axis": [1, 0, 0] if number % 2 == 0 else [0, 1, 0], "keys": keys}]
+        step = seconds / (len(TAKES[name]["trunk"]) + 1)
+        for number, joint in enumerate(TAKES[name]["trunk"]):
+            keys = [[number * step, 0], [(number + 0.5) * step, 30], [(number + 1) * step, 0]]
+            own[joint] = [{"axis": ACROSS[name][number % 2], "keys": keys}]
     held = {joint: [_held(curve) for curve in curves] for joint, curves in own.items()}
-    return {take: {j: own[j] if j.startswith(names) else held[j] for j in own} for take, names in TAKES.items()}
+    return {take: {j: own[j] if j.startswith(names) else held[j] for j in own} for take, names in TAKES[name].items()}
 
 
 def _held(curve: dict[str, Any]) -> dict[str, Any]:
-    return {**curve, "keys": [[0, 0], [1, 0]]} if "keys" in curve else {**curve, "amplitude": 0}
+    return (
+        {**curve, "keys": [[0, 0], [1, 0]]}
+        if "keys" in curve
+        else curve | {k: 0 for k in ("amplitude", "distance") if k in curve}
+    )
 
 
-def write(seed: int, trunk: str, frames: int, vertices: int, folder: Path) -> None:
-    """The takes of one person as folders of meshes, each with its truth, and the truth of all beside them."""
-    figure = varied("human", seed)
-    figure["motions"] = motions(figure, trunk, frames / FPS)
+def write(name: str, seed: int, trunk: str, head: float, frames: int, vertices: int, folder: Path) -> None:
+    """The takes of one body as folders of meshes, each with its truth, and the truth of all beside them."""
+    figure = varied(name, seed)
+    figure["motions"] = motions(name, figure, trunk, frames / FPS)
+    for joint in figure["joints"]:
+        if joint["name"] == "head_top" and head != 1:
+            joint |= {"flatten": head, "side": [1, 0, 0]}
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "figure.yaml").write_text(yaml.safe_dump(figure))
     told: dict[str, Any] = {}
-    for k, (take, (shift, degrees)) in enumerate(zip(TAKES, PLACES, strict=True)):
+    for k, (take, (shift, degrees)) in enumerate(zip(TAKES[name], PLACES, strict=True)):
         told_of = {
             "file": str(folder / "figure.yaml"),
             "motion": take,
@@ -85,47 +110,53 @@ def write(seed: int, trunk: str, frames: int, vertices: int, folder: Path) -> No
     (folder / "truth.json").write_text(json.dumps(told))
 
 
-def scored(source: dict[str, Any], truth: Path, output: Path, store: Path) -> tuple[list[str], Any]:
-    """The cells of one run, and its skeleton."""
+def scored(source: dict[str, Any], truth: Path, output: Path, store: Path) -> tuple[list[str], Any, Any]:
+    """The cells of one run, its evaluation's summary, and its skeleton."""
     pipeline = Pipeline.of({"source": source, "truth": {"file": str(truth)}, "output": str(output), "store": str(store)})
     told = pipeline.run(until=["evaluation"])
     if told["status"] != "done":
-        return [told["failures"][0]["message"] if told["failures"] else told["status"]], None
+        return [told["failures"][0]["message"] if told["failures"] else told["status"]], None, None
     found: Any = pipeline.artifact("evaluation")
     s = found.summary
     missing = ", ".join(joint.name for joint in found.joints if joint.scored and joint.found is None)
     mean = "–" if s.percent is None else f"{s.percent:.2f} %"
-    return [f"{s.found} of {s.scored}", mean, f"{s.spurious} spurious", f"missing: {missing or 'none'}"], pipeline.artifact(
-        "skeleton"
-    )
+    cells = [f"{s.found} of {s.scored}", mean, f"{s.spurious} spurious", f"missing: {missing or 'none'}"]
+    return cells, s, pipeline.artifact("skeleton")
 
 
 def main() -> None:
-    """Prints a line a run, then how many joints all bodies have in sum."""
+    """Prints a line a run, then how many joints were found in all bodies together."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--figures", nargs="+", choices=tuple(TAKES), default=["human"])
     parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2])
     parser.add_argument("--frames", type=int, default=16, help="of each take")
     parser.add_argument("--vertices", type=int, default=2000)
-    parser.add_argument("--trunk", nargs="+", choices=("wave", "bow"), default=["wave", "bow"])
+    parser.add_argument("--trunk", nargs="+", choices=("own", "bow"), default=["own", "bow"])
+    parser.add_argument("--head", type=float, default=1.0, help="width of the human's head, share of its depth")
     parser.add_argument("--alone", action="store_true", help="each take by itself as well")
     parser.add_argument("--work", type=Path)
     told = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         work = told.work or Path(folder)
-        for trunk in told.trunk:
-            for seed in told.seeds:
-                place = work / f"{trunk}-{seed}"
-                if not (place / "truth.json").exists():
-                    write(seed, trunk, told.frames, told.vertices, place)
-                takes = [{"name": take, "input": str(place / take)} for take in TAKES]
-                cells, skeleton = scored({"takes": takes}, place / "truth.json", place / "out", work / "store")
-                print(f"{trunk} {seed} all".ljust(16), *cells, sep="  ", flush=True)
-                if skeleton is not None:
-                    print(" " * 16, f"bone lengths vary by {_variation(skeleton):.1g}", flush=True)
-                for take in TAKES if told.alone else ():
-                    own = {"input": str(place / take)}
-                    cells, _ = scored(own, place / take / "truth.json", place / f"out-{take}", work / "store")
-                    print(f"{trunk} {seed} {take}".ljust(16), *cells, sep="  ", flush=True)
+        sums = [_measured(name, seed, trunk, told, work) for name, trunk, seed in product(told.figures, told.trunk, told.seeds)]
+    print("sum".ljust(24), *(f"{sum(column)}" for column in zip(*sums, strict=True)), "(found, scored, spurious)", sep="  ")
+
+
+def _measured(name: str, seed: int, trunk: str, told: argparse.Namespace, work: Path) -> tuple[int, int, int]:
+    """Prints what all takes of a body give, and each alone; joints found, scored and spurious of all together."""
+    place = work / "-".join([name, trunk, str(seed), *([f"{told.head:g}"] if told.head != 1 else [])])
+    if not (place / "truth.json").exists():
+        write(name, seed, trunk, told.head, told.frames, told.vertices, place)
+    takes = [{"name": take, "input": str(place / take)} for take in TAKES[name]]
+    cells, summary, skeleton = scored({"takes": takes}, place / "truth.json", place / "out", work / "store")
+    print(f"{name} {trunk} {seed} all".ljust(24), *cells, sep="  ", flush=True)
+    if skeleton is not None:
+        print(" " * 24, f"bone lengths vary by {_variation(skeleton):.1g}", flush=True)
+    for take in TAKES[name] if told.alone else ():
+        own = {"input": str(place / take)}
+        cells = scored(own, place / take / "truth.json", place / f"out-{take}", work / "store")[0]
+        print(f"{name} {trunk} {seed} {take}".ljust(24), *cells, sep="  ", flush=True)
+    return (0, 0, 0) if summary is None else (summary.found, summary.scored, summary.spurious)
 
 
 def _variation(skeleton: Any) -> float:

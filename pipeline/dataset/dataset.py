@@ -9,12 +9,9 @@ dataset["walk_07"]                        the Pipeline of one sequence
 
 import contextlib
 import json
-import re
-import subprocess
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +21,13 @@ from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.dataset import dataset_config
 from kinetree.pipeline.dataset.dataset_config import DatasetConfig
 from kinetree.pipeline.dataset.dataset_plan import DatasetPlan, PlannedSequence, planned, rate
+from kinetree.pipeline.dataset.hook import called
 from kinetree.pipeline.dataset.lease import Leases, holder
 from kinetree.pipeline.dataset.metrics import Metrics
 from kinetree.pipeline.dataset.night import Night, input_changed, now
 from kinetree.pipeline.dataset.rotation import RotatingLog
 from kinetree.pipeline.dataset.sequences import chosen, frames_taken_for_sequences
+from kinetree.pipeline.dataset.since import epoch
 from kinetree.pipeline.dataset.summing import Summing
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import Heads, History
@@ -49,8 +48,6 @@ SUMMARY = "dataset.json"
 """What the last run over the data set did, in the data set's folder."""
 LOG = "dataset.log"
 FORMAT = "kinetree.dataset/1"
-HOOK_SECONDS = 600.0
-"""How long the program that hears of failures may take."""
 ROOT_SECONDS = 120.0
 """How long a run waits for another one that is making the same summary."""
 
@@ -256,8 +253,8 @@ class Dataset:
             before = self.outcomes()
             names = [name for name in names if (one := before[name]) is not None and one.status == "failed"]
         if since is not None:
-            epoch = _epoch(since)
-            names = [name for name in names if input_changed(self.config.inputs[name]) >= epoch]
+            begin = epoch(since)
+            names = [name for name in names if input_changed(self.config.inputs[name]) >= begin]
         return names
 
     def _collect(self) -> dict[str, Any]:
@@ -295,29 +292,8 @@ class Dataset:
         with contextlib.suppress(StoreError) if told["status"] == "stopped" else contextlib.nullcontext():
             folder.put(SUMMARY, f"{text}\n".encode("utf-8", "backslashreplace"))
         if is_bad and self.config.on_failure:
-            told["on_failure"] = _call([*self.config.on_failure, str(self.config.root / SUMMARY)])
+            told["on_failure"] = called([*self.config.on_failure, str(self.config.root / SUMMARY)])
 
 
 def _has_failed(night: Night, told: Mapping[str, Any]) -> bool:
     return "failed" in night.states.values() or told.get("summary", {}).get("status", "done") != "done"
-
-
-def _call(command: list[str]) -> str:
-    """Calls a program without a shell; returns what became of it."""
-    try:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=HOOK_SECONDS, check=False)
-    except (OSError, subprocess.TimeoutExpired) as error:
-        return f"{command[0]}: {error}"
-    last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-    return f"{command[0]}: exit code {done.returncode}{f': {last}' if done.returncode and last else ''}"
-
-
-def _epoch(since: str) -> float:
-    """A date, or a time before now such as 36h or 7d, in seconds since the epoch; raises ConfigError."""
-    ago = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?)([mhdw])", since.strip())
-    if ago:
-        return time.time() - float(ago.group(1)) * {"m": 60, "h": 3600, "d": 86400, "w": 604800}[ago.group(2)]
-    try:
-        return datetime.fromisoformat(since).timestamp()
-    except ValueError:
-        raise ConfigError(f"--since {since}: expected a date such as 2026-11-20, or a time such as 36h or 7d") from None

@@ -9,7 +9,6 @@ compute, on_failure, metrics, retention, and the blocks of tasks, which all sequ
 stand for each sequence's name and path
 """
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -21,7 +20,8 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
-from kinetree.pipeline.dataset.sequences import NAME, WILD, matches, sequences
+from kinetree.pipeline.dataset.overlap import OUTPUT, refuse_overlap
+from kinetree.pipeline.dataset.sequences import NAME, sequences
 from kinetree.pipeline.settings.blocks import Reading, absolute, extended, merged, override, read_yaml, with_paths
 from kinetree.pipeline.settings.config import RUN_KEYS, Compute, Config, Origins, checked, resolved
 from kinetree.pipeline.storage.sizes import bytes_of
@@ -29,7 +29,6 @@ from kinetree.pipeline.suggest import nearest
 
 KEYS = ("sequences", "name", "overrides", "on_failure", "metrics", "retention")
 """The keys that a data set has beside those of a single run."""
-OUTPUT = f"results/{NAME}"
 STORE = "store"
 INPUT = "{input}"
 """Stands in paths of parameters for the sequence's own path."""
@@ -106,6 +105,12 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     template = _output(given.get("output", OUTPUT), where)
     shared = {key: value for key, value in given.items() if key not in KEYS}
     blocks, _ = extended({**shared, "output": template}, base, where, (), reading)
+    for key in KEYS:
+        if key in blocks:
+            raise ConfigError(
+                f"{where}: extends {given['extends']!r}, which is a data set itself: it has {key!r}; a data set extends a"
+                " preset or a configuration, so write what both share into a file of its own and extend that"
+            )
     sets = tuple(sets)
     for text in sets:
         override(blocks, text, reading.paths)
@@ -126,7 +131,7 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
         mine = merged(_filled(mine, name, path, reading, missing), _nested(parameter, path))
         configs[name] = resolved(mine, Origins(where, frozenset(given), origins), application, reading)
     first = next(iter(configs.values()))
-    _refuse_overlap(configs, inputs, given["sequences"], base, where)
+    refuse_overlap(configs, inputs, given["sequences"], base, where)
     lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
     notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
     notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
@@ -211,33 +216,6 @@ def _metrics(given: Any, base: Path, where: str) -> Path | None:
     if path.is_dir():
         raise ConfigError(f"{where}: metrics: {path} is a folder; name a file in it, e.g. {path / 'metrics.prom'}")
     return path
-
-
-def _refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:
-    """Results must not lie where a later run would look for sequences, nor in the folder of the store."""
-    patterns = [given] if isinstance(given, str) else given if isinstance(given, list) else []
-    wild = [os.path.normpath(base / Path(p).expanduser()) for p in patterns if WILD.search(p) and "://" not in p]
-    for name, config in configs.items():
-        places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}
-        for key, place in places.items():
-            for pattern in wild:
-                found = next(
-                    (p for p in (place, *place.parents) if str(p) not in inputs.values() and matches(p, pattern)), None
-                )
-                if found is not None:
-                    raise ConfigError(
-                        f"{where}: {key} {place} lies in {found}, which the pattern {pattern} would take for a sequence; name"
-                        f" another folder, e.g. {OUTPUT}"
-                    )
-            for other, path in inputs.items():
-                if "://" not in path and place.is_relative_to(path):
-                    raise ConfigError(
-                        f"{where}: {key} {place} lies in {path}, the input of {other}; name a folder outside it, e.g. {OUTPUT}"
-                    )
-        if isinstance(config.store, Path) and config.output.is_relative_to(config.store):
-            raise ConfigError(
-                f"{where}: the output of {name}, {config.output}, lies in the store; name the store otherwise with store:"
-            )
 
 
 def _filled(blocks: dict[str, Any], name: str, path: str, reading: Reading, missing: dict[str, list[str]]) -> dict[str, Any]:

@@ -132,6 +132,18 @@ def test_what_is_wrong_is_refused_with_where_and_what_to_do(load, keys, words):
         load("takes/a", "other/a", **keys)
 
 
+def test_extending_another_data_set_is_refused_with_what_to_do_instead(load):
+    load("takes/a")
+    (load.home / "other.yaml").write_text("sequences: takes/*\nretention: {keep_last: 3}\n")
+    words = (
+        r"lab.yaml: extends 'other.yaml', which is a data set itself: it has 'sequences'; .* a file of its own and extend that"
+    )
+    with pytest.raises(ConfigError, match=words):
+        load(extends="other.yaml")
+    (load.home / "other.yaml").write_text("points: {scale: 7}\n")
+    assert load(extends="other.yaml")["a"].config.params["points"].scale == 7.0
+
+
 def test_a_file_that_is_not_there_is_refused(load):
     with pytest.raises(ConfigError, match="there is no such file; a data set is a YAML file"):
         Dataset.of("no.yaml", application=load("takes/a").application)

@@ -1,0 +1,40 @@
+"""Where a data set must not write: into the inputs of its sequences, where it looks for sequences, or into its own store."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.dataset.sequences import NAME, WILD, matches
+from kinetree.pipeline.settings.config import Config
+
+OUTPUT = f"results/{NAME}"
+"""Where results lie if nothing else is said."""
+
+
+def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:
+    """Results must not lie where a later run would look for sequences, nor in the folder of the store."""
+    patterns = [given] if isinstance(given, str) else given if isinstance(given, list) else []
+    wild = [os.path.normpath(base / Path(p).expanduser()) for p in patterns if WILD.search(p) and "://" not in p]
+    for name, config in configs.items():
+        places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}
+        for key, place in places.items():
+            for pattern in wild:
+                found = next(
+                    (p for p in (place, *place.parents) if str(p) not in inputs.values() and matches(p, pattern)), None
+                )
+                if found is not None:
+                    raise ConfigError(
+                        f"{where}: {key} {place} lies in {found}, which the pattern {pattern} would take for a sequence; name"
+                        f" another folder, e.g. {OUTPUT}"
+                    )
+            for other, path in inputs.items():
+                if "://" not in path and place.is_relative_to(path):
+                    raise ConfigError(
+                        f"{where}: {key} {place} lies in {path}, the input of {other}; name a folder outside it, e.g. {OUTPUT}"
+                    )
+        if isinstance(config.store, Path) and config.output.is_relative_to(config.store):
+            raise ConfigError(
+                f"{where}: the output of {name}, {config.output}, lies in the store; name the store otherwise with store:"
+            )
