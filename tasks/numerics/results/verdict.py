@@ -34,7 +34,7 @@ class VerdictSettings(NamedTuple):
     """Frames below which a sequence, or the support of a joint, is short."""
     degrees: float = 15.0
     """Range of the angle below which a joint is doubtful: a third of such joints were where the truth has none, of those that
-    turn more 6 % (28 and 695 joints of three generated bodies, spoilt in many ways)."""
+    turn more 6 % (33 and 728 joints of three generated bodies, spoilt in many ways)."""
     length: float = 0.03
     """Length of the bone to its parent below which a joint is doubtful: half of such joints were where the truth has none."""
     asymmetry: float = 0.04
