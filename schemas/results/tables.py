@@ -20,7 +20,7 @@ class TablesParams(Params):
 
 
 class Tables(Exported):
-    """motion, joints, positions, confidence, angles and bones, each a file."""
+    """motion, joints, positions, confidence, angles, bones, turns, and joint_angles and gait where they can be told."""
 
     samples: int | None
     """Frames that each velocity is fitted to; None where the frame rate is not known, so that there are none."""

@@ -2,19 +2,28 @@
 
 import csv
 import io
+import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from results.plain_names import plain
 from results.rigged_bodies import spider
+from results.true_skeletons import generated, perfect
 from scipy.signal import savgol_filter
+from scipy.spatial.transform import Rotation
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline import views
 from kinetree.schemas.results.tables import TablesParams
+from kinetree.schemas.structure.joint_names import JointNamesParams
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats import tables as format_of_tables
 from kinetree.tasks.results.formats.tables import bone_angles
 from kinetree.tasks.results.tables import tables
+from kinetree.tasks.structure.joint_names import joint_names
+
+UP = UpDirection(up="z", confidence=1.0)
 
 
 @pytest.fixture
@@ -23,7 +32,7 @@ def body():
 
 
 def files(skeleton, **params):
-    return views.files(tables(skeleton, plain(skeleton), TablesParams(**params)), ())
+    return views.files(tables(skeleton, plain(skeleton), UP, TablesParams(**params)), ())
 
 
 def rows(skeleton, name, **params):
@@ -63,10 +72,10 @@ def test_text_of_strangers_is_no_formula_of_a_spreadsheet(body):
 
 
 def test_smoothing_is_said():
-    assert views.remarks(tables(spider(), plain(spider()), TablesParams(window=0.7, degree=2))) == (
+    assert views.remarks(tables(spider(), plain(spider()), UP, TablesParams(window=0.7, degree=2))) == (
         "velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",
     )
-    (remark,) = views.remarks(tables(spider(fps=None), plain(spider(fps=None)), TablesParams()))
+    (remark,) = views.remarks(tables(spider(fps=None), plain(spider(fps=None)), UP, TablesParams()))
     assert "no velocities" in remark
     assert {row[6] for row in rows(spider(fps=None), "motion")[1:]} == {""}
 
@@ -134,3 +143,63 @@ def test_angles_are_named_by_their_three_joints(body):
 def test_names_with_commas_quotes_and_line_ends_stay_one_cell():
     names = ("a,b", 'c"d', "e\nf", "é", "<script>", " ", "g;h")
     assert rows(spider(names=names), "confidence")[0][2:] == list(names)
+
+
+@pytest.fixture(scope="module")
+def walker():
+    """A generated person that walks on the spot at 0.8 strides a second, and its names."""
+    body = perfect(generated(frames=100, motion="walk"))
+    return body, joint_names(body, UP, JointNamesParams())
+
+
+def table(walker, name):
+    body, names = walker
+    written = views.files(tables(body, names, UP, TablesParams()), ())[f"tables/{name}.csv"].decode()
+    return list(csv.DictReader(io.StringIO(written, newline="")))
+
+
+@pytest.mark.parametrize(("side", "amplitude"), [("l", 26.0), ("r", -26.0)])
+def test_hip_of_a_walker_flexes_as_it_was_made_to(walker, side, amplitude):
+    found = np.array([float(row[f"hip_{side}.flexion"]) for row in table(walker, "joint_angles")])
+    made = amplitude * np.sin(2 * np.pi * 0.8 * np.arange(100) / 25)  # about −x, which is the right of who faces −y
+    np.testing.assert_allclose(found - found.mean(), made - made.mean(), atol=1.5)
+    assert found.mean() == pytest.approx(8.0, abs=3.0)
+
+
+def test_knees_of_a_walker_only_bend_backwards(walker):
+    for side in "lr":
+        knee = np.array([float(row[f"knee_{side}.flexion"]) for row in table(walker, "joint_angles")])
+        assert knee.min() > -2.0
+        assert knee.max() > 50.0
+
+
+def test_steps_of_a_walker_alternate_and_last_as_long_as_they_were_made_to(walker):
+    body, names = walker
+    told = json.loads(views.files(tables(body, names, UP, TablesParams()), ())["tables/gait.json"])
+    for foot in ("foot_l", "foot_r"):
+        assert told["feet"][foot]["stride_seconds"] == pytest.approx(1.25, abs=0.04)
+    assert abs(told["symmetry"]["foot"]["stride_percent"]) < 5
+    strikes = [(row["foot"], float(row["seconds"])) for row in table(walker, "gait") if row["event"] == "strike"]
+    feet, seconds = zip(*strikes, strict=True)
+    assert len(strikes) >= 3
+    assert all(a != b for a, b in pairwise(feet))
+    np.testing.assert_allclose(np.diff(seconds), 1.25 / 2, atol=0.1)
+
+
+def test_body_that_is_not_recognised_or_faces_nobody_knows_where_has_no_anatomical_tables(walker):
+    body, names = walker
+    for unsure in (plain(body), names.model_copy(update={"front_confidence": 0.2})):
+        held = views.files(tables(body, unsure, UP, TablesParams()), ())
+        assert not {"tables/joint_angles.csv", "tables/gait.csv", "tables/gait.json"} & set(held)
+        assert "tables/turns.csv" in held
+
+
+def test_turns_of_every_joint_are_those_of_the_rig_and_zero_at_rest(body):
+    still = spider(rotation=np.tile(np.eye(3), (12, 7, 1, 1)))
+    head, *values = rows(still, "turns")
+    assert head == ["frame", "seconds", *(f"{n}.{a}" for n in ("arm", "knee") for a in ("swing_x", "twist", "swing_z"))]
+    np.testing.assert_allclose(np.array(values, float)[:, 2:], 0.0, atol=1e-9)
+    moved = np.array(rows(body, "turns")[1:], float)[:, 2:5]
+    relative = body.rotation[:, 0].transpose(0, 2, 1) @ body.rotation[:, 1]
+    whole = Rotation.from_rotvec(np.radians(moved * (1, 0, 1))) * Rotation.from_rotvec(np.radians(moved * (0, 1, 0)))
+    np.testing.assert_allclose(whole.magnitude(), Rotation.from_matrix(relative).magnitude(), atol=1e-6)

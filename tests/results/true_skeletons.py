@@ -14,9 +14,9 @@ from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree
 from kinetree.tasks.results.truth import synthetic
 
 
-def generated(figure: str = "human", frames: int = 6, vertices: int = 600) -> str:
+def generated(figure: str = "human", frames: int = 6, vertices: int = 600, motion: str | None = None) -> str:
     """The recipe of a small body of fixed connectivity."""
-    return recipe(SynthParams(figure=figure, frames=frames, vertices=vertices, connectivity="fixed"))
+    return recipe(SynthParams(figure=figure, frames=frames, vertices=vertices, connectivity="fixed", motion=motion))
 
 
 def perfect(written: str) -> Skeleton:

@@ -60,9 +60,9 @@ def tables(skeleton: Skeleton, found: Derivatives | None) -> Mapping[str, Table]
     return {
         "motion": Table(_motion(skeleton, found)),
         "joints": Table(joints),
-        "positions": _series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
-        "confidence": _series(skeleton, names, skeleton.confidence),
-        "angles": _series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
+        "positions": series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
+        "confidence": series(skeleton, names, skeleton.confidence),
+        "angles": series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
         "bones": Table(bones),
     }
 
@@ -103,7 +103,7 @@ def _motion(skeleton: Skeleton, found: Derivatives | None) -> dict[str, Column]:
     frames, joints = skeleton.positions.shape[:2]
     columns: dict[str, Column] = {
         "frame": np.repeat(skeleton.frames, joints).tolist(),
-        "seconds": np.repeat(_seconds(skeleton), joints),
+        "seconds": np.repeat(times(skeleton), joints),
         "joint": list(skeleton.names) * frames,
     }
     B = rest_frames(skeleton.rest, skeleton.parents)
@@ -117,13 +117,13 @@ def _motion(skeleton: Skeleton, found: Derivatives | None) -> dict[str, Column]:
     return {**columns, "confidence": skeleton.confidence.ravel()}
 
 
-def _series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> Table:
+def series(skeleton: Skeleton, columns: Sequence[str], values: Floats) -> Table:
     """A table with one row a frame."""
-    heads: dict[str, Column] = {"frame": skeleton.frames, "seconds": _seconds(skeleton)}
+    heads: dict[str, Column] = {"frame": skeleton.frames, "seconds": times(skeleton)}
     return Table(heads | {name: values[:, k] for k, name in enumerate(columns)})
 
 
-def _seconds(skeleton: Skeleton) -> Floats:
+def times(skeleton: Skeleton) -> Floats:
     """(frame,) time since the first frame; NaN where the frame rate is not known."""
     return np.full(len(skeleton.frames), np.nan) if skeleton.fps is None else seconds(skeleton, skeleton.fps)
 

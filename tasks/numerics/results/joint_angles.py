@@ -1,0 +1,108 @@
+"""Signed angles of a person's joints about anatomical axes, as the ISB recommends (Wu 2002, 2005; Grood, Suntay 1983).
+
+Axes of a segment: x ahead, y up along it, z to the right. Joints alone do not show how a thigh or an upper arm is turned about
+its own length; in the reference pose it is taken to be as little rotated from the segment before it as its direction allows.
+From there on, the rotations of the parts count. Signs are those of a right limb: left limbs are mirrored.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Floats
+
+MIRROR = np.diag([1.0, 1.0, -1.0])
+"""Left to right, in the axes of a segment."""
+DOWN, AHEAD = np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 0.0])
+TO_TRUNK = ("collar", "hip_base")
+"""Stations between a limb and the trunk, which carry no segment of their own."""
+
+
+class _Joint(NamedTuple):
+    """The stations at which its segment may end, the axis of the segment that points there, and names of the three angles."""
+
+    ends: tuple[str, ...]
+    along: Floats
+    angles: tuple[str, str, str]
+
+
+JOINTS: Mapping[str, _Joint] = {
+    "hip": _Joint(("knee", "ankle", "foot_end"), DOWN, ("flexion", "adduction", "internal_rotation")),
+    "knee": _Joint(("ankle", "foot_end"), DOWN, ("flexion", "adduction", "internal_rotation")),
+    "ankle": _Joint(("toe", "foot_end"), AHEAD, ("dorsiflexion", "inversion", "internal_rotation")),
+    "shoulder": _Joint(("elbow", "wrist", "hand_end"), DOWN, ("plane_of_elevation", "elevation", "internal_rotation")),
+    "elbow": _Joint(("wrist", "hand_end"), DOWN, ("flexion", "adduction", "pronation")),
+}
+"""In the order in which segments follow each other."""
+
+
+def joint_angles(
+    anatomy: Sequence[str], parents: Sequence[int], rest: Floats, R: Floats, front: Floats, up: Floats
+) -> Mapping[str, Floats]:
+    """Three angles of each named joint: hip, knee, ankle and elbow by Z–X–Y, shoulder by Y–X–Y (thorax to humerus).
+
+    anatomy   : (joint,) station and side, such as knee_l
+    parents   : (joint,) −1 for the root
+    rest      : (joint, xyz) joints in the reference pose
+    R         : (frame, joint, 3, 3) from the reference pose to each frame
+    front, up : (xyz,) of the body in the reference pose, unit vectors
+    returns   : (frame,) degrees by "joint.angle", such as knee_l.flexion; flexion, adduction, internal rotation, dorsiflexion,
+                inversion, pronation and elevation are positive; 0° of the plane of elevation is sideways, 90° ahead
+    """
+    at = {name: j for j, name in enumerate(anatomy) if name}
+    trunk = {"hip": _trunk(at, rest, front, up, "hip"), "shoulder": _trunk(at, rest, front, up, "shoulder")}
+    frames: dict[int, Floats] = {}
+    angles: dict[str, Floats] = {}
+    for station, joint in JOINTS.items():
+        for side in "lr":
+            j = at.get(f"{station}_{side}")
+            end = next((at[f"{e}_{side}"] for e in joint.ends if f"{e}_{side}" in at), None)
+            if j is None or end is None or parents[j] < 0 or np.allclose(rest[end], rest[j]):
+                continue
+            p = parents[j]
+            while parents[p] >= 0 and anatomy[p].rpartition("_")[0] in TO_TRUNK:
+                p = parents[p]
+            before = frames.get(p, trunk["shoulder" if station in ("shoulder", "elbow") else "hip"])
+            frames[j] = _least(before, joint.along, rest[end] - rest[j])
+            turn = (R[:, p] @ before).transpose(0, 2, 1) @ (R[:, j] @ frames[j])
+            found = _three(turn if side == "r" else MIRROR @ turn @ MIRROR, station)
+            angles |= {f"{station}_{side}.{name}": a for name, a in zip(joint.angles, found, strict=True)}
+    return angles
+
+
+def _three(turn: Floats, station: str) -> tuple[Floats, Floats, Floats]:
+    """(frame,) degrees: the three angles of one joint, of a right limb.
+
+    turn : (frame, 3, 3) axes of the segment in those of the segment before it
+    """
+    if station == "shoulder":  # Ry(plane) Rx(−elevation) Ry(rotation)
+        plane = np.arctan2(-turn[:, 0, 1], -turn[:, 2, 1])
+        elevation = np.arccos(np.clip(turn[:, 1, 1], -1.0, 1.0))
+        rotation = np.arctan2(-turn[:, 1, 0], turn[:, 1, 2])
+        return np.degrees(plane), np.degrees(elevation), np.degrees(rotation)
+    flexion = np.degrees(np.arctan2(-turn[:, 0, 1], turn[:, 1, 1]))  # Rz Rx Ry
+    adduction = np.degrees(np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0)))
+    rotation = np.degrees(np.arctan2(-turn[:, 2, 0], turn[:, 2, 2]))
+    return -flexion if station == "knee" else flexion, adduction, rotation  # knees bend backwards
+
+
+def _trunk(at: Mapping[str, int], rest: Floats, front: Floats, up: Floats, station: str) -> Floats:
+    """(3, 3) axes by columns of pelvis or thorax: z from the left to the right joint, or to the right where one lacks; y up."""
+    left, right = at.get(f"{station}_l"), at.get(f"{station}_r")
+    across = np.cross(front, up) if left is None or right is None else rest[right] - rest[left]
+    z = across / np.linalg.norm(across)
+    y = up - (up @ z) * z
+    y /= np.linalg.norm(y)
+    return np.stack([np.cross(y, z), y, z], axis=1)
+
+
+def _least(axes: Floats, along: Floats, direction: Floats) -> Floats:
+    """Axes rotated as little as possible so that one of their directions points somewhere (Rodrigues)."""
+    a, b = axes @ along, direction / np.linalg.norm(direction)
+    v, c = np.cross(a, b), float(a @ b)
+    if c < -1.0 + 1e-9:
+        side = axes[:, 2]
+        return np.asarray((2.0 * np.outer(side, side) - np.eye(3)) @ axes)
+    K = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    return np.asarray((np.eye(3) + K + K @ K / (1.0 + c)) @ axes)
