@@ -50,8 +50,8 @@ def export(
     Nothing but the file is computed.
 
     glb and usd hold the skinned, moving body, blender the same with a script that makes FBX of it, bvh the motion, json the
-    joints, trc and c3d the joints as markers, csv tables of motion, angles, lengths and steps, ply your own meshes coloured by part,
-    rignet the rig as text, zarr part labels and aligned meshes.
+    joints, trc and c3d the joints as markers, csv tables of motion, angles, lengths and steps, ply your own meshes coloured
+    by part, rignet the rig as text, zarr part labels and aligned meshes.
     """
     if to not in (*FORMATS, SCHEMA):
         raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")
