@@ -131,6 +131,12 @@ APPLICATION = Application(
                     "kinetree silhouettes walk/ -o walk-masks/",
                     "kinetree silhouettes walk/ -o walk-masks/ --cameras 8 --size 1024 --up z",
                 ),
+                _command(
+                    "convert",
+                    "Let Blender make a sequence of an FBX, Alembic or Blender file.",
+                    "kinetree convert walk.fbx",
+                    "kinetree convert walk.blend -o walk.npz --blender /opt/blender/blender",
+                ),
             ),
         ),
         Section(

@@ -100,7 +100,7 @@ def test_commands_stand_in_their_sections_in_the_order_of_a_persons_work(kinetre
     assert titles == ["Start:", "Many sequences:", "Look:", "Take away:", "Configure:", "Make:", "Care:", "Options:"]
     names = re.findall(r"^  ([a-z]+) ", printed.partition("Start:")[2].partition("Options:")[0], re.MULTILINE)
     order = "demo run view dataset show plan why graph tasks runs diff export plot evaluate compare reproduce config synth"
-    order += " silhouettes gc verify"
+    order += " silhouettes convert gc verify"
     assert names == order.split()
 
 

@@ -1,11 +1,12 @@
 """Files that people have and that are not read: what to do with each."""
 
-_CONVERT = "is not read; open it in Blender and export it as glTF binary (.glb) with its animation"
+_CONVERT = "is not read; kinetree convert makes a sequence of it where Blender is installed"
+_EXPORT = "is not read; open it in Blender and export it as glTF binary (.glb) with its animation"
 _CLOUD = "is a cloud of points; make a surface of every frame first (screened Poisson, in MeshLab or Open3D) and save it as PLY"
 _NO_SURFACE = "holds {}, no surface; meshes, silhouettes or volumes are needed"
 _FOREIGN = {
-    **dict.fromkeys((".fbx", ".blend", ".dae", ".3ds", ".x3d"), _CONVERT),
-    ".abc": "is not read; open it in Blender and export it as USD (.usdc) with its animation",
+    **dict.fromkeys((".fbx", ".blend", ".dae", ".abc", ".x3d"), _CONVERT),
+    ".3ds": _EXPORT,
     ".gltf": "may keep its data in other files, which are not opened; export it as one binary glTF (.glb)",
     **dict.fromkeys(
         (".uvol", ".drcs", ".corto", ".crt"), "is not read; unpack it to one PLY, GLB or Draco (.drc) file a frame"

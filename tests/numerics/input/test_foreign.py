@@ -11,7 +11,7 @@ def test_endings_that_are_read_have_no_advice():
 
 def test_every_ending_gets_its_sentence_once():
     assert advice({".FBX", ".txt"}) == (
-        "; .FBX is not read; open it in Blender and export it as glTF binary (.glb) with its animation"
+        "; .FBX is not read; kinetree convert makes a sequence of it where Blender is installed"
     )
     assert advice({".c3d", ".abc"}).index("; .abc is not read") < advice({".c3d", ".abc"}).index(
         "; .c3d holds a skeleton or markers"

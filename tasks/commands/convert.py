@@ -1,0 +1,107 @@
+"""`kinetree convert`: a file that only Blender opens as a sequence that a run reads."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from kinetree.errors import ConfigError, InputError
+from kinetree.pipeline.command_line.printable import printable
+from kinetree.tasks.commands.blender_frames import SCRIPT, SUFFIXES
+
+MOST_FRAMES = 100_000
+SAFELY = ("--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3")
+"""No settings, add-ons or start-up files of the user's, and no scripts or drivers of the file."""
+
+
+def convert(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help=f"One of {' '.join(SUFFIXES)}, with its motion.")],
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="File to write, new; default: FILE as .npz.")] = None,
+    blender: Annotated[str, typer.Option("--blender", metavar="PROGRAM", help="Where Blender is.")] = "blender",
+    seconds: Annotated[float, typer.Option("--seconds", min=1, help="Longest that Blender may take.")] = 600.0,
+) -> None:
+    """Let Blender write every frame of an FBX, Alembic, Collada, X3D or Blender file as one file that a run reads.
+
+    The file's own scripts and drivers do not run. Every mesh that would be rendered counts, with all that moves it; frames are
+    those of the animation, of a Blender file those of its scene. Lengths are metres, z is up.
+    """
+    if file.suffix.lower() not in SUFFIXES:
+        raise ConfigError(f"{file}: {file.suffix or 'no suffix'} is not converted; {' '.join(SUFFIXES)} are")
+    if not file.is_file():
+        raise InputError(f"{file}: there is no such file")
+    target = output or file.with_suffix(".npz")
+    if target.suffix != ".npz" or target.exists():
+        raise ConfigError(
+            f"{target}: {'already there' if target.exists() else 'write a name that ends in .npz'}; name a new file"
+        )
+    program = shutil.which(blender)
+    if program is None:
+        raise ConfigError(
+            f"{file.suffix} is opened by Blender, which is not installed here ({blender}); install it, or name it with"
+            " --blender; or export the file as GLB with its animation elsewhere"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        _run(program, file.absolute(), Path(folder), seconds)
+        frames = _pack(Path(folder), file, target)
+    typer.echo(
+        printable(f"{target}: {frames} frames; kinetree run --input {target} --output {target.with_suffix('')}-kinetree")
+    )
+
+
+def _run(program: str, file: Path, folder: Path, seconds: float) -> None:
+    """Runs the script in Blender, in a group of processes of its own that ends with it."""
+    script = folder / "frames.py"
+    script.write_text(SCRIPT)
+    command = [program, *SAFELY, "--python", str(script), "--", str(file), str(folder), str(MOST_FRAMES)]
+    with (folder / "log").open("w+b") as log:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, cwd=folder
+        )
+        try:
+            code = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise InputError(f"{file}: Blender did not finish within {seconds:g} s; give it more with --seconds") from None
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+    refused = folder / "refused.txt"
+    if refused.exists():
+        raise InputError(f"{file}: {refused.read_text()}")
+    if code != 0 or not (folder / "told.json").exists():
+        lines = [line for line in (folder / "log").read_text("utf-8", "replace").splitlines() if "Error" in line]
+        raise InputError(f"{file}: Blender cannot open it ({lines[-1].strip()[:200] if lines else f'exit code {code}'})")
+
+
+def _pack(folder: Path, file: Path, target: Path) -> int:
+    """Writes what Blender left as .npz, all or nothing, and returns the number of frames."""
+    import numpy as np
+
+    told = json.loads((folder / "told.json").read_text())
+    counts = np.array(told["counts"], dtype=np.int64).reshape(-1, 2)
+    if not len(counts) or (counts == 0).any():
+        raise InputError(
+            f"{file}: no surface in {'any frame' if not counts.any() else 'some frames'}; a mesh that is rendered is needed"
+        )
+    if len(counts) == 1:
+        raise InputError(f"{file}: a single frame; kinematics are seen in motion, and nothing in the file moves")
+    V = np.fromfile(folder / "vertices", np.float32).reshape(-1, 3).astype(np.float64) * told["scale"]
+    F = np.fromfile(folder / "faces", np.int32).reshape(-1, 3)
+    ends = np.vstack([[0, 0], np.cumsum(counts, axis=0)])
+    arrays: dict[str, Any] = {"vertices": V, "faces": F, "vertex_offsets": ends[:, 0], "face_offsets": ends[:, 1]}
+    arrays |= {"fps": told["fps"], "unit": "m"}
+    beside = target.with_name(f".{target.stem}.{os.getpid()}.npz")
+    try:
+        np.savez_compressed(beside, **arrays)
+        beside.rename(target)
+    except OSError as error:
+        raise ConfigError(f"{target}: cannot be written: {error.strerror}; name another file") from None
+    finally:
+        beside.unlink(missing_ok=True)
+    return len(counts)

@@ -1,0 +1,127 @@
+"""Files that Blender opens become sequences that a run reads; Blender is told to run nothing of them, and is ended in time."""
+
+import stat
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from results.blender_reader import command
+from results.plain_names import plain
+from results.rigged_bodies import skinned, spider
+
+from kinetree.errors import ConfigError, InputError
+from kinetree.pipeline import views
+from kinetree.schemas.results.glb import GlbParams
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.commands.convert import convert
+from kinetree.tasks.numerics.input.source import read_npz
+from kinetree.tasks.results.blender import blender
+from kinetree.tasks.results.glb import glb
+
+TRAP = """
+import sys
+from pathlib import Path
+import bpy
+target = Path(sys.argv[-1])
+text = bpy.data.texts.new("trap.py")
+text.use_module = True
+text.write(f"from pathlib import Path; Path({str(target.with_name('ran'))!r}).touch()")
+cube = bpy.data.objects["Cube"]
+driver = cube.driver_add("location", 0).driver
+driver.expression = f"open({str(target.with_name('drove'))!r}, 'w') and 0"
+bpy.context.scene.frame_end = 3
+bpy.ops.wm.save_as_mainfile(filepath=str(target))
+"""
+
+
+def program(folder, text):
+    """A stand-in for Blender."""
+    path = folder / "blender"
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return str(path)
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "walk.fbx").write_bytes(b"Kaydara")
+    return tmp_path / "walk.fbx"
+
+
+@pytest.fixture(scope="module")
+def installed():
+    """Where Blender is."""
+    first = command()[0]
+    if not first.endswith("blender"):
+        pytest.skip("Blender is there as a module and not as a program")
+    return command()
+
+
+def test_fbx_that_was_exported_comes_back_as_the_sequence_that_it_was(installed, tmp_path):
+    body = spider()
+    made = glb(body, plain(body), UpDirection(up="z", confidence=1.0), GlbParams())
+    for name, data in views.files(blender(made, body), ()).items():
+        (tmp_path / name.removeprefix("blender/")).write_bytes(data)
+    subprocess.run([*installed, str(tmp_path / "to_fbx.py")], capture_output=True, check=True, timeout=120)
+    convert(tmp_path / "skeleton.fbx", tmp_path / "walk.npz", installed[0])
+    frames = read_npz(tmp_path / "walk.npz")
+    assert (len(frames), frames.fps, frames.unit) == (12, 10.0, "m")
+    truth = skinned(body) / 1000
+    size = np.ptp(truth[0], axis=0).max()
+    for t in (0, 5, 11):
+        V, F = frames.mesh(t)
+        assert len(F) == len(body.faces)
+        np.testing.assert_allclose(V, truth[t], atol=2e-4 * size)
+
+
+def test_nothing_in_a_blender_file_runs(installed, tmp_path):
+    (tmp_path / "trap_maker.py").write_text(TRAP)
+    subprocess.run([*installed, str(tmp_path / "trap_maker.py"), "--", str(tmp_path / "trap.blend")], check=True, timeout=120)
+    for name in ("ran", "drove"):
+        (tmp_path / name).unlink(missing_ok=True)
+    convert(tmp_path / "trap.blend", tmp_path / "trap.npz", installed[0])
+    assert len(read_npz(tmp_path / "trap.npz")) == 3
+    assert not (tmp_path / "ran").exists()
+    assert not (tmp_path / "drove").exists()
+
+
+def test_damaged_file_is_refused_in_words(installed, file):
+    with pytest.raises(InputError, match=r"walk\.fbx: Blender cannot open it \("):
+        convert(file, None, installed[0])
+    assert not file.with_suffix(".npz").exists()
+
+
+def test_without_blender_it_says_what_to_do(file):
+    with pytest.raises(ConfigError, match=r"Blender, which is not installed here \(no-such-program\); install it, or name it"):
+        convert(file, None, "no-such-program")
+
+
+def test_blender_that_does_not_finish_is_ended_with_all_that_it_began(file, tmp_path):
+    slow = program(tmp_path, f"(sleep 30; touch {tmp_path}/later) & sleep 30")
+    began = time.monotonic()
+    with pytest.raises(InputError, match="did not finish within 1 s"):
+        convert(file, None, slow, 1.0)
+    assert time.monotonic() - began < 25
+
+
+def test_blender_is_told_to_run_nothing_of_the_file(file, tmp_path):
+    recorder = program(tmp_path, f'echo "$@" > {tmp_path}/arguments; exit 1')
+    with pytest.raises(InputError, match=r"cannot open it \(exit code 1\)"):
+        convert(file, None, recorder)
+    given = (tmp_path / "arguments").read_text().split()
+    assert given.index("--disable-autoexec") < given.index("--python")
+    assert "--factory-startup" in given
+
+
+def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):
+    file.with_suffix(".npz").touch()
+    with pytest.raises(ConfigError, match="already there"):
+        convert(file)
+    (tmp_path / "walk.glb").touch()
+    with pytest.raises(ConfigError, match=r"\.glb is not converted"):
+        convert(tmp_path / "walk.glb")
+    with pytest.raises(InputError, match="no such file"):
+        convert(tmp_path / "run.fbx")
+    with pytest.raises(ConfigError, match="ends in"):
+        convert(file, tmp_path / "walk.zip")
