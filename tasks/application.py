@@ -133,7 +133,7 @@ APPLICATION = Application(
                 ),
                 _command(
                     "convert",
-                    "Let Blender make a sequence of an FBX, Alembic or Blender file.",
+                    "Let Blender make a sequence of an FBX, Alembic, Collada, X3D or Blender file.",
                     "kinetree convert walk.fbx",
                     "kinetree convert walk.blend -o walk.npz --blender /opt/blender/blender",
                 ),

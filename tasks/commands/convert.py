@@ -26,9 +26,9 @@ def convert(
     blender: Annotated[str, typer.Option("--blender", metavar="PROGRAM", help="Where Blender is.")] = "blender",
     seconds: Annotated[float, typer.Option("--seconds", min=1, help="Longest that Blender may take.")] = 600.0,
 ) -> None:
-    """Let Blender write every frame of an FBX, Alembic, Collada, X3D or Blender file as one file that a run reads.
+    """Let Blender make a sequence of an FBX, Alembic, Collada, X3D or Blender file.
 
-    The file's own scripts and drivers do not run. Every mesh that would be rendered counts, with all that moves it; frames are
+    All frames become one file that a run reads. The file's own scripts and drivers do not run. Every mesh that would be rendered counts, with all that moves it; frames are
     those of the animation, of a Blender file those of its scene. Lengths are metres, z is up.
     """
     if file.suffix.lower() not in SUFFIXES:
