@@ -9,7 +9,7 @@ pipeline.artifact(Class, frame=3)         typed, arrays read when asked for
 
 import html
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, overload
@@ -190,13 +190,14 @@ class Pipeline:
         graph = {t.name: {"over": "/".join(t.over), "reads": [r.name for r in self.tasks.reads(t)]} for t in self.tasks.tasks}
         return {"graph": graph, "config": as_yaml(self.config.saved())}
 
-    def computed(self, name: str) -> Snapshot:
+    def computed(self, name: str, also: Collection[str] = ()) -> Snapshot:
         """Computes one task from what is there and nothing else; returns the snapshot that has its artifacts.
 
+        also   : tasks before it that are computed where they are out of date
         raises : UnknownNodeError where something it reads is not there; NodesFailedError where it fails itself
         """
         there = self.inspect(until=[name])
-        self._refuse_missing(there, name)
+        self._refuse_missing(there, name, also)
         account = Account()
         self._go(there, Watch((account,)), None)
         if account.failures:
@@ -204,9 +205,11 @@ class Pipeline:
             raise NodesFailedError(f"{failure['node']}: {failure['error']}: {failure['message']}")
         return Snapshot(there.schedule, there.history, there.notes)
 
-    def _refuse_missing(self, there: Snapshot, name: str) -> None:
-        reads = {task.name for task in self.tasks.reads(self.tasks.task(name))}
-        todo = [node for node in there.plan.nodes if node.task != name and node.state != "fresh"]
+    def _refuse_missing(self, there: Snapshot, name: str, also: Collection[str]) -> None:
+        stale = [node for node in there.plan.nodes if node.state != "fresh"]
+        computed = {name, *(node.task for node in stale if node.task in also)}
+        reads = {read.name for task in computed for read in self.tasks.reads(self.tasks.task(task))}
+        todo = [node for node in stale if node.task not in computed]
         missing = [node.node for node in todo if node.task in reads]
         if missing:
             more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""

@@ -28,8 +28,9 @@ def convert(
 ) -> None:
     """Let Blender make a sequence of an FBX, Alembic, Collada, X3D or Blender file.
 
-    All frames become one file that a run reads. The file's own scripts and drivers do not run. Every mesh that would be rendered counts, with all that moves it; frames are
-    those of the animation, of a Blender file those of its scene. Lengths are metres, z is up.
+    All frames become one file that a run reads. The file's own scripts and drivers do not run. Every mesh that would be
+    rendered counts, with all that moves it; frames are those of the animation, of a Blender file those of its scene. Lengths
+    are metres, z is up.
     """
     if file.suffix.lower() not in SUFFIXES:
         raise ConfigError(f"{file}: {file.suffix or 'no suffix'} is not converted; {' '.join(SUFFIXES)} are")

@@ -29,6 +29,8 @@ FORMATS = {
     "zarr": "segmentation",
 }
 """The task that writes each format."""
+LAID_OUT_BY = ("complete_skeleton", "joint_names", "appearance", "glb")
+"""Tasks that say how a body looks in files and take no time: they are computed with a file where an option changes them."""
 EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
@@ -47,7 +49,7 @@ def export(
 ) -> None:
     """Write the result of a run as a file for other programs.
 
-    Nothing but the file is computed.
+    Nothing but the file is computed, and what names and completes the joints in it.
 
     glb and usd hold the skinned, moving body, blender the same with a script that makes FBX of it, bvh the motion, json the
     joints, trc and c3d the joints as markers, csv tables of motion, angles, lengths and steps, ply your own meshes coloured
@@ -80,7 +82,7 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list
     from kinetree.pipeline.output.output import write_elsewhere, write_result
     from kinetree.pipeline.output.ownership import Owned
 
-    schedule = pipeline.computed(task).schedule
+    schedule = pipeline.computed(task, LAID_OUT_BY).schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
     remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
     if output is not None:
