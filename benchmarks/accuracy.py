@@ -6,7 +6,7 @@
                                   [--fixed] [--set TASK.NAME=VALUE ...]
 
 FOLDER holds NAME.npz beside NAME.truth.json, and NAME-body.npz with skinning weights where the true parts are known; a
-NAME-body.npz with a truth of its own is a sequence too. Generated ones are humans, quadrupeds and random trees, so many
+NAME-body.npz with a truth of its own is a sequence too. Generated ones are humans, adults, quadrupeds and random trees, so many
 seeds of each: seed 0 is the figure as it ships, the others have other proportions, thicknesses and amplitudes; motions take
 turns. --seeds 0 leaves them out; --fixed gives each one connectivity. --work keeps the stores, so that
 a second call computes only what changed. --set changes every run: geodesics.sum=bases spares the preset paper-2014 Eq. 1 over
@@ -43,7 +43,7 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.truth import synthetic, truth
 
-MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look")}
+MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet")}
 HEADS = (
     "found", "close", "% err", "spur", "J2J", "J2B", "B2B", "IoU", "P", "R", "edit", "ARI", "mIoU", "R_det", "E_dist", "jit",
     "s/frm",
@@ -70,7 +70,7 @@ def recorded(folder: Path) -> Iterator[Case]:
 
 
 def generated(seeds: int, frames: int, vertices: int, connectivity: str, work: Path) -> Iterator[Case]:
-    """Humans, quadrupeds and random trees."""
+    """Humans, adults, quadrupeds and random trees."""
     every = {"frames": frames, "vertices": vertices, "connectivity": connectivity}
     for seed in range(seeds):
         for figure, motions in MOTIONS.items():

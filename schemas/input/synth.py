@@ -45,7 +45,7 @@ class SynthParams(Params):
     file: Annotated[str, PathLike()] = ""
     """YAML file of a figure of your own; goes before `figure`."""
     motion: str | None = None
-    """One of the figure's motions; None takes its first."""
+    """One of the figure's motions; None takes the first by name."""
     frames: int = Field(default=36, ge=1)
     """How many frames."""
     fps: float | None = Field(default=None, gt=0)

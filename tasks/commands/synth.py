@@ -13,10 +13,12 @@ if TYPE_CHECKING:
 
 def synth(
     figure: Annotated[
-        str, typer.Argument(help="bird, human, quadruped, snake, starfish, random:SEED, or a YAML file of your own.")
+        str, typer.Argument(help="adult, bird, human, quadruped, snake, starfish, random:SEED, or a YAML file of your own.")
     ] = "human",
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write; must be new or empty.")] = Path("synth"),
-    motion: Annotated[str | None, typer.Option("--motion", help="One of the figure's motions; default: its first.")] = None,
+    motion: Annotated[
+        str | None, typer.Option("--motion", help="One of the figure's motions; default: the first by name.")
+    ] = None,
     frames: Annotated[int, typer.Option("--frames", min=1, help="How many frames.")] = 36,
     fps: Annotated[float | None, typer.Option("--fps", help="Frames a second; default: the figure's own.")] = None,
     vertices: Annotated[int, typer.Option("--vertices", min=100, help="Vertices of a frame, to within about a tenth.")] = 3000,

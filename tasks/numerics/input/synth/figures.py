@@ -8,7 +8,7 @@ A figure is data, so that a user can write one; this module checks the words and
       - {name: palm, position: [0, 0, 0], radius: 60}
       - {name: knuckle, parent: palm, position: [0, 0, 150], radius: 30}
       - {name: tip, parent: knuckle, position: [0, 0, 300], radii: [30, 34, 20], flatten: 0.6, side: [1, 0, 0]}
-    motions:                                    # the first is the one used when none is named
+    motions:                                    # the first by name is the one used when none is named
       nod:
         knuckle: [{axis: [1, 0, 0], amplitude: 30, frequency: 0.7, phase: 0.25}]
 

@@ -299,3 +299,23 @@ def test_truth_that_somebody_changes_stays_what_it_was():
     told["joints"][0]["name"] = "changed"
     told["parts"][0].append("changed")
     assert "changed" not in str(made.truth())
+
+
+@pytest.mark.parametrize("joint", ["head_top", "hand_l", "toe_l"])
+def test_head_hands_and_feet_of_the_adult_show_how_they_turn(joint):
+    def roundness(name):
+        clip = body(name, vertices=6000, frames=1)
+        figure = clip.figure
+        at = figure.names.index(joint)
+        base = figure.parents[at]
+        V, _ = clip.frame(0)
+        axis = clip.X[0, at] - clip.X[0, base]
+        length = np.linalg.norm(axis)
+        along = (V - clip.X[0, base]) @ axis / length
+        across = V - clip.X[0, base] - along[:, None] * axis / length
+        near = (along > 0.2 * length) & (along < 0.8 * length) & (np.linalg.norm(across, axis=1) < 1.2 * length)
+        spread = np.linalg.eigvalsh(across[near].T @ across[near])
+        return np.sqrt(spread[1] / spread[2])
+
+    assert roundness("adult") < 0.85
+    assert joint != "head_top" or roundness("human") > 0.85
