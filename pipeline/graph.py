@@ -49,7 +49,7 @@ class Graph:
                 ordered.gathered_space(task, argument)
             _traversal_is_ordered_at_its_index(ordered, task)
             _selection_is_known_at_its_index(ordered, task)
-        ordered._remember_code()
+        ordered.remember_code()
         return ordered
 
     @cached_property
@@ -179,7 +179,7 @@ class Graph:
                 waiting.extend(self.reads(task))
         return replace(self, tasks=tuple(task for task in self.tasks if task.name in kept))
 
-    def _remember_code(self) -> None:
+    def remember_code(self) -> None:
         """Digests the code now, while what lies there is what was loaded: a process that lives on while its source is
         edited must not pass the old code's results off as the new code's.
         """

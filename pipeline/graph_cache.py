@@ -75,6 +75,7 @@ class _Graphs(Mapping[str, Graph]):
     def __getitem__(self, name: str) -> Graph:
         if name not in self._made:
             self._made[name] = Graph(tuple(_task(row) for row in self._rows[name]))
+            self._made[name].remember_code()
         return self._made[name]
 
     def __contains__(self, name: object) -> bool:

@@ -10,8 +10,8 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-FILES_KEPT = 8
-"""Files of one kind that are kept, the newest ones: installations and edits. One takes at most 1 MB."""
+FILES_KEPT = 16
+"""Files of one kind that are kept, those used last: installations and edits. One takes at most 1 MB."""
 KIND = "kinetree.kept/1"
 
 
@@ -34,6 +34,8 @@ def read(path: Path) -> Any:
         kept: Any = json.loads(path.read_text(encoding="utf-8"))
         if kept["format"] != KIND or kept["sum"] != _sum(kept["content"]):
             return None
+        with contextlib.suppress(OSError):
+            os.utime(path)  # it is used: others go first
         return json.loads(kept["content"])
     except (OSError, ValueError, TypeError, KeyError, AttributeError):
         return None

@@ -1,5 +1,7 @@
 """Laws of kept code digests: they are those that would be computed, and what is kept of other code is never taken."""
 
+import os
+
 import pytest
 
 from kinetree.pipeline.identity import key
@@ -59,6 +61,16 @@ def test_old_files_go(home):
     for number in range(FILES_KEPT + 3):
         kept({**TEXTS, "a.e": f"{number}"})
     assert len([*home.glob("*.json")]) == FILES_KEPT
+
+
+def test_a_file_that_is_used_stays(home):
+    used = kept().path
+    os.utime(used, (0, 0))
+    for number in range(FILES_KEPT - 1):
+        os.utime(kept({**TEXTS, "a.e": f"{number}"}).path, (number + 1, number + 1))
+    assert CodeCache.of(TEXTS).known
+    kept({**TEXTS, "a.e": "one more"})
+    assert used.exists()
 
 
 def test_kept_digests_are_those_that_are_computed(monkeypatch):

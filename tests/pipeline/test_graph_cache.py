@@ -61,6 +61,15 @@ def test_a_kept_task_computes_what_the_imported_one_computes():
     assert read(params=params, files=None) == real(params=params, files=None)
 
 
+def test_code_digests_that_are_gone_are_kept_again(home):
+    kept_graphs(REFERENCE)
+    for file in home.with_name("code").glob("*.json"):
+        file.unlink()
+    forget()
+    assert kept_graphs(REFERENCE)["mesoscopic"] is not METHODS["mesoscopic"]
+    assert [*home.with_name("code").glob("*.json")]
+
+
 def test_other_code_finds_nothing(monkeypatch):
     assert read_again()["reeb"] is not METHODS["reeb"]
     monkeypatch.setattr(graph_cache, "code_state", lambda: "other")
