@@ -10,6 +10,8 @@ WORDS: dict[Level, str] = {"good": "good", "except": "good except for", "unusabl
 """What a verdict is called."""
 NAMED = 6
 """Most joints that a sentence names one by one."""
+SHORTLY_NAMED = 3
+"""The same in the headline."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -27,7 +29,8 @@ def headline(verdict: Verdict) -> str:
 def subject(found: Finding, verdict: Verdict) -> str:
     """What a finding is about, in a few words."""
     where = _frames(found, verdict)
-    joints = _joints(found, verdict)
+    few = len(found.joints) <= SHORTLY_NAMED
+    joints = _joints(found, verdict) if few else f"{len(found.joints)} joints"
     words: dict[str, str] = {
         "rigid": "no joints",
         "unexplained": "the skeleton does not explain the motion",

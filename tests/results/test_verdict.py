@@ -13,7 +13,7 @@ from kinetree.schemas.results.verdict import Finding, Verdict
 from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.verdict import verdict
-from kinetree.tasks.views.verdict import runs, sentence
+from kinetree.tasks.views.verdict import headline, runs, sentence
 
 
 def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = ()) -> Verdict:
@@ -91,6 +91,13 @@ def test_skeleton_is_shown_with_the_verdict_and_names_that_people_know() -> None
     assert any("left shoulder (arm)  " in line for line in lines)
     assert any("─ tail  " in line for line in lines)
     assert views.text(body)[0].startswith("trunk  ")
+
+
+def test_headline_counts_joints_where_there_are_many() -> None:
+    many = Finding(kind="uncertain", severity="fault", frames=(7,), joints=spider().names[:4])
+    found = of().model_copy(update={"level": "except", "findings": (many,)})
+    assert headline(found) == "good except for 4 joints in frame 7"
+    assert sentence(many, found).startswith("trunk, left shoulder, ")
 
 
 def test_frames_are_told_as_runs() -> None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
 """Beside the words of a verdict."""
+OPEN_FAULTS = 4
+"""Most reasons of a verdict that stand above the player without being unfolded, so that its controls stay on the screen."""
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
 
@@ -120,7 +122,9 @@ def _folded(heading: str, sections: Sequence[Section]) -> str:
 def verdict(page: Page) -> str:
     """The verdict with its reasons as HTML."""
     heading = f'<h2 id="verdict"><span aria-hidden="true">{MARKS[page.level]}</span> {escape(page.headline)}</h2>'
-    return f'<section class="verdict {page.level}" aria-labelledby="verdict">{heading}{_remarks(page.faults)}</section>'
+    first, more = page.faults[:OPEN_FAULTS], page.faults[OPEN_FAULTS:]
+    folded = f"<details><summary>{len(more)} more</summary>{_remarks(more)}</details>" if more else ""
+    return f'<section class="verdict {page.level}" aria-labelledby="verdict">{heading}{_remarks(first)}{folded}</section>'
 
 
 def notes(remarks: Sequence[Remark]) -> str:

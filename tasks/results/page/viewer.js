@@ -58,6 +58,21 @@ function drawLabels(player) {
   });
 }
 
+// What the stage shows, in words; while it plays, the words stay those of the frame at which it began.
+function describe(player) {
+  if (player.playing) return;
+  const { scene, arrays, at, mode, colour, selected } = player;
+  const { joints } = scene;
+  const named = (state) => joints.filter((_, j) => arrays.state[at * joints.length + j] === state).map((joint) => joint.label).join(", ");
+  const modeWords = byId("mode").selectedOptions[0].textContent;
+  const colourWords = { parts: "a colour for every part", error: "coloured by the distance to the input", confidence: "coloured by confidence", plain: "without colours" }[colour];
+  const skeleton = player.skeleton.visible ? `, and its skeleton of ${joints.filter((j) => j.kind === "joint").length} joints under ${joints[0].label}` : "";
+  const words = [`The body at ${frameCaption(scene, at)}, one of ${scene.frames.length} frames: ${mode === "sides" ? "" : "the "}${modeWords}, ${colourWords}${skeleton}.`];
+  for (const [state, word] of [[2, "Wrong"], [1, "Uncertain"]]) if (named(state)) words.push(`${word}: ${named(state)}.`);
+  if (selected !== null) words.push(`Selected: ${joints[selected].label}, ${joints[selected].kind}.`);
+  byId("stage").setAttribute("aria-label", words.join(" "));
+}
+
 function wirePicking(player) {
   const canvas = byId("stage");
   let from = null;
@@ -179,7 +194,7 @@ async function begin() {
     byId("player-note").hidden = false;
     return;
   }
-  player.drawn = () => drawLabels(player);
+  player.drawn = () => { drawLabels(player); describe(player); };
   wire(player);
   wirePicking(player);
   wireLinks(player);

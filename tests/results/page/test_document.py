@@ -63,6 +63,12 @@ def test_verdict_stands_before_the_player_and_its_reasons_lead_to_frame_and_join
     assert '<li><button type="button" class="go" data-frame="3" data-joint="1">arm: wrong</button></li><li>short</li>' in text
 
 
+def test_many_reasons_are_folded_so_that_the_player_stays_on_the_screen():
+    text = page(level="except", faults=[Remark(f"reason {n}") for n in range(6)])
+    assert "<li>reason 3</li></ul><details><summary>2 more</summary><ul><li>reason 4</li>" in text
+    assert "<summary>1 more" not in page(level="except", faults=[Remark("one")])
+
+
 def test_notes_are_folded_and_stand_only_where_there_are_some():
     assert 'class="notes"' not in page()
     text = page(notes=[Remark("leaf 2 is lost")])

@@ -1,5 +1,7 @@
 """The page in a real browser: it plays, its toggles work, no error, no request, at two sizes."""
 
+import io
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,13 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 from results.sample_report import page
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import Report
-from kinetree.tasks.results.page.document import Remark
+from kinetree.tasks.results.page.document import Remark, Section, picture
 from kinetree.tasks.results.plots.drawing import view
+from kinetree.tasks.results.plots.structure import tree
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -182,6 +187,20 @@ def test_keyboard_alone_steps_turns_and_plays(opened: Any) -> None:
     assert opened.evaluate("kinetree.at") == 11
 
 
+def test_stage_says_in_words_what_it_shows(opened: Any) -> None:
+    def words() -> str:
+        return str(opened.get_attribute("#stage", "aria-label"))
+
+    shown = "the rig as exported, a colour for every part, and its skeleton of 2 joints under "
+    assert re.match(rf"The body at frame 0\b.*, one of 12 frames: {shown}", words())
+    opened.evaluate("kinetree.select(1)")
+    opened.select_option("#colour", "error")
+    assert "coloured by the distance to the input" in words()
+    assert words().endswith("Selected: left shoulder, joint.")
+    opened.select_option("#colour", "parts")
+    opened.evaluate("kinetree.select(null)")
+
+
 def test_interval_is_jumped_to(opened: Any) -> None:
     opened.select_option("#interval", index=2)
     assert opened.evaluate("kinetree.at") == 6
@@ -201,3 +220,22 @@ def test_what_ran_is_told_as_text(opened: Any) -> None:
     text = opened.inner_text("#run")
     assert "<b>r</b> done: 3 ran in 1.5 s" in text
     assert "mesh" in text
+
+
+def test_pictures_turn_dark_with_the_page(browser: Any, tmp_path: Path) -> None:
+    """What a picture's ground is on the screen, at its corner."""
+    body = spider()
+    figure = tree(lambda name: plain(body) if name == "joint_names" else body, [])
+    path = tmp_path / "pictured.html"
+    path.write_text(page(sections=[Section("tree", "Tree", picture(figure, "a tree", "a tree of joints"))]))
+    grounds = []
+    for scheme in ("light", "dark"):
+        context = browser.new_context(color_scheme=scheme, reduced_motion="reduce")
+        tab = context.new_page()
+        tab.goto(path.as_uri())
+        tab.locator("figure img").first.scroll_into_view_if_needed()
+        shot = Image.open(io.BytesIO(tab.locator("figure img").first.screenshot())).convert("L")
+        grounds.append(shot.getpixel((3, 3)))
+        context.close()
+    assert grounds[0] > 240
+    assert grounds[1] < 60
