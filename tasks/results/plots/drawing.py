@@ -122,6 +122,16 @@ def surface(axes: "Axes", X: Floats, F: Ints, colour: Floats) -> None:
     axes.set_axis_off()
 
 
+def tall(bodies: "Sequence[Floats]", width: float) -> float:
+    """Height of pictures beside one another in which bodies of this extent fill the width, inches.
+
+    bodies : (vertex, xyz) of every picture, in the directions of its view
+    width  : of one picture, inches
+    """
+    ratio = float(np.max([np.ptp(X[:, 1]) for X in bodies])) / max(float(np.max([np.ptp(X[:, 0]) for X in bodies])), 1e-300)
+    return float(np.clip(width * ratio, 0.5 * width, 1.4 * width)) + 0.4
+
+
 def same_scale(panels: "Sequence[Axes]") -> None:
     """Makes surfaces beside one another equally large, each about its own centre."""
     for name in ("x", "y"):

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinetree.schemas.array import Floats
 from kinetree.tasks.results.formats.colours import BLUE, ORANGE, VERMILION
-from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, levels, same_scale, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, levels, same_scale, surface, tall, view
 from kinetree.tasks.results.plots.style import heading
 from kinetree.tasks.results.plots.timeline import frame_rate, over_time
 
@@ -43,8 +43,9 @@ def correlation(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """μ on the surface with the leaves, one view a frame; a leaf has the same colour in all views."""
     leaves = fetch("leaves")
-    figure, row = blank(3.2 * len(frames), 4.2, len(frames))
-    axis = view([fetch("mesh", frame=frame).vertices for frame in frames], up)
+    bodies = [fetch("mesh", frame=frame).vertices for frame in frames]
+    axis = view(bodies, up)
+    figure, row = blank(3.2 * len(frames), tall([V @ axis for V in bodies], 3.2), len(frames))
     for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
         mesh, geodesics = fetch("mesh", frame=frame), fetch("geodesics", frame=frame)
         surface(axes, mesh.vertices @ axis, mesh.faces, levels(mesh.faces, geodesics.mu))

@@ -67,8 +67,8 @@ def angles(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 
 def columns_of(count: int) -> int:
-    """Columns of a grid with the fewest empty cells, at most `MOST_COLUMNS`; of those the widest grid."""
-    return min(range(min(count, MOST_COLUMNS), max(min(count, 2), 1) - 1, -1), key=lambda c: -count % c)
+    """Columns of a grid with the fewest empty cells, at most `MOST_COLUMNS` and one less; of those the widest grid."""
+    return count if count < MOST_COLUMNS else min((MOST_COLUMNS, MOST_COLUMNS - 1), key=lambda c: -count % c)
 
 
 def panels(skeleton: Skeleton, names: JointNames | None, signed: Floats) -> list[Panel]:

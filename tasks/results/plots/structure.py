@@ -8,7 +8,7 @@ from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.formats.colours import KINDS, pale_part_colours
 from kinetree.tasks.results.formats.rig import skinned
-from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, same_scale, surface, view
+from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, same_scale, surface, tall, view
 from kinetree.tasks.results.plots.style import heading
 from kinetree.tasks.results.plots.timeline import joint_labels, over_time
 
@@ -24,11 +24,12 @@ BONE = "#0a0a0a"
 def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Parts and skeleton on the aligned mesh, one view a frame; white where the surface is not rigid."""
     found = fetch("skeleton")
-    figure, row = blank(3.4 * len(frames), 4.6, len(frames))
-    axis = view([skinned(found, found.frames.index(frame)) for frame in frames], up)
+    bodies = [skinned(found, found.frames.index(frame)) for frame in frames]
+    axis = view(bodies, up)
+    figure, row = blank(3.4 * len(frames), tall([V @ axis for V in bodies], 3.4), len(frames))
     colour = part_colours(found)
-    for axes, frame in zip(np.atleast_1d(row), frames, strict=True):
-        surface(axes, skinned(found, found.frames.index(frame)) @ axis, found.faces, colour)
+    for axes, frame, V in zip(np.atleast_1d(row), frames, bodies, strict=True):
+        surface(axes, V @ axis, found.faces, colour)
         bones(axes, found, found.positions[found.frames.index(frame)] @ axis)
         axes.set_title(f"frame {frame}", fontsize=9)
     same_scale(figure.axes)

@@ -62,5 +62,5 @@ def test_no_picture_of_the_angles_is_empty_and_all_have_one_scale() -> None:
     assert len({axes.get_ylim() for axes in figure.axes}) == 1
 
 
-def test_grid_of_few_pictures_has_no_empty_place() -> None:
-    assert [columns_of(n) for n in (1, 2, 3, 4, 6, 8, 9, 12)] == [1, 2, 3, 4, 3, 4, 3, 4]
+def test_grid_of_small_pictures_has_few_empty_places_and_is_not_narrow() -> None:
+    assert [columns_of(n) for n in (1, 2, 3, 4, 6, 8, 9, 12, 14)] == [1, 2, 3, 4, 3, 4, 3, 4, 3]
