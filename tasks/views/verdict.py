@@ -71,7 +71,7 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
     "outside": lambda f, joints, frames: f"{joints}: outside the body in {frames}, by up to {_percent(f.amount)}",
     "uncertain": lambda f, joints, frames: f"{joints}: uncertain in {frames}, hidden or not fitting the input",
     "weak": lambda f, joints, frames: f"{joints}: few frames support it (mean confidence {f.amount:.2f})",
-    "asymmetric": lambda f, joints, frames: f"{joints}: their bones differ in length by {_percent(f.amount)}",
+    "asymmetric": lambda f, joints, frames: f"{joints}: one is misplaced, as their bones differ by {_percent(f.amount)}",
     "short": lambda f, joints, frames: (
         f"only {f.amount:.0f} frame{'s' * (f.amount != 1)}: joints are found by motion, more frames show more of them"
     ),

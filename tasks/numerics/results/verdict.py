@@ -38,7 +38,8 @@ class VerdictSettings(NamedTuple):
     length: float = 0.03
     """Length of the bone to its parent below which a joint is doubtful: half of such joints were where the truth has none."""
     asymmetry: float = 0.04
-    """Difference in length between a bone on the left and on the right. The widest among right results was 0.03."""
+    """Difference in length between a bone on the left and on the right. Of 384 pairs of generated bodies, spoilt in
+    many ways, two differed by more; neither was where the truth has joints. Sound pairs differ by up to 0.038."""
 
 
 class Evidence(NamedTuple):
@@ -178,18 +179,23 @@ def _of_joints(e: Evidence, state: Ints, s: VerdictSettings) -> Iterator[Finding
         groups.setdefault(_at(unsure[:, j]), []).append(int(j))
     for frames, joints in sorted(groups.items(), key=lambda item: -len(item[0])):
         yield Finding("uncertain", "fault", frames, tuple(joints), float(e.confidence[np.ix_(frames, joints)].mean()))
-    for left, right in e.pairs:
-        apart = abs(float(e.length[left] - e.length[right]))
-        if apart > s.asymmetry:
-            yield Finding("asymmetric", "fault", (), (left, right), apart)
     small = e.turning & (e.degrees < s.degrees)
+    close = e.turning & (e.length < s.length) & ~small
+    yield from _asymmetric(e, weak | small | close, s)
     if small.any() and not small[e.turning].all():
         yield Finding("small", "fault", (), _at(small), float(e.degrees[small].max()))
-    close = e.turning & (e.length < s.length) & ~small
     if close.any():
         yield Finding("close", "fault", (), _at(close), float(e.length[close].min()))
     if e.unpaired:
         yield Finding("unpaired", "note", (), tuple(e.unpaired))
+
+
+def _asymmetric(e: Evidence, doubtful: Flags, s: VerdictSettings) -> Iterator[Finding]:
+    """Pairs of bones of unlike length; a note where one of the joints is doubtful anyway, which is then the reason."""
+    for left, right in e.pairs:
+        apart = abs(float(e.length[left] - e.length[right]))
+        if apart > s.asymmetry:
+            yield Finding("asymmetric", "note" if doubtful[[left, right]].any() else "fault", (), (left, right), apart)
 
 
 def _at(flags: Flags) -> tuple[int, ...]:

@@ -93,6 +93,14 @@ def test_bones_of_unlike_length_on_both_sides_are_found() -> None:
     assert kinds(changed("length", 3, 0.5)) == []
 
 
+def test_bones_of_unlike_length_are_a_note_where_one_of_the_joints_is_doubtful_anyway() -> None:
+    both = changed("length", 2, 0.26)
+    degrees = np.array(both.degrees)
+    degrees[2] = 9.0
+    found = verdict(both._replace(degrees=degrees)).findings
+    assert [(f.kind, f.severity) for f in found] == [("small", "fault"), ("asymmetric", "note")]
+
+
 def test_notes_leave_a_result_good() -> None:
     assert kinds(evidence(unpaired=[3])) == ["unpaired"]
     assert verdict(evidence(unpaired=[3])).level == "good"
