@@ -76,7 +76,7 @@ def _run(program: str, file: Path, folder: Path, seconds: float) -> None:
     if refused.exists():
         raise InputError(f"{file}: {refused.read_text()}")
     if code != 0 or not (folder / "told.json").exists():
-        lines = [line for line in (folder / "log").read_text("utf-8", "replace").splitlines() if "Error" in line]
+        lines = [line for line in (folder / "log").read_text("utf-8", "replace").splitlines() if _tells(line)]
         raise InputError(f"{file}: Blender cannot open it ({lines[-1].strip()[:200] if lines else f'exit code {code}'})")
 
 
@@ -106,3 +106,8 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
     finally:
         beside.unlink(missing_ok=True)
     return len(counts)
+
+
+def _tells(line: str) -> bool:
+    """Whether a line of Blender's log says what is wrong with the file, and not where the script stood."""
+    return "Error" in line and not any(other in line for other in ("script failed", "Traceback", "EGL"))

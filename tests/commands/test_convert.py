@@ -87,7 +87,7 @@ def test_nothing_in_a_blender_file_runs(installed, tmp_path):
 
 
 def test_damaged_file_is_refused_in_words(installed, file):
-    with pytest.raises(InputError, match=r"walk\.fbx: Blender cannot open it \("):
+    with pytest.raises(InputError, match=r"walk\.fbx: Blender cannot open it \((?!.*frames\.py)"):
         convert(file, None, installed[0])
     assert not file.with_suffix(".npz").exists()
 
