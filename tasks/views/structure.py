@@ -5,7 +5,6 @@ from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.results.formats.names import readable_names
 from kinetree.tasks.views.verdict import headline
 
 
@@ -41,6 +40,8 @@ def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: V
 
 def _branch(skeleton: Skeleton, joint: int) -> str:
     """The lines that connect a joint with its parent, as a tree of folders is printed."""
+    from kinetree.tasks.results.formats.names import readable_names  # its shelf imports all that computes
+
     parent, lead = skeleton.parents[joint], ""
     while parent >= 0:
         is_last = joint == max(j for j, p in enumerate(skeleton.parents) if p == parent)
