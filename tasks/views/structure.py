@@ -30,6 +30,8 @@ def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: V
 
     Above it the verdict; joints as people call them, with the skeleton's own name where that is another.
     """
+    from kinetree.tasks.results.formats.names import readable_names  # its shelf imports all that computes
+
     known = dict(zip(joint_names.given, readable_names(joint_names), strict=True)) if joint_names else {}
     labels = [f"{known[n]} ({n})" if known.get(n, n) != n else n for n in skeleton.names]
     names = [f"{_branch(skeleton, joint)}{label}" for joint, label in enumerate(labels)]
@@ -40,8 +42,6 @@ def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: V
 
 def _branch(skeleton: Skeleton, joint: int) -> str:
     """The lines that connect a joint with its parent, as a tree of folders is printed."""
-    from kinetree.tasks.results.formats.names import readable_names  # its shelf imports all that computes
-
     parent, lead = skeleton.parents[joint], ""
     while parent >= 0:
         is_last = joint == max(j for j, p in enumerate(skeleton.parents) if p == parent)
