@@ -118,6 +118,10 @@ class Player {
     this.balls = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color: 0xffffff, ...onTop }), Math.max(count, 1));
     const rod = new THREE.CylinderGeometry(scene.size * 0.0025, scene.size * 0.006, 1, 8).translate(0, 0.5, 0);
     this.rods = new THREE.InstancedMesh(rod, new THREE.MeshBasicMaterial({ color: 0x222222, ...onTop }), Math.max(count, 1));
+    // Black rods with white edges, seen over any part and over a dark stage.
+    const edge = rod.clone().scale(1.7, 1, 1.7);
+    this.edges = new THREE.InstancedMesh(edge, new THREE.MeshBasicMaterial({ color: 0xffffff, ...onTop }), Math.max(count, 1));
+    this.edges.renderOrder = 1.9;
     this.balls.renderOrder = 3;
     this.rods.renderOrder = 2;
     // A white and a black ring: one of them stands out from any part and from the stage.
@@ -127,7 +131,7 @@ class Player {
       return ring;
     });
     scene.joints.forEach((joint, j) => this.balls.setColorAt(j, new THREE.Color(scene.kinds[joint.kind])));
-    for (const part of [this.rods, ...this.rings, this.balls]) {
+    for (const part of [this.edges, this.rods, ...this.rings, this.balls]) {
       part.frustumCulled = false;
       part.count = count;
       this.skeleton.add(part);
@@ -217,10 +221,11 @@ class Player {
       const along = here.clone().sub(from);
       const length = along.length();
       const turn = new THREE.Quaternion().setFromUnitVectors(upwards, length > 0 ? along.divideScalar(length) : upwards);
-      this.rods.setMatrixAt(j, place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1)));
+      place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1));
+      for (const part of [this.edges, this.rods]) part.setMatrixAt(j, place);
     });
     for (const part of [...this.rings, this.balls]) part.instanceMatrix.needsUpdate = true;
-    this.rods.instanceMatrix.needsUpdate = true;
+    for (const part of [this.edges, this.rods]) part.instanceMatrix.needsUpdate = true;
   }
 
   showLeaves() {
