@@ -10,6 +10,7 @@ from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations
 from kinetree.tasks.numerics.structure.anatomy import Motion
 
+FIGURES = files("kinetree.configs") / "figures"
 HUMAN = {"hips": "pelvis", "heel_l": None, "heel_r": None, "head_top": "head_end", "toe_l": "foot_end_l", "toe_r": "foot_end_r",
          "hand_l": "hand_end_l", "hand_r": "hand_end_r"}  # fmt: skip
 """True names of the generated human that differ from those of `anatomical_names`; None where there is no such name."""
@@ -37,7 +38,7 @@ def walker(name: str, motion: str | None = None, seed: int = 0, frames: int = 24
 
 def shipped(name: str) -> Figure:
     """A figure that ships."""
-    return Figure.of(yaml.safe_load((files("kinetree.configs") / "figures" / f"{name}.yaml").read_text("utf-8")))
+    return Figure.of(yaml.safe_load((FIGURES / f"{name}.yaml").read_text("utf-8")))
 
 
 def moved(figure: Figure, motion: str | None = None, seed: int = 0, frames: int = 24) -> Walker:

@@ -39,8 +39,9 @@ class Joint(_FileObject):
     """What it is on a person or a four-legged animal, such as knee_l, whatever its name; null where that is not known."""
     parent: Annotated[int, Field(ge=0)] | None
     """Position of its parent in the list of joints, before its own; null for the root."""
-    kind: Literal["root", "joint", "leaf"]
-    """root: no parent; joint: turns against its parent; leaf: the end of a bone, turns with its parent."""
+    kind: Literal["root", "joint", "leaf", "assumed"]
+    """root: no parent; joint: turns against its parent; leaf: the end of a bone, turns with its parent; assumed: the body has
+    it, but it never turned: it lies where symmetry or usual proportions have it, and its confidence is 0."""
     range: Annotated[float, Field(ge=0)]
     """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves."""
     rest: Rest

@@ -42,3 +42,5 @@ class JointNames(Artifact):
     """Direction that the body faces in the reference frame, horizontal, of length 1; zeros where it is not known."""
     front_confidence: float
     """Of the front, and so of left and right, 0 to 1; 1 where the user says it."""
+    spelling: JointNamesParams = JointNamesParams()
+    """How the names are spelled, for joints that are added later."""

@@ -29,7 +29,7 @@ FORMATS = {
     "zarr": "segmentation",
 }
 """The task that writes each format."""
-LAID_OUT_BY = ("complete_skeleton", "joint_names", "appearance", "glb")
+LAID_OUT_BY = ("complete_skeleton", "joint_names", "assumed_joints", "appearance", "glb")
 """Tasks that say how a body looks in files and take no time: they are computed with a file where an option changes them."""
 EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""

@@ -2,6 +2,7 @@
 
 from kinetree.tasks.results.alignment_figures import alignment_figures
 from kinetree.tasks.results.appearance import appearance
+from kinetree.tasks.results.assumed_joints import assumed_joints
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
@@ -35,6 +36,7 @@ RESULTS = (
     truth,
     evaluation,
     complete_skeleton,
+    assumed_joints,
     appearance,
     glb,
     bvh,

@@ -11,6 +11,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.alignment_figures import AlignmentFigures
+from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.evaluation import Evaluation
 from kinetree.schemas.results.excerpt import Excerpt
@@ -26,6 +27,8 @@ from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.verdict import VerdictSettings
+from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
+from kinetree.tasks.results.formats.names import in_words
 from kinetree.tasks.results.page.alternatives import evaluation_words
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
@@ -33,6 +36,7 @@ from kinetree.tasks.results.page.scene import Limits, Trust, scene
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.views.results import evaluation_remarks
+from kinetree.tasks.views.structure import assumed_words
 from kinetree.tasks.views.topology import UNSURE
 from kinetree.tasks.views.verdict import headline
 
@@ -60,6 +64,7 @@ def report(
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
     params: ReportParams,
+    assumed_joints: AssumedJoints = NOTHING_ASSUMED,
 ) -> Report:
     """Lays out the result of the run on one page that needs no network (ours)."""
     limits = Limits(len(excerpt.frames), params.vertices, coarse_mesh[0].limit)
@@ -70,6 +75,7 @@ def report(
     share = VerdictSettings().wrong
     trust = Trust(verdict.labels, error, share * size, share, verdict.state)
     has_truth = evaluation.summary is not None
+    assumed = [(in_words(joint.anatomy), joint.child, joint.share) for joint in assumed_joints.joints]
     label = dict(zip(verdict.joints, verdict.labels, strict=True))
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     page = Page(
@@ -79,9 +85,9 @@ def report(
         headline=headline(verdict),
         faults=faults(verdict),
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
-        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, trust=trust),
+        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed),
         sections=[
-            Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures)),
+            Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints)),
             Section("structure", "Parts, tree and angles", structure),
             *(
                 [
@@ -102,11 +108,19 @@ def report(
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
 
 
-def _joints(skeleton: Skeleton, labels: tuple[str, ...], intervals: Intervals, figures: StructureFigures) -> str:
-    """A table of the skeleton's joints."""
+def _joints(
+    skeleton: Skeleton,
+    labels: tuple[str, ...],
+    intervals: Intervals,
+    figures: StructureFigures,
+    assumed: AssumedJoints,
+) -> str:
+    """A table of the skeleton's joints, and below it those that are assumed."""
     unit = skeleton.unit or "the unit of the input"
     note = f"<p>Lengths in {escape(unit)}. Intervals are listed where a joint's mean confidence is at least 0.5.</p>"
-    return note + table(*_joint_table(skeleton, labels, intervals, figures), joints=True)
+    words = (assumed_words(joint, labels, skeleton.parents) for joint in assumed.joints)
+    below = "".join(f'<p class="assumed">{escape(text[0].upper() + text[1:])}.</p>' for text in words)
+    return note + table(*_joint_table(skeleton, labels, intervals, figures), joints=True) + below
 
 
 def _joint_table(

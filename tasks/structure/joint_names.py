@@ -36,6 +36,7 @@ def joint_names(skeleton: Skeleton, up_direction: UpDirection, params: JointName
         confidence=0.0 if found is None else found.confidence,
         front=np.zeros(3) if found is None else found.front,
         front_confidence=0.0 if found is None else found.certainty,
+        spelling=params.model_copy(update={"style": style, "front": None}),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinetree.pipeline.views import files_of, leave_group, page_of, remarks_of, rows_of
 from kinetree.schemas.array import Floats, Index
+from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.bvh import Bvh
 from kinetree.schemas.results.c3d import C3d
 from kinetree.schemas.results.comparison import Comparison, UnpairedJoint
@@ -81,6 +82,13 @@ def evaluation_remarks(evaluation: Evaluation) -> tuple[str, ...]:
         compared = f"{len(evaluation.frames)} measured frames are compared"
         lines.append(f"{compared}; {evaluation.truth} has {evaluation.true_frames}: interpolated and missing ones do not count")
     return tuple(lines)
+
+
+@remarks_of(AssumedJoints)
+def assumed_joints_remarks(assumed: AssumedJoints) -> tuple[str, ...]:
+    """Names the joints that files have and that were not found."""
+    names = ", ".join(joint.name for joint in assumed.joints)
+    return (f"assumed in files, not found: {names}",) if names else ()
 
 
 @remarks_of(Bvh)

@@ -1,6 +1,9 @@
 """Views of the artifacts of the shelf `structure`."""
 
+from collections.abc import Sequence
+
 from kinetree.pipeline.views import remarks_of, text_of
+from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
@@ -24,11 +27,14 @@ def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
     return (f"{turning} joint{'s' * (turning != 1)} and {leaves} lea{'f' if leaves == 1 else 'ves'} under {skeleton.names[0]}",)
 
 
-@text_of(Skeleton, JointNames, Verdict)
-def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: Verdict | None) -> tuple[str, ...]:
+@text_of(Skeleton, JointNames, Verdict, AssumedJoints)
+def skeleton_text(
+    skeleton: Skeleton, joint_names: JointNames | None, verdict: Verdict | None, assumed: AssumedJoints | None = None
+) -> tuple[str, ...]:
     """The tree, one line a joint: length of its bone, range of its angle, uncertainty, frames that support it.
 
-    Above it the verdict; joints as people call them, with the skeleton's own name where that is another.
+    Above it the verdict; joints as people call them, with the skeleton's own name where that is another. Below it joints that
+    are assumed.
     """
     from kinetree.tasks.results.formats.names import readable_names  # its shelf imports all that computes
 
@@ -37,7 +43,22 @@ def skeleton_text(skeleton: Skeleton, joint_names: JointNames | None, verdict: V
     names = [f"{_branch(skeleton, joint)}{label}" for joint, label in enumerate(labels)]
     width = max(map(len, names))
     above = (headline(verdict), "") if verdict else ()
-    return (*above, *(f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names)))
+    tree = (f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names))
+    return (*above, *tree, *(assumed_words(joint, labels, skeleton.parents) for joint in (assumed.joints if assumed else ())))
+
+
+def assumed_words(joint: AssumedJoint, labels: Sequence[str], parents: Sequence[int]) -> str:
+    """Where a joint is assumed, in words.
+
+    labels  : (joint,) what people call the joints that were found
+    parents : (joint,)
+    """
+    from kinetree.tasks.results.formats.names import in_words
+
+    known = in_words(joint.anatomy)
+    bone = f"{labels[parents[joint.child]]} to {labels[joint.child]}"
+    why = "as on the other side" if joint.source == "mirror" else "by usual proportions"
+    return f"assumed, not found: {known}, at {100 * joint.share:.0f} % of the bone from {bone}, {why}"
 
 
 def _branch(skeleton: Skeleton, joint: int) -> str:

@@ -22,6 +22,7 @@ from kinetree.tasks.input.mesh import mesh
 from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.input.source import source
 from kinetree.tasks.results.appearance import appearance
+from kinetree.tasks.results.assumed_joints import assumed_joints
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
@@ -110,6 +111,7 @@ GRAPH = Graph.of(
         complete_skeleton,
         up_direction,
         joint_names,
+        assumed_joints,
         appearance,
         glb,
         bvh,

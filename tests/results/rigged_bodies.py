@@ -82,6 +82,25 @@ def skeleton_of(body: Body, **changes: object) -> Skeleton:
     return Skeleton.model_validate({**fields, **changes})
 
 
+def without_joint(skeleton: Skeleton, name: str) -> Skeleton:
+    """The same body in which a joint that never turns was not found: what it carries follows its parent."""
+    gone = skeleton.names.index(name)
+    stay = [j for j in range(len(skeleton.names)) if j != gone]
+    above = [skeleton.parents[gone] if j == gone else j for j in range(len(skeleton.names))]
+    number = np.array([stay.index(j) for j in above])
+    arrays = {
+        "positions": skeleton.positions[:, stay], "rotation": skeleton.rotation[:, stay],
+        "confidence": skeleton.confidence[:, stay], "label": np.where(skeleton.label < 0, -1, number[skeleton.label]),
+        **{each: np.asarray(getattr(skeleton, each))[stay] for each in ("rest", "degrees", "drift", "support")},
+        "influence": number[skeleton.influence].astype(np.int32),
+    }  # fmt: skip
+    lists = {each: tuple(getattr(skeleton, each)[j] for j in stay) for each in ("names", "kinds")}
+    parents = tuple(int(number[p]) if p >= 0 else -1 for p in (skeleton.parents[j] for j in stay))
+    arrays["label"] = arrays["label"].astype(np.int32)
+    fields = {each: getattr(skeleton, each) for each in Skeleton.model_fields}
+    return Skeleton.model_validate({**fields, **arrays, **lists, "parents": parents})
+
+
 def skinned(skeleton: Skeleton) -> Floats:
     """(frame, vertex, xyz) the surface as the skeleton's own docstring says: Σ_i w_vi [R_i(t) (v − rest_i) + x_i(t)]."""
     out = np.zeros((len(skeleton.frames), *skeleton.vertices.shape))

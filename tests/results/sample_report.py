@@ -14,6 +14,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.results.excerpt import ExcerptParams
@@ -41,24 +42,29 @@ from kinetree.tasks.results.verdict import verdict
 UP = UpDirection(up="y", confidence=1.0)
 
 
-def trusted() -> Scene:
+def trusted(assumed: tuple[tuple[str, int, float], ...] = ()) -> Scene:
     """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint."""
     joints, vertices = len(spider().names), len(spider().vertices)
     body = spider(confidence=np.tile(np.linspace(0.9, 0.1, joints), (12, 1)))
     error = {frame: np.linspace(0, 1, vertices) for frame in body.frames}
     labels = ("trunk", "left shoulder", *body.names[2:])
-    return playing(body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)))
+    return playing(body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)), assumed=assumed)
 
 
 def playing(
-    skeleton: Skeleton | None = None, limits: Limits | None = None, anew: bool = False, trust: Trust | None = None
+    skeleton: Skeleton | None = None,
+    limits: Limits | None = None,
+    anew: bool = False,
+    trust: Trust | None = None,
+    assumed: tuple[tuple[str, int, float], ...] = (),
 ) -> Scene:
     """The spider playing."""
     arguments, chosen = artifacts(skeleton, anew=anew), limits or Limits()
     body = arguments["skeleton"]
     shown = {body.frames[t]: arguments["mesh"][body.frames[t]] for t in evenly_spread(len(body.frames), chosen.frames)}
     inputs = coarse_meshes(shown, arguments["projection"], chosen.input_vertices)
-    return scene(body, arguments["alignment"], inputs, arguments["leaves"], arguments["intervals"], chosen, trust=trust)
+    leaves, intervals = arguments["leaves"], arguments["intervals"]
+    return scene(body, arguments["alignment"], inputs, leaves, intervals, chosen, trust=trust, assumed=assumed)
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:
@@ -74,6 +80,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
     return {
         "skeleton": skeleton,
         "joint_names": plain(skeleton),
+        "assumed_joints": AssumedJoints(),
         "structure_figures": structure_figures(
             parts_of(skeleton), tree_of(skeleton), plain(skeleton),
             Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit), UP,

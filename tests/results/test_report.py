@@ -12,6 +12,7 @@ from results.rigged_bodies import spider
 from results.sample_report import artifacts, confident, judged, page_artifacts
 
 from kinetree.schemas.input.mesh import Cleaning
+from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.results.report import RUN, ReportParams
 from kinetree.tasks.results.report import report
@@ -53,6 +54,17 @@ def test_every_joint_is_in_the_table(plain_page: str) -> None:
     rows = re.findall("<tr[^>]*>(.*?)</tr>", plain_page)
     for name in spider().names:
         assert any(f"<td>{name}</td>" in row for row in rows), name
+
+
+def test_assumed_joints_are_said_below_the_table_and_counted_nowhere(plain_page: str) -> None:
+    joint = AssumedJoint(name="elbow_l", anatomy="elbow_l", child=2, share=0.4, source="proportions")
+    text = page(assumed_joints=AssumedJoints(joints=(joint,)))
+    inner, outer = spider().names[spider().parents[2]], spider().names[2]
+    said = f"Assumed, not found: left elbow, at 40 % of the bone from {inner} to {outer}, by usual proportions."
+    assert said in text
+    assert 'class="assumed"' not in plain_page
+    assert facts(text) == facts(plain_page)
+    assert (listed(text, "verdict"), listed(text, "notes")) == (listed(plain_page, "verdict"), listed(plain_page, "notes"))
 
 
 def test_truth_has_a_chapter_only_where_there_is_one(plain_page: str) -> None:

@@ -12,10 +12,13 @@ from kinetree.errors.small_text import small_json
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.motion import turning_angles
 from kinetree.tasks.numerics.results.bvh_reader import LARGEST_NUMBER, read_bvh
+from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree
 
 Kind = Literal["joint", "tip"]
 KINDS: Mapping[str, Kind] = {"root": "joint", "joint": "joint", "tip": "tip", "leaf": "tip"}
 """The kinds of joints in a file, and what each of them is here."""
+ASSUMED = "assumed"
+"""The kind of joints of which nothing was measured: they are left out."""
 SKELETON_FORMATS = ("kinetree.skeleton/1", "kinetree.skeleton/2")
 
 
@@ -105,6 +108,8 @@ def truth_of_bvh(text: str, name: str, settings: TruthSettings | None = None) ->
 def truth_of_json(content: Any, name: str, settings: TruthSettings | None = None) -> TrueMotion:
     """The true skeleton in a truth.json: `joints` with name, parent and kind, and `positions` by frame and joint.
 
+    Of joints that another run assumed, nothing is known: they are left out.
+
     content : what the JSON holds
     name    : name of the file, for messages
     raises  : InputError where it is not a truth
@@ -122,10 +127,13 @@ def truth_of_json(content: Any, name: str, settings: TruthSettings | None = None
         twice = next(n for n in names if names.count(n) > 1)
         raise InputError(f"{name}: two joints are called {twice!r}; parents are given by name, so names must be unique")
     parents = _parents(rows, names, name)
+    remains = [p < 0 or row.get("kind") != ASSUMED for row, p in zip(rows, parents, strict=True)]
+    every, rows = len(rows), [row for row, stays in zip(rows, remains, strict=True) if stays]
+    names, parents = tuple(str(row["name"]) for row in rows), tuple(contracted_tree(parents, remains))
     kinds = tuple(_kind(row, name) for row in rows)
     if "joint" not in kinds:
         raise InputError(f"{name}: all its joints are tips; at least one must be a joint")
-    X = _positions(content["positions"], len(rows), name)
+    X = _positions(content["positions"], every, name)[:, remains]
     turns = tuple(_number(row.get("turns_deg"), f"{name}: turns_deg of {row['name']}") for row in rows)
     return TrueMotion(
         names=names,

@@ -60,12 +60,30 @@ def styled_names(
     unique: list[str] = []
     for name, plain in zip(names, given, strict=True):
         text = plain if name is None else _spelled(name, style, sides)
-        text = rename.get(plain, rename.get(text, text))
-        numbered, number = text, 2
-        while numbered in unique:
-            numbered, number = f"{text}_{number}", number + 1
-        unique.append(numbered)
+        unique.append(_numbered(rename.get(plain, rename.get(text, text)), unique))
     return tuple(unique)
+
+
+def names_beside(
+    named: Sequence[Named], beside: Sequence[str], style: str, sides: tuple[str, str], rename: Mapping[str, str]
+) -> tuple[str, ...]:
+    """Names of further joints in the same spelling, other than those that are there; for the rest see `styled_names`.
+
+    beside : names that others have
+    """
+    unique = list(beside)
+    for name in named:
+        text = _spelled(name, style, sides)
+        unique.append(_numbered(rename.get(text, text), unique))
+    return tuple(unique[len(beside) :])
+
+
+def _numbered(text: str, others: Sequence[str]) -> str:
+    """A name with a number behind it where another has it already."""
+    numbered, number = text, 2
+    while numbered in others:
+        numbered, number = f"{text}_{number}", number + 1
+    return numbered
 
 
 def _spelled(name: Named, style: str, sides: tuple[str, str]) -> str:

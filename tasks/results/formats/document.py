@@ -1,7 +1,7 @@
 """A skeleton as JSON, and the JSON Schema of that file (ours)."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,17 @@ DIGITS = 9
 """Decimals of quaternions and seconds."""
 
 
-def document(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> Document:
+def document(
+    skeleton: Skeleton,
+    names: JointNames,
+    up: UpDirection,
+    interpolated: Sequence[Interpolated] = (),
+    assumed: Collection[int] = (),
+) -> Document:
     """The content of skeleton.json: joints, rest pose, positions, rotations and confidence in every frame.
 
     interpolated : the frames that were not measured
+    assumed      : the joints that were not found
     """
     parents = [None if p < 0 else p for p in skeleton.parents]
     lengths = skeleton.lengths.tolist()
@@ -39,7 +46,7 @@ def document(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolate
         front_confidence=names.front_confidence,
         frames=list(skeleton.frames),
         seconds=None if skeleton.fps is None else np.round(seconds(skeleton, skeleton.fps), DIGITS).tolist(),
-        joints=_joints(skeleton, names, B),
+        joints=_joints(skeleton, names, B, assumed),
         positions=skeleton.positions.tolist(),
         rotations=np.round(rotations, DIGITS).tolist(),
         bones=[Bone(parent=p, child=j, length=lengths[j]) for j, p in enumerate(parents) if p is not None],
@@ -48,7 +55,7 @@ def document(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolate
     )
 
 
-def _joints(skeleton: Skeleton, names: JointNames, B: Floats) -> list[Joint]:
+def _joints(skeleton: Skeleton, names: JointNames, B: Floats, assumed: Collection[int]) -> list[Joint]:
     """The joints with their rest pose."""
     offset = local_offsets(skeleton.rest, B, skeleton.parents).tolist()
     identity = np.broadcast_to(np.eye(3), (1, *B.shape))
@@ -58,7 +65,7 @@ def _joints(skeleton: Skeleton, names: JointNames, B: Floats) -> list[Joint]:
             name=names.names[j],
             anatomy=names.anatomy[j] or None,
             parent=None if skeleton.parents[j] < 0 else skeleton.parents[j],
-            kind=skeleton.kinds[j],
+            kind="assumed" if j in assumed else skeleton.kinds[j],
             range=float(skeleton.degrees[j]),
             rest=Rest(position=tuple(skeleton.rest[j].tolist()), offset=tuple(offset[j]), rotation=tuple(rotation[j])),
         )
@@ -66,9 +73,15 @@ def _joints(skeleton: Skeleton, names: JointNames, B: Floats) -> list[Joint]:
     ]
 
 
-def skeleton_file(skeleton: Skeleton, names: JointNames, up: UpDirection, interpolated: Sequence[Interpolated] = ()) -> bytes:
-    """The file skeleton.json, with one line a frame, so that people and `diff` can read it."""
-    fields = document(skeleton, names, up, interpolated).model_dump(mode="json")
+def skeleton_file(
+    skeleton: Skeleton,
+    names: JointNames,
+    up: UpDirection,
+    interpolated: Sequence[Interpolated] = (),
+    assumed: Collection[int] = (),
+) -> bytes:
+    """The file skeleton.json, with one line a frame, so that people and `diff` can read it; for the rest see `document`."""
+    fields = document(skeleton, names, up, interpolated, assumed).model_dump(mode="json")
     entries = [f"  {json.dumps(name)}: {_lines(name, value)}" for name, value in fields.items()]
     return ("{\n" + ",\n".join(entries) + "\n}\n").encode()
 

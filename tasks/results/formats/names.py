@@ -27,7 +27,7 @@ def identifiers(names: Sequence[str]) -> list[str]:
 
 def readable_names(joint_names: JointNames) -> tuple[str, ...]:
     """(joint,) what people call each joint, such as left knee; its name in files where nothing was recognised."""
-    return tuple(_in_words(of) if of else name for of, name in zip(joint_names.anatomy, joint_names.names, strict=True))
+    return tuple(in_words(of) if of else name for of, name in zip(joint_names.anatomy, joint_names.names, strict=True))
 
 
 def station_and_side(anatomy: str) -> tuple[str, str]:
@@ -36,5 +36,6 @@ def station_and_side(anatomy: str) -> tuple[str, str]:
     return (anatomy[:-2] if side else anatomy).replace("_", " "), side
 
 
-def _in_words(anatomy: str) -> str:
+def in_words(anatomy: str) -> str:
+    """What people call a place of the body, such as left knee for knee_l."""
     return " ".join(reversed(station_and_side(anatomy))).strip()

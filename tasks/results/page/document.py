@@ -25,6 +25,7 @@ MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
 """Beside the words of a verdict."""
 OPEN_FAULTS = 4
 """Most reasons of a verdict that stand above the player without being unfolded, so that its controls stay on the screen."""
+ASSUMED_ENTRY = '<span><span class="key hollow"></span> assumed, not found, on a dashed bone</span>'
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
 
@@ -92,7 +93,8 @@ def document(page: Page) -> str:
         "run": RUN,
         "hashes": script_hashes(scripts.values()),
         **scripts,
-        "legend": "".join(legend_entry(name, colour) for name, colour in LEGEND.items()),
+        "legend": "".join(legend_entry(name, colour) for name, colour in LEGEND.items())
+        + (ASSUMED_ENTRY if page.scene.description.get("assumed") else ""),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], page_file("page.html"))
 

@@ -2,6 +2,7 @@
 // Draws a scene stored in a page with three.js. The page makes no request.
 
 const byId = (id) => document.getElementById(id);
+const DASHES = 9; // of a bone that an assumed joint divides
 const TYPES = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, uint32: Uint32Array, float32: Float32Array };
 
 async function payload(id) {
@@ -136,7 +137,37 @@ class Player {
       part.count = count;
       this.skeleton.add(part);
     }
+    this.addAssumed();
     this.world.add(this.skeleton);
+  }
+
+  // Joints that were not found are hollow, and the bones that they lie on dashed.
+  addAssumed() {
+    const { scene } = this;
+    const onTop = { depthTest: false, transparent: true };
+    this.assumed = scene.assumed || [];
+    this.dashed = [...new Set(this.assumed.map((joint) => joint.child))];
+    const dash = new THREE.CylinderGeometry(scene.size * 0.0035, scene.size * 0.0035, 1, 8).translate(0, 0.5, 0);
+    this.dashes = new THREE.InstancedMesh(dash, new THREE.MeshBasicMaterial({ color: 0x222222, ...onTop }), Math.max(this.dashed.length * DASHES, 1));
+    this.dashes.count = this.dashed.length * DASHES;
+    this.dashes.renderOrder = 2;
+    this.hollows = [[1.3, 0x000000], [0.9, 0xffffff]].map(([scale, color], k) => {
+      const ball = new THREE.SphereGeometry(scene.size * 0.0105 * scale, 14, 10);
+      const hollow = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color, ...onTop }), Math.max(this.assumed.length, 1));
+      hollow.count = this.assumed.length;
+      hollow.renderOrder = 2.8 + k / 10;
+      return hollow;
+    });
+    for (const part of [this.dashes, ...this.hollows]) {
+      part.frustumCulled = false;
+      this.skeleton.add(part);
+    }
+  }
+
+  assumedPoint(k) {
+    const { child, share } = this.assumed[k];
+    const { joints } = this.scene;
+    return this.point("joints", joints.length, joints[child].parent).lerp(this.point("joints", joints.length, child), share);
   }
 
   addLeaves() {
@@ -221,9 +252,20 @@ class Player {
       const along = here.clone().sub(from);
       const length = along.length();
       const turn = new THREE.Quaternion().setFromUnitVectors(upwards, length > 0 ? along.divideScalar(length) : upwards);
-      place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1));
+      const dashed = this.dashed.indexOf(j);
+      if (dashed < 0) place.compose(from, turn, new THREE.Vector3(1, Math.max(length, 1e-9), 1));
+      else place.makeScale(0, 0, 0);
       for (const part of [this.edges, this.rods]) part.setMatrixAt(j, place);
+      for (let k = 0; dashed >= 0 && k < DASHES; k++) {
+        const begin = from.clone().lerp(here, (k + 0.2) / DASHES);
+        this.dashes.setMatrixAt(dashed * DASHES + k, place.compose(begin, turn, new THREE.Vector3(1, Math.max((0.6 * length) / DASHES, 1e-9), 1)));
+      }
     });
+    this.assumed.forEach((_, k) => {
+      const at = this.assumedPoint(k);
+      for (const hollow of this.hollows) hollow.setMatrixAt(k, place.makeTranslation(at.x, at.y, at.z));
+    });
+    for (const part of [this.dashes, ...this.hollows]) part.instanceMatrix.needsUpdate = true;
     for (const part of [...this.rings, this.balls]) part.instanceMatrix.needsUpdate = true;
     for (const part of [this.edges, this.rods]) part.instanceMatrix.needsUpdate = true;
   }

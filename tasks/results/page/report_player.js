@@ -175,9 +175,11 @@ class ReportPlayer extends Player {
   aspect(width, height) { return (this.mode === "sides" ? width / 2 : width) / height; }
 
   // Where a joint is drawn, in pixels of the stage; side by side, in the right half.
-  place(j) {
+  place(j) { return this.placeOf(this.point("joints", this.scene.joints.length, j)); }
+
+  placeOf(point) {
     const { clientWidth, clientHeight } = this.renderer.domElement;
-    const p = this.point("joints", this.scene.joints.length, j).project(this.camera);
+    const p = point.project(this.camera);
     const width = this.mode === "sides" ? clientWidth / 2 : clientWidth;
     return [(this.mode === "sides" ? width : 0) + ((p.x + 1) / 2) * width, ((1 - p.y) / 2) * clientHeight];
   }

@@ -2,7 +2,7 @@
 
 import base64
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -72,6 +72,7 @@ def scene(
     up: int = 1,
     axes: Floats | None = None,
     trust: Trust | None = None,
+    assumed: Sequence[tuple[str, int, float]] = (),
 ) -> Scene:
     """The moving body, reduced to what a page can hold.
 
@@ -82,6 +83,7 @@ def scene(
     up         : axis that points up, see `view`
     axes       : directions of the view, as `view` gives them; None for those of these meshes
     trust      : makes the skinned mesh, its error and the confidence of joints part of the scene
+    assumed    : name of each joint that was not found, the joint at the outer end of its bone, and its share of the bone
     """
     frames = [frame for frame in skeleton.frames if frame in inputs]
     selected_frames = np.array([skeleton.frames.index(frame) for frame in frames])
@@ -121,6 +123,7 @@ def scene(
         "low": lattice.low.tolist(),
         "scale": lattice.scale,
         "intervals": _starts(intervals, frames),
+        "assumed": [{"label": label, "child": child, "share": share} for label, child, share in assumed],
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))

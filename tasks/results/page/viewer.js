@@ -46,14 +46,15 @@ function drawLabels(player) {
   const { joints } = player.scene;
   const place = byId("names");
   const wanted = joints.map((_, j) => j).filter((j) => j === player.selected || j === player.hovered || (all && joints[j].kind !== "leaf"));
-  while (place.children.length < wanted.length) element("span", "", place);
-  while (place.children.length > wanted.length) place.lastChild.remove();
+  const texts = wanted.map((j) => [joints[j].label, player.place(j)]);
+  if (all) texts.push(...player.assumed.map((joint, k) => [`${joint.label} (assumed)`, player.placeOf(player.assumedPoint(k))]));
+  while (place.children.length < texts.length) element("span", "", place);
+  while (place.children.length > texts.length) place.lastChild.remove();
   const middle = joints.length ? player.place(0)[0] : 0;
-  wanted.forEach((j, k) => {
-    const [x, y] = player.place(j);
+  texts.forEach(([text, [x, y]], k) => {
     const outwards = x < middle ? `translate(${(x - 10).toFixed(1)}px, ${(y - 9).toFixed(1)}px) translateX(-100%)` : `translate(${(x + 10).toFixed(1)}px, ${(y - 9).toFixed(1)}px)`;
     const label = place.children[k];
-    label.textContent = joints[j].label;
+    label.textContent = text;
     label.style.transform = outwards;
   });
 }
@@ -69,6 +70,7 @@ function describe(player) {
   const skeleton = player.skeleton.visible ? `, and its skeleton of ${joints.filter((j) => j.kind === "joint").length} joints under ${joints[0].label}` : "";
   const words = [`The body at ${frameCaption(scene, at)}, one of ${scene.frames.length} frames: ${mode === "sides" ? "" : "the "}${modeWords}, ${colourWords}${skeleton}.`];
   for (const [state, word] of [[2, "Wrong"], [1, "Uncertain"]]) if (named(state)) words.push(`${word}: ${named(state)}.`);
+  if (player.assumed.length) words.push(`Assumed, not found: ${player.assumed.map((joint) => joint.label).join(", ")}.`);
   if (selected !== null) words.push(`Selected: ${joints[selected].label}, ${joints[selected].kind}.`);
   byId("stage").setAttribute("aria-label", words.join(" "));
 }

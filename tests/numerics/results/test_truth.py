@@ -28,6 +28,17 @@ def joints(**fields):
     return [CONTENT["joints"][0], {**CONTENT["joints"][1], **fields}, CONTENT["joints"][2]]
 
 
+def test_joints_that_another_run_assumed_are_left_out():
+    rows = [CONTENT["joints"][0], {"name": "thigh", "parent": "hips", "kind": "assumed"}]
+    rows += [{**CONTENT["joints"][1], "parent": "thigh"}, CONTENT["joints"][2]]
+    X = np.arange(24.0).reshape(2, 4, 3)
+    truth = truth_of_json({**CONTENT, "joints": rows, "positions": X.tolist()}, "skeleton.json")
+    assert (truth.names, truth.parents) == (("hips", "knee", "toe"), (-1, 0, 1))
+    assert np.array_equal(truth.X, X[:, [0, 2, 3]])
+    with pytest.raises(InputError, match="hips has kind 'assumed'"):
+        truth_of_json({**CONTENT, "joints": [{**CONTENT["joints"][0], "kind": "assumed"}, *CONTENT["joints"][1:]]}, "t")
+
+
 def test_truth_json_is_read():
     truth = read_truth(json.dumps(CONTENT), "truth.json")
     assert truth.names == ("hips", "knee", "toe")

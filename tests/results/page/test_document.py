@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib import rcParams
 from matplotlib.figure import Figure
-from results.sample_report import page
+from results.sample_report import page, trusted
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
@@ -80,6 +80,11 @@ def test_every_joint_kind_has_its_colour_in_the_legend():
     text = page()
     for name, colour in {**KINDS, "surface that is not rigid": NOT_RIGID}.items():
         assert f'style="background:{colour}"></span> {name}</span>' in text
+
+
+def test_legend_has_assumed_joints_where_there_are_some():
+    assert "assumed, not found" not in page()
+    assert "assumed, not found, on a dashed bone</span>" in page(scene=trusted(assumed=(("left elbow", 2, 0.4),)))
 
 
 def test_tables_put_numbers_to_the_right_and_escape_cells():

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
-from results.sample_report import page
+from results.sample_report import page, trusted
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.report import Report
@@ -239,3 +239,30 @@ def test_pictures_turn_dark_with_the_page(browser: Any, tmp_path: Path) -> None:
         context.close()
     assert grounds[0] > 240
     assert grounds[1] < 60
+
+
+def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_path: Path) -> None:
+    shown, words = [], []
+    for assumed in ((), (("left elbow", 2, 0.4),)):
+        path = tmp_path / "report.html"
+        report = Report(text=np.frombuffer(page(scene=trusted(assumed)).encode(), np.uint8))
+        path.write_bytes(views.page(report, RAN))
+        tab = browser.new_page(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
+        complaints: list[str] = []
+        tab.on("pageerror", lambda e, all_of_it=complaints: all_of_it.append(str(e)))
+        tab.goto(path.as_uri())
+        tab.wait_for_selector("body[data-ready=yes]")
+        shown.append(drawn(tab))
+        words.append(tab.get_attribute("#stage", "aria-label"))
+        if assumed:
+            at = tab.evaluate("kinetree.placeOf(kinetree.assumedPoint(0))")
+            inner, outer = (tab.evaluate(f"kinetree.place({j})") for j in (1, 2))
+            assert min(inner[0], outer[0]) - 1 <= at[0] <= max(inner[0], outer[0]) + 1
+            assert tab.evaluate("kinetree.hollows.map(h => h.count).concat(kinetree.dashes.count)") == [1, 1, 9]
+            tab.click("#see-names")
+            assert "left elbow (assumed)" in tab.inner_text("#names")
+        tab.close()
+        assert complaints == []
+    assert shown[0] != shown[1]
+    assert "Assumed" not in words[0]
+    assert "Assumed, not found: left elbow." in words[1]

@@ -1,0 +1,179 @@
+"""Joints that are assumed, from the task to the files, and that they count nowhere."""
+
+import json
+
+import networkx as nx
+import numpy as np
+import pytest
+import yaml
+from results.gltf_reader import Glb as Read
+from results.rigged_bodies import skeleton_of, skinned, without_joint
+from walkers import FIGURES
+
+from kinetree.pipeline import views
+from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints, AssumedJointsParams
+from kinetree.schemas.results.bvh import BvhParams
+from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
+from kinetree.schemas.results.glb import GlbParams
+from kinetree.schemas.results.skeleton_json import Document
+from kinetree.schemas.results.usd import UsdParams
+from kinetree.schemas.structure.joint_names import JointNames, JointNamesParams
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks import METHODS
+from kinetree.tasks.numerics.input.synth.body import Body
+from kinetree.tasks.numerics.input.synth.figures import Figure
+from kinetree.tasks.results.assumed_joints import assumed_joints
+from kinetree.tasks.results.bvh import bvh
+from kinetree.tasks.results.formats.assumed import with_assumed
+from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.skeleton_json import skeleton_json
+from kinetree.tasks.results.usd import usd
+from kinetree.tasks.structure.joint_names import joint_names
+
+Z_UP = UpDirection(up="z", confidence=0.9)
+ADD = AssumedJointsParams(add=True)
+
+
+@pytest.fixture(scope="module")
+def true():
+    """A person who walks with the left knee straight."""
+    described = yaml.safe_load((FIGURES / "human.yaml").read_text("utf-8"))
+    del described["motions"]["walk"]["knee_l"]
+    figure = Figure.of(described)
+    return skeleton_of(Body.of(figure, frames=12, fps=10.0, vertices=600, connectivity="fixed", motion="walk"))
+
+
+@pytest.fixture(scope="module")
+def found(true):
+    """The same without that knee, as a run finds it."""
+    skeleton = without_joint(true, "knee_l")
+    return CompleteSkeleton(**{name: getattr(skeleton, name) for name in Skeleton.model_fields}, interpolated=())
+
+
+@pytest.fixture(scope="module")
+def names(found):
+    return joint_names(found, Z_UP, JointNamesParams())
+
+
+@pytest.fixture(scope="module")
+def knee(found, names):
+    return assumed_joints(found, names, ADD)
+
+
+@pytest.fixture(scope="module")
+def rig(found, names, knee):
+    return with_assumed(found, names, knee)
+
+
+def test_nothing_is_assumed_unless_it_is_asked_for(found, names, knee):
+    assert assumed_joints(found, names, AssumedJointsParams()).joints == ()
+    assert [(joint.name, joint.anatomy, joint.source) for joint in knee.joints] == [("knee_l", "knee_l", "mirror")]
+    assert found.parents[knee.joints[0].child] == names.anatomy.index("hip_l")
+
+
+@pytest.mark.parametrize(
+    ("params", "name"),
+    [
+        ({"style": "mixamo"}, "mixamorig:LeftLeg"),
+        ({"side_suffixes": (".L", ".R")}, "knee.L"),
+        ({"rename": {"knee_l": "bend"}}, "bend"),
+        ({"rename": {"knee_l": "pelvis"}}, "pelvis_2"),
+    ],
+)
+def test_its_name_is_spelled_as_the_others_are_and_is_none_of_theirs(found, params, name):
+    told = assumed_joints(found, joint_names(found, Z_UP, JointNamesParams(**params)), ADD)
+    assert [joint.name for joint in told.joints] == [name]
+
+
+def test_it_is_near_the_true_knee_in_every_frame_and_says_that_nothing_is_known(true, rig):
+    (at,) = rig.assumed
+    away = np.linalg.norm(rig.skeleton.positions[:, at] - true.positions[:, true.names.index("knee_l")], axis=1)
+    assert away.max() < 0.05 * true.lengths[true.names.index("knee_l")]
+    assert rig.skeleton.confidence[:, at].max() == rig.skeleton.degrees[at] == rig.skeleton.support[at] == 0
+
+
+def test_the_motion_and_the_surface_stay_as_they_were_found(found, rig):
+    s, t = rig.skeleton, len(rig.skeleton.names)
+    assert t == len(found.names) + 1
+    stay = [j for j in range(t) if j not in rig.assumed]
+    np.testing.assert_array_equal(s.positions[:, stay], found.positions)
+    np.testing.assert_array_equal(s.rotation[:, stay], found.rotation)
+    for j, p in enumerate(s.parents):
+        assert p < j
+        if p >= 0:
+            expected = s.positions[:, p] + s.rotation[:, p] @ (s.rest[j] - s.rest[p])
+            np.testing.assert_allclose(s.positions[:, j], expected, atol=1e-6)
+    np.testing.assert_allclose(skinned(s), skinned(found), atol=1e-9)
+    assert not np.isin(s.influence[s.weight > 0], list(rig.assumed)).any()
+    assert not np.isin(s.label, list(rig.assumed)).any()
+
+
+def test_several_joints_of_one_bone_follow_each_other(found, names):
+    child = names.anatomy.index("ankle_l")
+    pair = [AssumedJoint(name=n, anatomy=n, child=child, share=s, source="mirror") for n, s in (("b", 0.75), ("a", 0.25))]
+    rig = with_assumed(found, names, AssumedJoints(joints=tuple(pair)))
+    a, b = (rig.names.names.index(n) for n in "ab")
+    ankle = rig.names.anatomy.index("ankle_l")
+    assert (rig.skeleton.parents[ankle], rig.skeleton.parents[b], rig.assumed) == (b, a, {a, b})
+    assert rig.names.names[rig.skeleton.parents[a]] == "hip_l"
+
+
+def test_skeleton_json_says_that_it_is_assumed(found, names, knee):
+    content = views.files(skeleton_json(found, names, Z_UP, knee), ())["skeleton.json"]
+    told = Document.model_validate_json(content).joints
+    assert [joint.name for joint in told if joint.kind == "assumed"] == ["knee_l"]
+    (ankle,) = [joint for joint in told if joint.anatomy == "ankle_l"]
+    assert told[ankle.parent].kind == "assumed"
+    kinds = [joint.kind for joint in told if joint.kind != "assumed"]
+    assert kinds == list(found.kinds)
+    confidence = np.array(json.loads(content)["confidence"])
+    assert confidence[:, [joint.kind == "assumed" for joint in told]].max() == 0
+
+
+def test_without_it_the_files_are_the_same_to_the_byte(found, names):
+    nothing = assumed_joints(found, names, AssumedJointsParams())
+    assert skeleton_json(found, names, Z_UP, nothing).content.tobytes() == skeleton_json(found, names, Z_UP).content.tobytes()
+    given = (glb(found, names, Z_UP, GlbParams(), assumed_joints=nothing), glb(found, names, Z_UP, GlbParams()))
+    assert given[0].content.tobytes() == given[1].content.tobytes()
+
+
+@pytest.mark.parametrize("rest", ["reference", "t"])
+def test_glb_has_a_joint_to_bend_and_moves_as_before(found, names, knee, rest):
+    made = [glb(found, names, Z_UP, GlbParams(rest=rest), assumed_joints=each) for each in (AssumedJoints(), knee)]
+    before, after = (Read(views.files(each, ())["skeleton.glb"]) for each in made)
+    assert set(after.names) - set(before.names) == {"knee_l"}
+    ankle, knee_node = (after.joints[after.names.index(n)] for n in ("ankle_l", "knee_l"))
+    assert after.parent[ankle] == knee_node
+    for name in before.names:
+        a, b = before.pose(5)[before.names.index(name)], after.pose(5)[after.names.index(name)]
+        np.testing.assert_allclose(a[:, 3], b[:, 3], atol=1e-5)
+
+
+def test_bvh_has_it_between_hip_and_ankle(found, names, knee):
+    lines = views.files(bvh(found, names, Z_UP, BvhParams(), knee), ())["skeleton.bvh"].decode().split("MOTION")[0].split("\n")
+    order = [line.split()[1] for line in lines if line.strip().startswith(("ROOT", "JOINT"))]
+    assert order.index("ankle_l") == order.index("knee_l") + 1 == order.index("hip_l") + 2
+
+
+def test_usd_has_it_between_hip_and_ankle(found, names, knee):
+    pytest.importorskip("pxr", reason="pip install 'kinetree[usd]' brings Pixar's library")
+    text = views.files(usd(found, names, Z_UP, UsdParams(), knee), ())["skeleton.usda"].decode()
+    assert "hip_l/knee_l/ankle_l" in text
+
+
+def test_shown_skeleton_marks_it_and_the_run_names_it(found, names, knee):
+    others = {JointNames: names, AssumedJoints: knee}
+    before, lines = views.text(found, {JointNames: names}.get), views.text(found, others.get)
+    assert lines[:-1] == before
+    assert lines[-1].startswith("assumed, not found: left knee, at ")
+    assert lines[-1].endswith("from left hip (hip_l) to left ankle (ankle_l), as on the other side")
+    assert views.remarks(knee) == ("assumed in files, not found: knee_l",)
+    assert views.remarks(AssumedJoints()) == ()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_no_comparison_and_no_verdict_reads_it(method):
+    graph = METHODS[method]
+    edges = [(read.name, task.name) for task in graph.tasks for read in graph.before(task)]
+    assert nx.descendants(nx.DiGraph(edges), "assumed_joints") <= {"skeleton_json", "bvh", "glb", "blender", "usd", "report"}
