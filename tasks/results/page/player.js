@@ -148,9 +148,13 @@ class Player {
     this.assumed = scene.assumed || [];
     this.dashed = [...new Set(this.assumed.map((joint) => joint.child))];
     const dash = new THREE.CylinderGeometry(scene.size * 0.0035, scene.size * 0.0035, 1, 8).translate(0, 0.5, 0);
-    this.dashes = new THREE.InstancedMesh(dash, new THREE.MeshBasicMaterial({ color: 0x222222, ...onTop }), Math.max(this.dashed.length * DASHES, 1));
-    this.dashes.count = this.dashed.length * DASHES;
-    this.dashes.renderOrder = 2;
+    const count = this.dashed.length * DASHES;
+    this.dashes = [[1.7, 0xffffff, 1.9], [1, 0x222222, 2]].map(([wide, color, order]) => {
+      const dashes = new THREE.InstancedMesh(dash.clone().scale(wide, 1, wide), new THREE.MeshBasicMaterial({ color, ...onTop }), Math.max(count, 1));
+      dashes.count = count;
+      dashes.renderOrder = order;
+      return dashes;
+    });
     this.hollows = [[1.3, 0x000000], [0.9, 0xffffff]].map(([scale, color], k) => {
       const ball = new THREE.SphereGeometry(scene.size * 0.0105 * scale, 14, 10);
       const hollow = new THREE.InstancedMesh(ball, new THREE.MeshBasicMaterial({ color, ...onTop }), Math.max(this.assumed.length, 1));
@@ -158,7 +162,7 @@ class Player {
       hollow.renderOrder = 2.8 + k / 10;
       return hollow;
     });
-    for (const part of [this.dashes, ...this.hollows]) {
+    for (const part of [...this.dashes, ...this.hollows]) {
       part.frustumCulled = false;
       this.skeleton.add(part);
     }
@@ -258,14 +262,15 @@ class Player {
       for (const part of [this.edges, this.rods]) part.setMatrixAt(j, place);
       for (let k = 0; dashed >= 0 && k < DASHES; k++) {
         const begin = from.clone().lerp(here, (k + 0.2) / DASHES);
-        this.dashes.setMatrixAt(dashed * DASHES + k, place.compose(begin, turn, new THREE.Vector3(1, Math.max((0.6 * length) / DASHES, 1e-9), 1)));
+        place.compose(begin, turn, new THREE.Vector3(1, Math.max((0.6 * length) / DASHES, 1e-9), 1));
+        for (const part of this.dashes) part.setMatrixAt(dashed * DASHES + k, place);
       }
     });
     this.assumed.forEach((_, k) => {
       const at = this.assumedPoint(k);
       for (const hollow of this.hollows) hollow.setMatrixAt(k, place.makeTranslation(at.x, at.y, at.z));
     });
-    for (const part of [this.dashes, ...this.hollows]) part.instanceMatrix.needsUpdate = true;
+    for (const part of [...this.dashes, ...this.hollows]) part.instanceMatrix.needsUpdate = true;
     for (const part of [...this.rings, this.balls]) part.instanceMatrix.needsUpdate = true;
     for (const part of [this.edges, this.rods]) part.instanceMatrix.needsUpdate = true;
   }
