@@ -456,7 +456,9 @@ CASES: dict[str, Case] = {
     "all packed by gzip": Case(
         lambda folder: _gzipped(folder), REFUSED, "frame_0.off.gz (and 4 more) is packed; unpack it first"
     ),
-    "foreign format": Case(in_file("walk.fbx", lambda: b"Kaydara FBX Binary"), REFUSED, "open it in Blender"),
+    "foreign format": Case(
+        in_file("walk.fbx", lambda: b"Kaydara FBX Binary"), REFUSED, "kinetree convert makes a sequence of it"
+    ),
     "nothing there": Case(lambda folder: folder / "nowhere", REFUSED, "there is no such"),
     "empty name": Case(lambda folder: "", REFUSED, "no input"),
     "null in the path": Case(lambda folder: f"{folder}/a\0b", REFUSED, "it has a NUL byte"),

@@ -88,7 +88,7 @@ def test_two_frames_are_enough(tmp_path: Path) -> None:
 
 
 def test_body_in_pieces_fails_its_frame_with_the_shares_and_nothing_else(tmp_path: Path) -> None:
-    balls = [BALL.copy().apply_translation([3 * n, 0, 0]) for n in range(3)]
+    balls = [BALL.copy().apply_scale(3**-0.5).apply_translation([3 * n, 0, 0]) for n in range(3)]  # of the same area
     pipeline, told = ran(tmp_path, source=written(tmp_path, BALL, trimesh.util.concatenate(balls), BALL))
     assert told["status"] == "failed"
     (failure,) = told["failures"]

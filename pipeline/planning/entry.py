@@ -32,6 +32,8 @@ class Entry:
     """Digest of an artifact that was found damaged and has to go before it is made again."""
     redone: int = 0
     """How often its artifact was damaged and had to be computed again."""
+    is_late: bool = False
+    """Whether it found an input damaged that had been made again by then."""
     cause: str = ""
     """What failed, for a failed node; which node failed, for a skipped one."""
 

@@ -197,6 +197,8 @@ class Schedule:
         if entry.state == "skipped":
             return []
         redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
+        if self._is_mended(entry, [maker for maker, _ in redone], artifact):
+            makers, redone = [n for n in makers if self.entries[n].state not in DONE], []
         if any(maker.redone >= MENDS for maker, _ in redone):
             return None
         for maker, _ in redone:
@@ -205,14 +207,29 @@ class Schedule:
         entry.waits.update(makers)
         for other in makers:
             self._dependents[other][node] = None
+        if not makers:
+            entry.state = "stale"
+            heapq.heappush(self._ready, (-self._depth[node.task], node.at, node))
         return redone
+
+    def _is_mended(self, reader: Entry, makers: Sequence[Entry], artifact: str) -> bool:
+        """Whether a reader had begun before its input was made again, and may read it now; believed once of each reader."""
+        if reader.is_late or not any(maker.redone for maker in makers) or not self._is_whole(makers[0], artifact):
+            return False
+        reader.is_late = True
+        return True
+
+    def _is_whole(self, maker: Entry, artifact: str) -> bool:
+        try:
+            self.store.read(maker.task.returns, artifact).arrays()
+        except DamagedArtifactError:
+            return False
+        return True
 
     def _discard_damaged(self, entry: Entry) -> None:
         """Removes what was found damaged, unless another node that makes the same has mended it already."""
         if entry.damaged is not None:
-            try:
-                self.store.read(entry.task.returns, entry.damaged).arrays()
-            except DamagedArtifactError:
+            if not self._is_whole(entry, entry.damaged):
                 self.store.discard(entry.damaged)
             entry.damaged = None
 

@@ -133,8 +133,8 @@ def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_p
 @pytest.mark.parametrize(
     ("suffix", "told"),
     [
-        (".fbx", "open it in Blender and export it as glTF binary"),
-        (".abc", "export it as USD"),
+        (".fbx", "kinetree convert makes a sequence of it where Blender is installed"),
+        (".abc", "kinetree convert makes a sequence of it where Blender is installed"),
         (".gltf", "export it as one binary glTF"),
         (".pcd", "is a cloud of points; make a surface of every frame first"),
         (".bvh", "holds a skeleton or markers, no surface"),

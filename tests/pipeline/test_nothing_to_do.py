@@ -8,6 +8,7 @@ import pytest
 
 from kinetree.pipeline.identity import key
 from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.storage import files
 from kinetree.pipeline.storage.place import Folder
 
 QUESTIONS = ("get", "tail", "part", "put", "names", "listed", "modified", "remove", "size")
@@ -18,6 +19,7 @@ ALONE = {"intervals": {"length": 1000}}
 @pytest.fixture
 def asked(monkeypatch):
     """How often the store was asked each question, and a node's key was worked out."""
+    monkeypatch.setattr(files, "SETTLED_SECONDS", -1.0)  # digests are kept at once, however long a run takes
     counts = Counter()
 
     def counted(place, name):

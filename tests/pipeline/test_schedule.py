@@ -63,10 +63,22 @@ def test_an_input_that_is_whole_again_is_not_thrown_away(schedule):
     assert schedule.store.holds(points.record)
 
 
+def test_a_reader_that_began_before_its_input_was_made_again_reads_it_again(schedule):
+    (smooth,) = schedule.send(next(schedule.ready()))
+    points = of(schedule, "points")
+    schedule.mend(smooth.node, str(points.artifact), "lost bytes")
+    schedule.complete(points.node, str(points.key), str(points.artifact), points.record, ran=True)
+    schedule.send(next(schedule.ready()))
+    assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") == []
+    assert (smooth.state, points.state, points.redone) == ("stale", "ran", 1)
+    assert smooth.node in [e.node for e in schedule.ready()]
+    assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") == [(points, "ran")], "not believed twice"
+
+
 def test_after_several_rounds_nothing_more_is_tried(schedule):
     (smooth,) = schedule.send(next(schedule.ready()))
     points = of(schedule, "points")
-    for _ in range(MENDS):
+    for _ in range(MENDS + 1):  # once it is found whole instead
         assert schedule.mend(smooth.node, str(points.artifact), "lost bytes") is not None
         schedule.complete(points.node, str(points.key), str(points.artifact), points.record, ran=True)
     state = (smooth.state, points.state)
