@@ -1,4 +1,4 @@
-"""Joints that a recognised body has and that never turned, so that none was found (ours)."""
+"""Joints that a recognised body has and that were not found, mostly since they never turned (ours)."""
 
 from typing import Literal
 
@@ -11,7 +11,7 @@ class AssumedJointsParams(Params):
     """Whether files and the page have them."""
 
     add: bool = False
-    """Adds knees, elbows, ankles, wrists and a neck that never turned to files and the page; they are counted nowhere."""
+    """Adds knees, elbows, ankles, wrists and a neck that were not found to files and the page; they are counted nowhere."""
 
 
 class AssumedJoint(Params):

@@ -41,7 +41,7 @@ class Joint(_FileObject):
     """Position of its parent in the list of joints, before its own; null for the root."""
     kind: Literal["root", "joint", "leaf", "assumed"]
     """root: no parent; joint: turns against its parent; leaf: the end of a bone, turns with its parent; assumed: the body has
-    it, but it never turned: it lies where symmetry or usual proportions have it, and its confidence is 0."""
+    it, but it was not found, mostly since it never turned: it lies where symmetry or proportions have it; confidence 0."""
     range: Annotated[float, Field(ge=0)]
     """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves."""
     rest: Rest

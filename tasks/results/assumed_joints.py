@@ -1,4 +1,4 @@
-"""Joints that a recognised body has and that never turned."""
+"""Joints that a recognised body has and that were not found."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.structure.name_styles import names_beside
 
 @task()
 def assumed_joints(skeleton: Skeleton, joint_names: JointNames, params: AssumedJointsParams) -> AssumedJoints:
-    """Offers joints of people and four-legged animals that never turned, by symmetry or published proportions (ours)."""
+    """Offers joints of people and four-legged animals that were not found, by symmetry or published proportions (ours)."""
     if not params.add:
         return AssumedJoints()
     found = numerics.assumed_joints(np.array(skeleton.rest), skeleton.parents, joint_names.anatomy, joint_names.topology)

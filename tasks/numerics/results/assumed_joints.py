@@ -1,4 +1,4 @@
-"""Where joints lie that a person or a four-legged animal has and that never turned (ours).
+"""Where joints lie that a person or a four-legged animal has and that were not found (ours).
 
 Such a joint lies on a bone that was found in one piece. Its place on the bone is that of the same joint on the other side, else
 of published proportions of people (Drillis and Contini 1966, as in Winter 2009). A joint that was held bent lies beside the
