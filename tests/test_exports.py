@@ -137,7 +137,7 @@ def test_files_stand_upright_and_in_their_unit(out):
 def test_names_that_people_know_are_those_of_all_files_and_the_skeleton_keeps_its_own(out, configured):
     pipeline = Pipeline.of(configured, sets=["joint_names.rename={arm: jaw}"])
     assert ran(pipeline.run(until=["glb", "bvh", "skeleton_json", "tables"])) == {
-        "joint_names", "glb", "bvh", "skeleton_json", "tables",
+        "joint_names", "assumed_joints", "glb", "bvh", "skeleton_json", "tables",
     }  # fmt: skip
     assert "jaw" in Read((out / "skeleton.glb").read_bytes()).names
     assert "JOINT jaw" in (out / "skeleton.bvh").read_text()
