@@ -6,8 +6,6 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline import views
 from kinetree.pipeline.output.ownership import HEAD, Owned
@@ -15,6 +13,7 @@ from kinetree.pipeline.planning.entry import DONE, Entry
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.settings.blocks import SAVED
 from kinetree.pipeline.settings.config import Config
+from kinetree.pipeline.settings.yaml_text import dumped, parsed
 from kinetree.pipeline.storage.place import Folder
 from kinetree.schemas.array import Artifact
 
@@ -28,8 +27,8 @@ def write_config(config: Config) -> None:
 
 def as_yaml(saved: dict[str, Any]) -> str:
     """YAML that is read back as the same: in the user's own letters, or in escapes where a line separator is among them."""
-    text = yaml.safe_dump(saved, sort_keys=False, allow_unicode=True)
-    return text if yaml.safe_load(text) == saved else yaml.safe_dump(saved, sort_keys=False)
+    text = dumped(saved, sort_keys=False, allow_unicode=True)
+    return text if parsed(text, "") == saved else dumped(saved, sort_keys=False)
 
 
 def write_run_json(config: Config, summed: dict[str, Any]) -> None:

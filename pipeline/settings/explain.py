@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-import yaml
 from pydantic import BaseModel
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.settings.config import Config
+from kinetree.pipeline.settings.yaml_text import dumped
 
 WIDTH = 118
 
@@ -38,4 +38,4 @@ def _block(values: BaseModel, depth: int) -> Iterator[str]:
 def _value(value: Any) -> str:
     """The value on one line of YAML."""
     plain = list(value) if isinstance(value, tuple) else value
-    return yaml.safe_dump(plain, default_flow_style=True, allow_unicode=True, width=10_000).removesuffix("\n...\n").strip()
+    return dumped(plain, default_flow_style=True, allow_unicode=True, width=10_000).removesuffix("\n...\n").strip()

@@ -34,8 +34,15 @@ _Loader.yaml_implicit_resolvers = {
     first: [(tag, pattern) for tag, pattern in rows if tag not in (_INT, _FLOAT)]
     for first, rows in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
-_Loader.add_implicit_resolver(_INT, re.compile(f"^(?:{_DECIMAL.pattern})$"), list("-+0123456789"))
-_Loader.add_implicit_resolver(_FLOAT, re.compile(f"^(?:{_POINT.pattern})$"), list("-+0123456789."))
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes a text that would be read back as a number of YAML 1.2, such as 0E0."""
+
+
+for _kind in (_Loader, _Dumper):
+    _kind.add_implicit_resolver(_INT, re.compile(f"^(?:{_DECIMAL.pattern})$"), list("-+0123456789"))
+    _kind.add_implicit_resolver(_FLOAT, re.compile(f"^(?:{_POINT.pattern})$"), list("-+0123456789."))
 
 
 def parsed(text: str, where: str) -> Any:
@@ -44,3 +51,8 @@ def parsed(text: str, where: str) -> Any:
     raises : ConfigError with the line, where it is no YAML, asks for anything but plain values, or is too large or deep
     """
     return small_yaml(text, where, ConfigError, _Loader)
+
+
+def dumped(value: Any, **how: Any) -> str:
+    """A plain value as a YAML text from which `parsed` makes the same value; `how` as of `yaml.dump`."""
+    return str(yaml.dump(value, Dumper=_Dumper, **how))

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from kinetree.errors import ConfigError
@@ -349,6 +349,7 @@ def test_values_may_hold_equals_signs_and_spaces():
     st.floats(0, 0.09), st.none() | st.floats(1e-3, 1e6), st.none() | st.text(), st.text(),
     st.none() | st.integers(1, 99), st.sampled_from(["sync", "threads", "processes"]),
 )  # fmt: skip
+@example(0.0, None, "1e3", "0E0", None, "sync")  # texts to YAML 1.1, numbers to 1.2
 def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, workers, executor):
     told = {
         "mesh": {"merge": merge},
