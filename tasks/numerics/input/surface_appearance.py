@@ -15,10 +15,14 @@ from trimesh.geometry import triangulate_quads
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.gltf_appearance import Material, SurfaceAppearance, glb_appearance
-from kinetree.tasks.numerics.input.pictures import Picture, picture
+from kinetree.tasks.numerics.input.pictures import MOST_BYTES, Picture, picture
 
 Beside = Callable[[str], bytes | None]
 """Bytes of a file that lies beside the mesh, by its name; None where it is not there or may not be opened."""
+MOST_MATERIALS = 1024
+"""Of one frame; captures have a few."""
+MOST_PICTURE_BYTES = 4 * MOST_BYTES
+"""Of all pictures of one frame."""
 
 
 def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, moves: bool = False) -> SurfaceAppearance | None:
@@ -53,7 +57,7 @@ def _obj(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
     colours: list[list[float]] = []
     uv: list[list[float]] = []
     libraries: list[str] = []
-    used: list[str] = [""]
+    used = {"": 0}
     corners, current, vertices = _Corners([], [], [], []), 0, 0
     for line in raw.decode("utf-8", "replace").replace("\\\r\n", " ").replace("\\\n", " ").splitlines():
         key, _, rest = line.strip().partition(" ")
@@ -66,12 +70,13 @@ def _obj(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
         elif key == "mtllib":
             libraries.append(rest.strip())
         elif key == "usemtl":
-            used += [] if rest.strip() in used else [rest.strip()]
-            current = used.index(rest.strip())
+            current = used.setdefault(rest.strip(), len(used))
+            if len(used) > MOST_MATERIALS:
+                raise MeshError(f"it uses more than {MOST_MATERIALS} materials")
         elif key == "f":
             _add_polygon(corners, words, vertices, len(uv), current)
     F, V_of, at = _triangulated(corners)
-    materials, pictures, missing = _materials(used, libraries, beside)
+    materials, pictures, missing = _materials(list(used), libraries, beside)
     held = np.array([*uv, [0.0, 0.0]]) * (1.0, -1.0) + (0.0, 1.0)  # glTF's begin in the upper left
     colour = _linear(np.array(colours)) if colours and len(colours) == vertices else None
     if not uv and colour is None and len(used) == 1:
@@ -140,9 +145,13 @@ def _materials(
 
 def _entered(file: str, beside: Beside, pictures: list[Picture], missing: list[str]) -> int | None:
     """Adds a picture and returns its place; None where it cannot be had, which `missing` says."""
-    name = file if beside(file) is not None else file.split()[-1]  # options may stand before the name
-    raw = beside(name)
+    name, raw = file, beside(file)
+    if raw is None and file.split()[-1] != file:  # options may stand before the name
+        name = file.split()[-1]
+        raw = beside(name)
     found = picture(raw) if raw is not None else f"{name} is not there"
+    if not isinstance(found, str) and sum(len(p.raw) for p in pictures) + len(found.raw) > MOST_PICTURE_BYTES:
+        found = f"with it all pictures have more than {MOST_PICTURE_BYTES} bytes"
     if isinstance(found, str):
         missing.append(found if raw is None else f"{name}: {found}")
         return None

@@ -7,6 +7,7 @@ from shapes import sphere
 from textured import MTL, corner_uv, obj, png
 
 from kinetree.errors import MeshError
+from kinetree.tasks.numerics.input import surface_appearance as module
 from kinetree.tasks.numerics.input.formats import mesh_of
 from kinetree.tasks.numerics.input.surface_appearance import surface_appearance
 
@@ -117,3 +118,18 @@ def test_faces_that_are_not_those_of_the_surface_are_refused():
 
 def test_formats_without_appearance_have_none():
     assert surface_appearance(b"", ".stl", np.zeros((1, 3), np.int32), FILES.get) is None
+
+
+def test_more_materials_than_a_capture_has_are_refused():
+    V, F = sphere(1)
+    text = obj(V, F, corner_uv(V, F)) + "".join(f"usemtl m{n}\n" for n in range(module.MOST_MATERIALS))
+    with pytest.raises(MeshError, match="more than 1024 materials"):
+        read(text.encode(), ".obj")
+
+
+def test_pictures_that_are_too_large_together_are_left_out(monkeypatch):
+    monkeypatch.setattr(module, "MOST_PICTURE_BYTES", len(png()))
+    told = b"newmtl first\nmap_Kd skin.png\nnewmtl second\nmap_Kd -bm 1 other.png\n"
+    found = read(QUADS, ".obj", {"two.mtl": told, "skin.png": png(), "other.png": png()})
+    assert [m.picture for m in found.materials] == [None, 0, None]
+    assert found.missing == (f"other.png: with it all pictures have more than {len(png())} bytes",)
