@@ -22,12 +22,7 @@ def edge_rings(F: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
     vertices : how many there are
     returns  : (vertex + 1,) where each vertex's begin · (entry,) the neighbours, ascending · (entry,) faces at the edge
     """
-    begin = np.zeros(vertices + 1, np.int64)
-    for f in range(len(F)):
-        for corner in range(3):
-            begin[F[f, corner] + 1] += 2
-    for v in range(vertices):
-        begin[v + 1] += begin[v]
+    begin = entries_before(F, vertices)
     filled = begin[:-1].copy()
     entry = np.empty(begin[-1], np.int64)
     for f in range(len(F)):
@@ -50,6 +45,18 @@ def edge_rings(F: Ints, vertices: int) -> tuple[Ints, Ints, Ints]:
                 last += 1
         start[v + 1] = last
     return start, entry[:last].copy(), count[:last].copy()
+
+
+@compiled
+def entries_before(F: Ints, vertices: int) -> Ints:
+    """(vertex + 1,) where each vertex's neighbours begin in one array, two of every face (face, corner) around it."""
+    begin = np.zeros(vertices + 1, np.int64)
+    for f in range(len(F)):
+        for corner in range(3):
+            begin[F[f, corner] + 1] += 2
+    for v in range(vertices):
+        begin[v + 1] += begin[v]
+    return begin
 
 
 @compiled

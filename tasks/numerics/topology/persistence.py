@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
-from kinetree.tasks.numerics.geometry.edge_rings import edge_rings
+from kinetree.tasks.numerics.geometry.edge_rings import edge_rings, entries_before
 
 
 class Peaks(NamedTuple):
@@ -108,12 +108,7 @@ def neighbours(F: npt.NDArray[np.integer], vertices: int) -> tuple[Ints, Ints]:
 @compiled
 def _neighbours(F: Ints, vertices: int) -> tuple[Ints, Ints]:
     """See `neighbours`; of each vertex in the order of the faces, what follows it in a face before what it follows."""
-    start = np.zeros(vertices + 1, np.int64)
-    for f in range(len(F)):
-        for i in range(3):
-            start[F[f, i] + 1] += 2
-    for v in range(vertices):
-        start[v + 1] += start[v]
+    start = entries_before(F, vertices)
     filled, ring = start[:-1].copy(), np.empty(start[-1], np.int64)
     for f in range(len(F)):
         for back in range(2):
