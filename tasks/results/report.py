@@ -74,9 +74,10 @@ def report(
     error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
     share = VerdictSettings().wrong
     trust = Trust(verdict.labels, error, share * size, share, verdict.state)
-    has_truth = evaluation.summary is not None
     assumed = [(in_words(joint.anatomy), joint.child, joint.share) for joint in assumed_joints.joints]
-    label = dict(zip(verdict.joints, verdict.labels, strict=True))
+    label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
+    if evaluation.summary is not None:
+        truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, sequence.fps, label))]
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
@@ -89,17 +90,7 @@ def report(
         sections=[
             Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints)),
             Section("structure", "Parts, tree and angles", structure),
-            *(
-                [
-                    Section(
-                        "truth",
-                        "Comparison with the truth",
-                        _comparison(evaluation, sequence.fps, label),
-                    )
-                ]
-                if has_truth
-                else []
-            ),
+            *truth,
             *sections(structure_figures),
             Section("intervals", "Topology over time", pictures(topology_figures), is_detail=True),
             Section("alignment", "Alignment", aligned, is_detail=True),

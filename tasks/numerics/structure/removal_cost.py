@@ -169,7 +169,7 @@ def _best_single(E: Floats, high: int) -> int:
 def _best_blend(E: Floats, low: int, high: int) -> tuple[int, int, float, float]:
     """The two whose blend leaves least, one of them from `low` on and below `high`, the other before it.
 
-    returns : first · second · share of the first · what is left; a single one is a blend with own_square
+    returns : first · second · share of the first · what is left; a single one is a blend with itself
     """
     first, second, share, least = low, low, 1.0, np.inf
     for a in range(low, high):
