@@ -25,7 +25,8 @@ ROOT = Path(__file__).resolve().parents[2]
     ],
 )
 def test_an_array_type_says_what_one_element_is(alias: Any, element: type) -> None:
-    assert get_args(get_args(alias)[1]) == (element,)
+    held = get_args(alias)[-1]  # a dtype before numpy 2.5, then the element itself
+    assert (get_args(held) or (held,)) == (element,)
 
 
 @pytest.mark.parametrize("folder", ["tasks/numerics/geometry", "tasks/numerics/input", "tasks/numerics/topology"])

@@ -15,7 +15,7 @@ def rooted_elsewhere(parents, root):
     graph = nx.Graph([(p, j) for j, p in enumerate(parents) if p >= 0])
     graph.add_node(root)
     order = list(nx.dfs_preorder_nodes(graph, root))
-    above = dict(nx.bfs_predecessors(graph, root))
+    above = {child: parent for parent, child in nx.bfs_edges(graph, root)}
     return tuple(-1 if j == root else order.index(above[j]) for j in order)
 
 
