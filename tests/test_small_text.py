@@ -38,7 +38,7 @@ def test_what_is_no_regular_file_is_refused_at_once(tmp_path: Path) -> None:
     for path in (tmp_path / "loop", tmp_path / "missing"):
         with pytest.raises(InputError, match="cannot be read"):
             small_text(path)
-    with pytest.raises(InputError, match="null byte"):
+    with pytest.raises(InputError, match="not the path of a file: .*null"):
         small_text("a\0b")
     (tmp_path / "binary").write_bytes(b"ab\xff")
     with pytest.raises(InputError, match="byte 2 is 0xff"):
