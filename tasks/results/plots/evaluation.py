@@ -43,12 +43,12 @@ def evaluation_figure(evaluation: Evaluation, fps: float | None) -> "Figure":
             bar = {"fmt": "o", "ms": 4, "capsize": 2, "color": style["color"]}
             beside.errorbar(evaluation.joints[j].percent, k, xerr=share[:, j].std(), **bar)
         else:
-            beside.annotate("missing", (0.0, k), fontsize=7, va="center", color=VERMILION)
+            beside.annotate(" missing", (0.0, k), fontsize=7, va="center", color=VERMILION)
     over.set(ylabel="error / height, %", ylim=(0, None))
     over_time(over, evaluation.frames, fps, label=False)
     heading(over, _title(evaluation))
     names = [f"{evaluation.joints[j].name}  {_length(evaluation, j)}" for j in scored]
-    beside.set(yticks=range(len(scored)), xlim=(0, None), xlabel="mean ± deviation over the frames, % of the height")
+    beside.set(yticks=range(len(scored)), xlim=(0, None), xlabel="mean ± deviation, % of the height")
     beside.set_yticklabels(names, fontsize=7)
     beside.set_ylim(max(len(scored), 1) - 0.5, -0.5)
     below.plot(evaluation.frames, evaluation.detection, color=COLOURS[0], lw=1.1, label="R_detection (2009, Eq. 8)")
