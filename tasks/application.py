@@ -136,6 +136,7 @@ APPLICATION = Application(
                     "Let Blender make a sequence of an FBX, Alembic, Collada, X3D or Blender file.",
                     "kinetree convert walk.fbx",
                     "kinetree convert walk.blend -o walk.npz --blender /opt/blender/blender",
+                    "kinetree convert cloth.abc --blender ~/bpy/bin/python",
                 ),
             ),
         ),

@@ -1,6 +1,7 @@
 """What Blender runs to write every frame of a file as plain numbers; it knows nothing but Blender and Python's own library."""
 
 SCRIPT = """import json
+import os
 import sys
 from array import array
 from pathlib import Path
@@ -14,7 +15,7 @@ try:
 except ImportError:
     pass  # only glTF needs it
 
-source, target, most = sys.argv[-3], Path(sys.argv[-2]), int(sys.argv[-1])
+source, target, most, rate = sys.argv[-4], Path(sys.argv[-3]), int(sys.argv[-2]), float(sys.argv[-1])
 suffix = Path(source).suffix.lower()
 readers = {
     ".fbx": (bpy.ops.import_scene, "fbx", {}),
@@ -29,13 +30,18 @@ def refuse(sentence):
     sys.exit(4)
 
 
+bpy.context.preferences.filepaths.use_scripts_auto_execute = False
 if suffix == ".blend":
     bpy.ops.wm.open_mainfile(filepath=source, load_ui=False, use_scripts=False)
 else:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     group, name, more = readers[suffix]
     if name not in dir(group):
-        refuse(f"this Blender ({bpy.app.version_string}) was built without {suffix}; take one from blender.org")
+        version = bpy.app.version_string
+        refuse(f"this Blender ({version}) was built without {suffix}; take one from blender.org, or pip install bpy")
+    if suffix == ".abc":
+        bpy.context.scene.render.fps = max(1, round(rate))
+        bpy.context.scene.render.fps_base = bpy.context.scene.render.fps / rate
     getattr(group, name)(filepath=source, **more)
 
 scene = bpy.context.scene
@@ -69,10 +75,13 @@ with (target / "vertices").open("wb") as vertices, (target / "faces").open("wb")
             triangles += len(mesh.loop_triangles)
             shown.to_mesh_clear()
         counts.append((begin, triangles))
-rate = scene.render.fps / scene.render.fps_base
-told = {"counts": counts, "fps": rate, "scale": scene.unit_settings.scale_length}
+told = {"counts": counts, "fps": scene.render.fps / scene.render.fps_base, "scale": scene.unit_settings.scale_length}
 (target / "told.json").write_text(json.dumps(told))
+if not bpy.app.binary_path:
+    os._exit(0)  # the module bpy 4.2 crashes when Python takes it down after some readers
 """
-"""Arguments after --: the file, a folder for what is written, the most frames."""
+"""Arguments after --: the file, a folder for what is written, the most frames, frames a second of a file that is sampled."""
 SUFFIXES = (".fbx", ".blend", ".abc", ".dae", ".x3d")
 """Files that it opens."""
+SAMPLED = (".abc",)
+"""Files of times, which have frames only at some rate."""

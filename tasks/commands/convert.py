@@ -5,7 +5,9 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,17 +15,30 @@ import typer
 
 from kinetree.errors import ConfigError, InputError
 from kinetree.pipeline.command_line.printable import printable
-from kinetree.tasks.commands.blender_frames import SCRIPT, SUFFIXES
+from kinetree.tasks.commands.blender_frames import SAMPLED, SCRIPT, SUFFIXES
 
 MOST_FRAMES = 100_000
+DEFAULT_FPS = 24.0
 SAFELY = ("--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3")
-"""No settings, add-ons or start-up files of the user's, and no scripts or drivers of the file."""
+"""No settings, add-ons or start-up files of the user's, and no scripts or drivers of the file; the module bpy begins so."""
 
 
 def convert(
     file: Annotated[Path, typer.Argument(metavar="FILE", help=f"One of {' '.join(SUFFIXES)}, with its motion.")],
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File to write, new; default: FILE as .npz.")] = None,
-    blender: Annotated[str, typer.Option("--blender", metavar="PROGRAM", help="Where Blender is.")] = "blender",
+    blender: Annotated[
+        str | None,
+        typer.Option(
+            "--blender",
+            metavar="PROGRAM",
+            envvar="KINETREE_BLENDER",
+            help="Blender, or a Python that has Blender as its module bpy; default: bpy beside kinetree, else blender.",
+        ),
+    ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option("--fps", min=1, max=1000, help="Frames a second of an Alembic file, which keeps times; default: 24."),
+    ] = None,
     seconds: Annotated[float, typer.Option("--seconds", min=1, help="Longest that Blender may take.")] = 600.0,
 ) -> None:
     """Let Blender make a sequence of an FBX, Alembic, Collada, X3D or Blender file.
@@ -34,6 +49,8 @@ def convert(
     """
     if file.suffix.lower() not in SUFFIXES:
         raise ConfigError(f"{file}: {file.suffix or 'no suffix'} is not converted; {' '.join(SUFFIXES)} are")
+    if fps is not None and file.suffix.lower() not in SAMPLED:
+        raise ConfigError(f"--fps {fps:g}: {file.suffix} has frames of its own; only {' '.join(SAMPLED)} is sampled")
     if not file.is_file():
         raise InputError(f"{file}: there is no such file")
     target = output or file.with_suffix(".npz")
@@ -41,25 +58,36 @@ def convert(
         raise ConfigError(
             f"{target}: {'already there' if target.exists() else 'write a name that ends in .npz'}; name a new file"
         )
-    program = shutil.which(blender)
-    if program is None:
-        raise ConfigError(
-            f"{file.suffix} is opened by Blender, which is not installed here ({blender}); install it, or name it with"
-            " --blender; or export the file as GLB with its animation elsewhere"
-        )
+    starter = _starter(blender, file.suffix)
     with tempfile.TemporaryDirectory() as folder:
-        _run(program, file.absolute(), Path(folder), seconds)
+        _run(starter, [str(file.absolute()), folder, str(MOST_FRAMES), str(fps or DEFAULT_FPS)], Path(folder), seconds)
         frames = _pack(Path(folder), file, target)
+    if fps is None and file.suffix.lower() in SAMPLED:
+        typer.echo(f"sampled {DEFAULT_FPS:g} times a second; say --fps where it was recorded at another rate", err=True)
     typer.echo(
         printable(f"{target}: {frames} frames; kinetree run --input {target} --output {target.with_suffix('')}-kinetree")
     )
 
 
-def _run(program: str, file: Path, folder: Path, seconds: float) -> None:
-    """Runs the script in Blender, in a group of processes of its own that ends with it."""
+def _starter(blender: str | None, suffix: str) -> tuple[str, ...]:
+    """The command before the script: the program, or a Python whose module bpy is Blender; ConfigError without either."""
+    if blender is None and find_spec("bpy") is not None:
+        return (sys.executable,)
+    program = shutil.which(blender or "blender")
+    if program is None:
+        raise ConfigError(
+            f"{suffix} is opened by Blender, which is not installed here ({blender or 'blender'}); install it (or pip install"
+            " bpy), or name it with --blender; or export the file as GLB with its animation elsewhere"
+        )
+    starter = str(Path(program).absolute())
+    return (starter,) if Path(program).name.startswith("python") else (starter, *SAFELY, "--python")
+
+
+def _run(starter: tuple[str, ...], arguments: list[str], folder: Path, seconds: float) -> None:
+    """Runs the script in Blender with its arguments, the file first, in a group of processes of its own that ends with it."""
     script = folder / "frames.py"
     script.write_text(SCRIPT)
-    command = [program, *SAFELY, "--python", str(script), "--", str(file), str(folder), str(MOST_FRAMES)]
+    command, file = [*starter, str(script), "--", *arguments], arguments[0]
     with (folder / "log").open("w+b") as log:
         process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, cwd=folder

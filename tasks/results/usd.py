@@ -21,10 +21,10 @@ def usd(
     params: UsdParams,
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
 ) -> Usd:
-    """Writes skeleton.usda, the reference mesh skinned to the animated skeleton (ours)."""
+    """Writes skeleton.usda, the reference mesh skinned to the animated skeleton, in metres (ours)."""
     known = placement(skeleton, up_direction, params.up, params.scale)
     up = "z" if known.up == "z" else "y"
     rig = with_assumed(skeleton, joint_names, assumed_joints)
-    body = placed(renamed(rig.skeleton, rig.names), upright_rotation(known.up, up), 1.0)
-    files = {f"skeleton{name}.usda": usd_text(own, up, known.metres) for name, own in of_takes(body).items()}
+    body = placed(renamed(rig.skeleton, rig.names), upright_rotation(known.up, up), known.metres)
+    files = {f"skeleton{name}.usda": usd_text(own, up) for name, own in of_takes(body).items()}
     return Usd.of(files, **known._asdict())

@@ -1,12 +1,14 @@
 """Files that Blender opens become sequences that a run reads; Blender is told to run nothing of them, and is ended in time."""
 
+import importlib.util
 import stat
 import subprocess
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
-from results.blender_reader import command
+from results.blender_reader import LEAVE, command
 from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
@@ -15,6 +17,7 @@ from kinetree.pipeline import views
 from kinetree.schemas.results.glb import GlbParams
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.commands.convert import convert
+from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.numerics.input.source import read_npz
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.glb import glb
@@ -34,6 +37,26 @@ bpy.context.scene.frame_end = 3
 bpy.ops.wm.save_as_mainfile(filepath=str(target))
 """
 
+EXPORTER = """
+import sys
+from pathlib import Path
+import bpy
+source = Path(sys.argv[-1])
+if "alembic_export" not in dir(bpy.ops.wm):
+    sys.exit(0)
+bpy.ops.wm.open_mainfile(filepath=str(source))
+body = next(o for o in bpy.data.objects if o.type == "MESH")
+for name in ("fixed", "changing"):
+    if name == "changing":
+        coarse = body.modifiers.new("coarse", "DECIMATE")
+        for frame, ratio in ((0, 0.9), (11, 0.4)):
+            coarse.ratio = ratio
+            coarse.keyframe_insert("ratio", frame=frame)
+    bpy.ops.wm.save_as_mainfile(filepath=str(source.with_name(name + ".blend")))
+    bpy.ops.wm.usd_export(filepath=str(source.with_name(name + ".usdc")), export_animation=True, export_armatures=False)
+    bpy.ops.wm.alembic_export(filepath=str(source.with_name(name + ".abc")), start=0, end=11, as_background_job=False)
+"""
+
 
 def program(folder, text):
     """A stand-in for Blender."""
@@ -51,32 +74,68 @@ def file(tmp_path):
 
 @pytest.fixture(scope="module")
 def installed():
-    """Where Blender is."""
-    first = command()[0]
-    if not first.endswith("blender"):
-        pytest.skip("Blender is there as a module and not as a program")
+    """The command that runs a script with Blender's modules; its first word is what --blender names."""
     return command()
 
 
-def test_fbx_that_was_exported_comes_back_as_the_sequence_that_it_was(installed, tmp_path):
-    body = spider()
+@pytest.fixture(scope="module")
+def exported(installed, tmp_path_factory):
+    """A folder with skeleton.fbx and skeleton.blend, made by the script of the export."""
+    folder, body = tmp_path_factory.mktemp("exported"), spider()
     made = glb(body, plain(body), UpDirection(up="z", confidence=1.0), GlbParams())
     for name, data in views.files(blender(made, body), ()).items():
-        (tmp_path / name.removeprefix("blender/")).write_bytes(data)
-    subprocess.run([*installed, str(tmp_path / "to_fbx.py")], capture_output=True, check=True, timeout=120)
-    convert(tmp_path / "skeleton.fbx", tmp_path / "walk.npz", installed[0])
-    frames = read_npz(tmp_path / "walk.npz")
+        (folder / name.removeprefix("blender/")).write_bytes(data)
+    subprocess.run([*installed, str(folder / "to_fbx.py")], capture_output=True, check=True, timeout=120)
+    return folder
+
+
+def assert_is_spider(frames):
+    """Pace, unit, faces and vertices are those of the body that was exported."""
     assert (len(frames), frames.fps, frames.unit) == (12, 10.0, "m")
-    truth = skinned(body) / 1000
+    truth = skinned(spider()) / 1000
     size = np.ptp(truth[0], axis=0).max()
     for t in (0, 5, 11):
         V, F = frames.mesh(t)
-        assert len(F) == len(body.faces)
+        assert len(F) == len(spider().faces)
         np.testing.assert_allclose(V, truth[t], atol=2e-4 * size)
 
 
+def test_fbx_that_was_exported_comes_back_as_the_sequence_that_it_was(installed, exported, tmp_path):
+    convert(exported / "skeleton.fbx", tmp_path / "walk.npz", installed[0])
+    assert_is_spider(read_npz(tmp_path / "walk.npz"))
+
+
+def test_alembic_and_usd_of_blender_come_back_as_the_frames_that_they_were(installed, exported, tmp_path):
+    (tmp_path / "exporter.py").write_text(EXPORTER + LEAVE)
+    subprocess.run([*installed, str(tmp_path / "exporter.py"), "--", str(exported / "skeleton.blend")], check=True, timeout=120)
+    if not (exported / "changing.abc").exists():
+        pytest.skip("this Blender was built without Alembic (Debian's); pip install bpy, or BLENDER_PYTHON names its Python")
+    counts = {}
+    for name in ("fixed", "changing"):
+        convert(exported / f"{name}.abc", tmp_path / f"{name}-abc.npz", installed[0], fps=10.0)
+        convert(exported / f"{name}.blend", tmp_path / f"{name}.npz", installed[0])
+        told = [read_npz(tmp_path / f"{name}-abc.npz"), read_npz(tmp_path / f"{name}.npz")]
+        if importlib.util.find_spec("pxr"):
+            told.append(read_animated(exported / f"{name}.usdc"))
+        if name == "fixed":
+            for frames in told:
+                assert_is_spider(frames)
+        for t in range(12):
+            V, F = told[0].mesh(t)
+            counts[name, t] = len(V)
+            for frames in told[1:]:
+                np.testing.assert_allclose(frames.mesh(t)[0], V, atol=1e-6)
+                assert len(frames.mesh(t)[1]) == len(F)
+    assert counts["changing", 0] > counts["changing", 5] > counts["changing", 11]
+
+
+def test_only_files_of_times_are_sampled_at_a_rate(file):
+    with pytest.raises(ConfigError, match=r"--fps 30: \.fbx has frames of its own"):
+        convert(file, fps=30.0)
+
+
 def test_nothing_in_a_blender_file_runs(installed, tmp_path):
-    (tmp_path / "trap_maker.py").write_text(TRAP)
+    (tmp_path / "trap_maker.py").write_text(TRAP + LEAVE)
     subprocess.run([*installed, str(tmp_path / "trap_maker.py"), "--", str(tmp_path / "trap.blend")], check=True, timeout=120)
     for name in ("ran", "drove"):
         (tmp_path / name).unlink(missing_ok=True)
@@ -93,7 +152,7 @@ def test_damaged_file_is_refused_in_words(installed, file):
 
 
 def test_without_blender_it_says_what_to_do(file):
-    with pytest.raises(ConfigError, match=r"Blender, which is not installed here \(no-such-program\); install it, or name it"):
+    with pytest.raises(ConfigError, match=r"Blender, which is not installed here \(no-such-program\); install it \(or pip"):
         convert(file, None, "no-such-program")
 
 
@@ -101,7 +160,7 @@ def test_blender_that_does_not_finish_is_ended_with_all_that_it_began(file, tmp_
     slow = program(tmp_path, f"(sleep 30; touch {tmp_path}/later) & sleep 30")
     began = time.monotonic()
     with pytest.raises(InputError, match="did not finish within 1 s"):
-        convert(file, None, slow, 1.0)
+        convert(file, None, slow, seconds=1.0)
     assert time.monotonic() - began < 25
 
 
@@ -112,6 +171,17 @@ def test_blender_is_told_to_run_nothing_of_the_file(file, tmp_path):
     given = (tmp_path / "arguments").read_text().split()
     assert given.index("--disable-autoexec") < given.index("--python")
     assert "--factory-startup" in given
+
+
+def test_python_that_has_blender_as_a_module_runs_the_script_itself(file, tmp_path, monkeypatch):
+    recorder = tmp_path / "python3.11"
+    Path(program(tmp_path, f'echo "$@" > {tmp_path}/arguments; exit 1')).rename(recorder)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=r"cannot open it \(exit code 1\)"):
+        convert(file, None, "./python3.11")
+    given = (tmp_path / "arguments").read_text().split()
+    assert given[0].endswith("frames.py")
+    assert given[1:3] == ["--", str(file)]
 
 
 def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):

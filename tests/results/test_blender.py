@@ -1,6 +1,7 @@
-"""What Blender makes of skeleton.glb, of the FBX that its script writes, and of skeleton.bvh."""
+"""What Blender makes of skeleton.glb, of the FBX that its script writes, of skeleton.usda and of skeleton.bvh."""
 
 import ast
+import importlib.util
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ from results.rigged_bodies import skinned, spider
 from kinetree.pipeline import views
 from kinetree.schemas.results.bvh import BvhParams
 from kinetree.schemas.results.glb import GlbParams
+from kinetree.schemas.results.usd import UsdParams
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.blender import blender
 from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.usd import usd
 
 FRAMES = [0, 5, 11]
 Z_UP = UpDirection(up="z", confidence=0.9)
@@ -47,11 +50,16 @@ def test_script_lies_beside_the_file_that_it_reads_and_knows_the_pace(body):
     assert b"FPS = 30.0\n" in files(spider(fps=None))["blender/to_fbx.py"]
 
 
-@pytest.mark.parametrize("name", ["skeleton.glb", "skeleton.fbx"])
+@pytest.mark.parametrize("name", ["skeleton.glb", "skeleton.fbx", "skeleton.usda"])
 def test_blender_has_joints_bones_and_skin_where_they_are_in_metres_and_upright(body, folder, name):
     command()
     if name == "skeleton.fbx":
         run(folder / "to_fbx.py")
+    if name == "skeleton.usda":
+        if importlib.util.find_spec("pxr") is None:
+            pytest.skip("pip install 'kinetree[usd]' brings Pixar's library")
+        written = views.files(usd(body, plain(body), Z_UP, UsdParams()), ())[name]
+        (folder / name).write_bytes(written)
     told = opened(folder / name, 10.0, FRAMES)
     np.testing.assert_allclose(list(told["matrices"].values()), np.tile(np.eye(4), (2, 1, 1)), atol=1e-5)
     truth = skinned(body) / 1000

@@ -70,7 +70,7 @@ def test_joints_are_where_the_skeleton_has_them_in_every_frame(opened):
     for t, frame in enumerate(body.frames):
         at = UsdGeom.XformCache(frame)
         results = np.array(skeleton.ComputeJointWorldTransforms(at))[:, 3, :3]
-        np.testing.assert_allclose(results, body.positions[t], atol=1e-4)
+        np.testing.assert_allclose(results, body.positions[t] / 1000, atol=1e-7)
 
 
 @needs_usd
@@ -85,7 +85,7 @@ def test_skin_moves_as_the_skeleton_says_in_every_frame(opened):
     for t, frame in enumerate(body.frames):
         points = Vt.Vec3fArray(mesh.GetPointsAttr().Get())
         assert skin.ComputeSkinnedPoints(skeleton.ComputeSkinningTransforms(frame), points, frame)
-        np.testing.assert_allclose(np.array(points), truth[t], atol=1e-4)
+        np.testing.assert_allclose(np.array(points), truth[t] / 1000, atol=1e-7)
 
 
 @needs_usd
@@ -93,8 +93,8 @@ def test_usd_is_a_sequence_to_begin_with(tmp_path):
     """What is exported goes in again, surface and motion the same."""
     body = spider()
     (tmp_path / "skeleton.usda").write_bytes(written(body))
-    frames, truth = read_animated(tmp_path / "skeleton.usda"), skinned(body)
-    size = np.linalg.norm(np.ptp(body.vertices, axis=0))
+    frames, truth = read_animated(tmp_path / "skeleton.usda"), skinned(body) / 1000
+    size = np.linalg.norm(np.ptp(body.vertices, axis=0)) / 1000
     assert (len(frames), frames.fps) == (len(body.frames), body.fps)
     for t in range(len(frames)):
         X, F = frames.mesh(t)
@@ -108,7 +108,7 @@ def test_stage_tells_pace_unit_and_up(opened):
 
     stage = opened(spider(frames=(3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 20)), up="z")
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (3, 20, 10)
-    assert UsdGeom.GetStageMetersPerUnit(stage) == 0.001
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1
     assert UsdGeom.GetStageUpAxis(stage) == "Z"
     assert UsdGeom.GetStageUpAxis(opened(spider(), UpDirection(up="z", confidence=0.9))) == "Z"
     assert opened(spider(fps=None)).GetTimeCodesPerSecond() == 30
@@ -121,9 +121,8 @@ def test_axis_that_usd_does_not_know_is_turned_to_y(opened):
     body = spider(unit=None)
     stage = opened(body, UpDirection(up="-x", confidence=0.9))
     assert UsdGeom.GetStageUpAxis(stage) == "Y"
-    assert UsdGeom.GetStageMetersPerUnit(stage) == 0.01
     results = np.array(queries(stage)[0].ComputeJointWorldTransforms(UsdGeom.XformCache(3)))[:, 3, :3]
-    np.testing.assert_allclose(results[:, 1], -body.positions[3][:, 0], atol=1e-4)
+    np.testing.assert_allclose(results[:, 1], -body.positions[3][:, 0] / 100, atol=1e-6)
 
 
 @needs_usd
@@ -131,7 +130,7 @@ def test_box_holds_the_skin_in_every_frame(opened):
     from pxr import UsdSkel
 
     low, high = np.array(UsdSkel.Root(opened(spider()).GetDefaultPrim()).GetExtentAttr().Get())
-    X = skinned(spider())
+    X = skinned(spider()) / 1000
     assert np.all(np.minimum(X - low, high - X) >= 0)
 
 

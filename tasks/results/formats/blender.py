@@ -13,6 +13,7 @@ or with any Python that has Blender as a module (pip install bpy):
     python to_fbx.py
 """
 
+import os
 from pathlib import Path
 
 import bpy
@@ -51,7 +52,9 @@ for model in sorted(here.glob("*.glb")):
         bake_anim_use_nla_strips=False,
         bake_anim_simplify_factor=0.0,
     )
-    print("wrote", model.with_suffix(".fbx"))
+    print("wrote", model.with_suffix(".fbx"), flush=True)
+if not bpy.app.binary_path:
+    os._exit(0)  # the module bpy 4.2 crashes when Python takes it down after it read glTF
 '''
 
 

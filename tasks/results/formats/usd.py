@@ -17,19 +17,18 @@ from kinetree.tasks.results.formats.names import identifiers
 from kinetree.tasks.results.formats.rig import local_offsets, local_rotations, quaternions, rest_frames
 
 
-def usd(skeleton: Skeleton, up: str, metres: float) -> bytes:
-    """The reference mesh bound to the animated joints, as the text of a .usda file.
+def usd(skeleton: Skeleton, up: str) -> bytes:
+    """The reference mesh in metres bound to the animated joints, as the text of a .usda file.
 
-    Time codes are source frame numbers.
+    Time codes are source frame numbers. Lengths are metres: Blender 4.2 and others do not follow another metersPerUnit.
 
     up     : axis that points up: y or z
-    metres : length of one unit
     raises : ConfigError where the extra is not installed
     """
     pxr = _pxr()
     stage = pxr.Usd.Stage.CreateInMemory(".usda")
     pxr.UsdGeom.SetStageUpAxis(stage, up.upper())
-    pxr.UsdGeom.SetStageMetersPerUnit(stage, metres)
+    pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     stage.SetStartTimeCode(skeleton.frames[0])
     stage.SetEndTimeCode(skeleton.frames[-1])
     for rate in (stage.SetTimeCodesPerSecond, stage.SetFramesPerSecond):
