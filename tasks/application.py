@@ -86,6 +86,8 @@ APPLICATION = Application(
                     "kinetree export walk/ --to csv",
                     "kinetree export walk/ --to glb -o walk.glb --set glb.scale=0.001",
                     "kinetree export walk/ --to ply -o coloured/",
+                    "kinetree export walk/ --to bvh --names mixamo",
+                    "kinetree export walk/ --to names -o names.yaml",
                 ),
                 _command(
                     "plot",
@@ -157,6 +159,12 @@ APPLICATION = Application(
             is_input=True,
         ),
         Shortcut(("--frames",), "source.frames", "Which frames to use, e.g. 10:60:2.", "START:STOP:STEP"),
+        Shortcut(
+            ("--names",),
+            "joint_names.style",
+            "How files call the joints: kinetree, mixamo, smpl, openpose, vrm, isb or none.",
+            "STYLE",
+        ),
     ),
     renamed={
         "articulation": "kinematic_tree",

@@ -306,6 +306,39 @@ def test_unknown_format_names_the_nearest(out):
         export(str(out), "fbx")
 
 
+def test_names_are_a_style_or_a_file_that_was_written_and_edited(out, tmp_path, capsys):
+    export(str(out), "names", tmp_path / "names.yaml")
+    text = (tmp_path / "names.yaml").read_text()
+    assert text.splitlines()[:2] == ["trunk: trunk", "arm: arm"]
+    (tmp_path / "names.yaml").write_text(text.replace("arm: arm", "arm: jaw"))
+    export(str(out), "bvh", tmp_path / "named.bvh", names=str(tmp_path / "names.yaml"))
+    assert "JOINT jaw" in (tmp_path / "named.bvh").read_text()
+    capsys.readouterr()
+    export(str(out), "names", names=str(tmp_path / "names.yaml"))
+    assert "arm: jaw\n" in capsys.readouterr().out
+    pipeline = Pipeline.of(str(out))
+    export(str(out), "glb", tmp_path / "styled.glb", names="mixamo")
+    assert (tmp_path / "styled.glb").is_file()
+    assert Pipeline.of(str(out)).config == pipeline.config
+
+
+def test_names_that_are_no_style_and_no_file_of_names_are_refused(out, tmp_path):
+    with pytest.raises(ConfigError, match="--names mixamoo: neither a style nor a file; did you mean 'mixamo'"):
+        export(str(out), "bvh", names="mixamoo")
+    for text in ("- arm\n", "arm: [1]\n", "arm:\n", "3: arm\n"):
+        (tmp_path / "names.yaml").write_text(text)
+        with pytest.raises(ConfigError, match=r"names\.yaml: expected a line 'joint: name'"):
+            export(str(out), "bvh", names=str(tmp_path / "names.yaml"))
+
+
+def test_run_and_plan_take_a_style(out, capsys):
+    assert not command_line(EXPORTING)(["plan", str(out), "--names", "vrm", "--json"], standalone_mode=False)
+    rows = {row["task"]: row for row in json.loads(capsys.readouterr().out)["tasks"]}
+    assert rows["joint_names"]["states"] == {"stale": 1}
+    assert not command_line(EXPORTING)(["run", str(out), "--names", "vrm"], standalone_mode=False)
+    assert Pipeline.of(str(out)).config.params["joint_names"].style == "vrm"
+
+
 def test_place_that_cannot_be_written_is_told_and_nothing_is_half_written(out, tmp_path):
     (tmp_path / "file").write_text("mine")
     with pytest.raises(StoreError, match="cannot write"):

@@ -1,6 +1,6 @@
 """Names that people know for the joints of people and four-legged animals, and which way the body faces."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -8,6 +8,8 @@ from kinetree.schemas.array import Array, Artifact, Floats, Params
 from kinetree.schemas.dims import XYZ
 
 Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
+Style = Literal["kinetree", "mixamo", "smpl", "openpose", "vrm", "isb", "none"]
+STYLES: tuple[str, ...] = get_args(Style)
 CERTAIN_FRONT = 0.5
 """Confidence of the front below which a run warns that left and right may be exchanged, and files are not turned by it."""
 
@@ -15,7 +17,7 @@ CERTAIN_FRONT = 0.5
 class JointNamesParams(Params):
     """How joints are named in files and tables; the skeleton itself keeps its own names."""
 
-    style: Literal["kinetree", "mixamo", "smpl", "openpose", "vrm", "isb", "none"] = "kinetree"
+    style: Style = "kinetree"
     """Whose names: kinetree has pelvis, spine, chest, neck, head, shoulder_l …; none keeps root, limb_a_1 and so on."""
     front: Axis | None = None
     """Direction of the coordinates that the body faces in the reference frame; None finds it. Left and right follow from it."""

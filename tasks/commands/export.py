@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinetree.errors import ConfigError
+from kinetree.errors.small_text import small_text
 from kinetree.pipeline.command_line.options import AsJson, Set, Target, pipeline_of, print_json
 from kinetree.pipeline.command_line.printable import printable
 from kinetree.pipeline.suggest import nearest
@@ -31,21 +32,33 @@ FORMATS = {
 """The task that writes each format."""
 LAID_OUT_BY = ("complete_skeleton", "joint_names", "assumed_joints", "appearance", "glb")
 """Tasks that say how a body looks in files and take no time: they are computed with a file where an option changes them."""
+LARGEST_NAMES = 2**20
+"""Bytes of a file of names."""
 EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
+NAMES = "names"
+"""What is written though no task writes it: the schema of skeleton.json, and names of joints for --names."""
 MESH_FILES = (".ply", ".obj", ".off", ".stl", ".glb", ".gltf")
 """Endings of meshes: one more of these in the folder of the input would be read as a frame or refused."""
 
 
 def export(
     run: Target = None,
-    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help=f"{', '.join(FORMATS)} or {SCHEMA}.")] = "glb",
+    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help=f"{', '.join(FORMATS)}, {NAMES} or {SCHEMA}.")] = "glb",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="PATH", help="File or folder; default: the run's own folder.")
     ] = None,
     sets: Set = None,
     as_json: AsJson = False,
+    names: Annotated[
+        str | None,
+        typer.Option(
+            "--names",
+            metavar="STYLE|FILE",
+            help="Names of joints: kinetree, mixamo, smpl, openpose, vrm, isb or none; or a file as --to names writes it.",
+        ),
+    ] = None,
 ) -> None:
     """Write the result of a run as a file for other programs.
 
@@ -53,16 +66,22 @@ def export(
 
     glb and usd hold the skinned, moving body, blender the same with a script that makes FBX of it, bvh the motion, json the
     joints, trc and c3d the joints as markers, csv tables of motion, angles, lengths and steps, ply your own meshes coloured
-    by part, rignet the rig as text, zarr part labels and aligned meshes.
+    by part, rignet the rig as text, zarr part labels and aligned meshes. names is a text to edit: the names of all joints,
+    which --names FILE takes.
     """
-    if to not in (*FORMATS, SCHEMA):
-        raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, SCHEMA))}")
+    if to not in (*FORMATS, NAMES, SCHEMA):
+        raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, NAMES, SCHEMA))}")
     if to == SCHEMA:
-        _write_schema(output)
+        from kinetree.tasks.results.formats.document import schema
+
+        _write_text(json.dumps(schema(), indent=2) + "\n", output)
         return
     if to in EXTRAS and find_spec(EXTRAS[to]) is None:
         raise ConfigError(f"--to {to} needs a package that is not installed: pip install 'kinetree[{to}]' brings it")
-    pipeline = pipeline_of(run, sets=sets)
+    pipeline = pipeline_of(run, sets=[*(sets or ()), *(() if names is None else (_names_setting(names),))])
+    if to == NAMES:
+        _write_text(_names_text(pipeline), output)
+        return
     written, remarks = _written(pipeline, FORMATS[to], output)
     if as_json:
         print_json({"files": [str(path) for path in written], "remarks": remarks})
@@ -91,15 +110,43 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list
     return [owned.folder / name for entry in done for name in write_result(owned, schedule, entry)], remarks
 
 
-def _write_schema(output: Path | None) -> None:
-    from kinetree.tasks.results.formats.document import schema
+def _names_setting(names: str) -> str:
+    """What --names sets: a style, or the names in a file."""
+    from kinetree.pipeline.settings.yaml_text import parsed
+    from kinetree.schemas.structure.joint_names import STYLES
 
-    text = json.dumps(schema(), indent=2) + "\n"
+    if names in STYLES:
+        return f"joint_names.style={names}"
+    path = Path(names)
+    if not path.is_file():
+        raise ConfigError(f"--names {names}: neither a style nor a file; {nearest(names, STYLES)}")
+    told = parsed(small_text(path, ConfigError, LARGEST_NAMES), names)
+    pairs = told.items() if isinstance(told, dict) else [(None, None)]
+    if not all(isinstance(text, str) and text for pair in pairs for text in pair):
+        raise ConfigError(
+            f"{names}: expected a line 'joint: name' for each joint; write the file with --to {NAMES}, then edit it"
+        )
+    return f"joint_names.rename={json.dumps(told)}"
+
+
+def _names_text(pipeline: "Pipeline") -> str:
+    """Every joint's own name and the name that files have, as YAML."""
+    from kinetree.pipeline.settings.yaml_text import dumped
+    from kinetree.schemas.structure.joint_names import JointNames
+
+    schedule = pipeline.computed("joint_names", LAID_OUT_BY).schedule
+    (entry,) = (entry for entry in schedule.entries.values() if entry.node.task == "joint_names")
+    found = schedule.value(entry.node)
+    assert isinstance(found, JointNames)
+    return dumped(dict(zip(found.given, found.names, strict=True)), sort_keys=False)
+
+
+def _write_text(text: str, output: Path | None) -> None:
     if output is None:
         typer.echo(text, nl=False)
         return
     try:
-        output.write_text(text)
+        output.write_text(text, "utf-8")
     except OSError as error:
         raise ConfigError(f"{output}: cannot be written: {error.strerror}; name another file") from None
     typer.echo(printable(output))
