@@ -7,10 +7,12 @@ in a bucket (remote.py); then what its service tells of it in a listing takes th
 
 import contextlib
 import os
+import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -80,10 +82,14 @@ class Files:
         self._listed |= listed
         return list(listed)
 
-    def digests(self, paths: Sequence[Path | str]) -> list[str]:
-        """Digest of the bytes of each file; "unreadable: …" for one that cannot be read, so that its node can say so."""
+    def digests(self, paths: Sequence[Path | str], most: int = sys.maxsize) -> list[str]:
+        """Digest of the bytes of each file; "unreadable: …" for one that cannot be read, so that its node can say so.
+
+        most : bytes beyond which a file is not read
+        """
         with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)) * 2)) as pool:
-            return [parts[0] for parts in pool.map(lambda path: self._remembered(path, "bytes", _bytes), paths)]
+            read = partial(_bytes, most=most)
+            return [parts[0] for parts in pool.map(lambda path: self._remembered(path, "bytes", read), paths)]
 
     def parts(self, path: Path | str, kind: str, read: Callable[[Path], Sequence[str]]) -> Sequence[str]:
         """Digests of the parts of one file (or of a folder of files) as `read` makes them; `kind` names how.
@@ -128,8 +134,10 @@ def _has_settled(path: Path | str, stamp: list[Any]) -> bool:
     return stamp == _stamp(Path(path)) and time.time() - stamp[1] / 1e9 > SETTLED_SECONDS
 
 
-def _bytes(path: Path) -> list[str]:
+def _bytes(path: Path, most: int) -> list[str]:
     try:
+        if path.stat().st_size > most:
+            return [f"{UNREADABLE}more than {most} bytes"]
         return [file_digest(path)]
     except OSError as error:
         return [f"{UNREADABLE}{error.strerror}"]

@@ -14,15 +14,18 @@ from kinetree.tasks.input.frames.read import grid_digest, mesh_digest, packed_fr
 from kinetree.tasks.numerics.input.animated import SUFFIXES as ANIMATED
 from kinetree.tasks.numerics.input.animated import Animated
 from kinetree.tasks.numerics.input.calibration import NAMES, Calibration, calibration_files, read_calibration
+from kinetree.tasks.numerics.input.formats import MOST_BYTES
 from kinetree.tasks.numerics.input.formats import suffixes as mesh_suffixes
 from kinetree.tasks.numerics.input.frame_numbers import are_frame_numbers, frame_numbers
 from kinetree.tasks.numerics.input.input_kind import input_kind
+from kinetree.tasks.numerics.input.silhouettes import MOST_BYTES as MOST_MASK_BYTES
 from kinetree.tasks.numerics.input.silhouettes import mask_files
 from kinetree.tasks.numerics.input.source import (
     mesh_files,
     one_format,
     written,
 )
+from kinetree.tasks.numerics.input.volumes import MOST_BYTES as MOST_VOLUME_BYTES
 from kinetree.tasks.numerics.input.zipped import Zipped
 
 
@@ -49,7 +52,7 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
         return dict(enumerate(_packed_volumes(path, files) if kind == "packed volumes" else _packed(path, "npz", files)))
     paths = _complete([written(p) for p in (found if kind == "volumes" else mesh_files(where))], where, files)
     form: Kind = "volume" if kind == "volumes" else "file"
-    contents = files.digests(paths)
+    contents = files.digests(paths, MOST_VOLUME_BYTES if kind == "volumes" else MOST_BYTES)
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
 
 
@@ -125,7 +128,11 @@ def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
     frames = [(number, masks) for number, masks in mask_files(folder, calibration) if _are_complete(masks, files)]
     if not frames:
         raise SourceError(f"{folder}: no frame is complete yet")
-    digests = dict(zip(paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths), strict=True))
+    digests = dict(
+        zip(
+            paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths, MOST_MASK_BYTES), strict=True
+        )
+    )
     made = [
         Source(
             content=digest(["silhouettes", contents, [digests[p] if p else "" for p in masks]]),
@@ -153,7 +160,7 @@ def _packed_silhouettes(found: Sequence[Path], files: Files) -> list[Source]:
     """A frame for every npz that holds the masks of all cameras."""
     calibrated, calibration, contents = _calibrated(found[0].parent, files)
     stated = {"kind": "silhouettes", "calibration": calibrated, "fps": calibration.fps, "unit": calibration.unit}
-    named = zip(found, files.digests(found), strict=True)
+    named = zip(found, files.digests(found, MOST_MASK_BYTES), strict=True)
     return [Source(content=digest(["silhouettes", contents, [c]]), path=str(p), masks=(str(p),), **stated) for p, c in named]
 
 

@@ -8,6 +8,7 @@ from kinetree.errors import MeshError, SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats
 from kinetree.tasks.numerics.input.animated_glb import AnimatedGlb
 from kinetree.tasks.numerics.input.animated_usd import AnimatedUsd
+from kinetree.tasks.numerics.input.formats import MOST_BYTES
 from kinetree.tasks.numerics.input.zipped import Zipped
 
 SUFFIXES = (".glb", ".usd", ".usda", ".usdc", ".usdz", ".zip")
@@ -52,7 +53,7 @@ def _read(path: Path, size: int, mtime_ns: int, clip: str) -> Animated:
         return Zipped(path)
     if suffix == ".glb":
         try:
-            return AnimatedGlb(path.read_bytes(), str(path), clip)
+            return AnimatedGlb(_glb_bytes(path), str(path), clip)
         except (SourceError, MeshError) as error:
             told = str(error)
             raise SourceError(told if told.startswith(str(path)) else f"{path}: {told}") from None
@@ -60,3 +61,13 @@ def _read(path: Path, size: int, mtime_ns: int, clip: str) -> Animated:
             reason = f"{type(error).__name__}: {error}"
             raise SourceError(f"{path}: cannot be read as GLB ({reason}); the file is damaged or cut short") from error
     return AnimatedUsd(path)
+
+
+def _glb_bytes(path: Path) -> bytes:
+    """What a GLB says that it is long; the first bytes alone where it is none."""
+    with path.open("rb") as file:
+        head = file.read(12)
+        length = int.from_bytes(head[8:12], "little") if head[:4] == b"glTF" else 0
+        if length > MOST_BYTES:
+            raise SourceError(f"{length} bytes; more than {MOST_BYTES} are not read; export fewer frames")
+        return head + file.read(max(length - len(head), 0))

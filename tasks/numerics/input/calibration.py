@@ -18,6 +18,7 @@ from kinetree.errors import SourceError
 from kinetree.errors.small_text import BoundedLoader, small_json, small_text, small_yaml
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.source import natural_order
+from kinetree.tasks.numerics.input.unpacked import npz_bomb
 
 FORMAT = "kinetree.cameras/1"
 NAMES = tuple(f"{stem}{suffix}" for suffix in (".json", ".npz", ".yml", ".yaml") for stem in ("calibration", "cameras"))
@@ -101,6 +102,8 @@ def _json(files: Sequence[Path], where: str) -> Calibration:
 
 
 def _npz(files: Sequence[Path], where: str) -> Calibration:
+    if why := npz_bomb(files[0], "P", LARGEST) or npz_bomb(files[0], "size", LARGEST):
+        raise SourceError(f"{where}: {why}")
     with files[0].open("rb") as file, np.load(file, allow_pickle=False) as archive:
         if "P" not in archive.files:
             raise SourceError(f"{where}: no array P (camera, 3, 4); there are {', '.join(archive.files) or 'none'}")

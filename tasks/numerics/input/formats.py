@@ -17,7 +17,10 @@ import numpy as np
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
+from kinetree.tasks.numerics.input.unpacked import too_large
 
+MOST_BYTES = 2**31
+"""Of one mesh as a file: fifty million vertices and twice as many faces in binary."""
 _MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
 _COARSEST = 1e-3
 """Share of the body's diagonal by which coordinates may go up in steps; such steps are noise of 0.03 %. Not varied so far."""
@@ -40,6 +43,8 @@ def read_mesh(path: Path | str) -> tuple[Floats, Faces]:
     if not path.is_file():
         raise MeshError(f"{path}: {'not a file' if path.exists() else 'there is no such file'}")
     try:
+        if why := too_large(path, MOST_BYTES):
+            raise MeshError(f"{path}: {why}; is it one mesh?")
         raw = path.read_bytes()
     except OSError as error:
         raise MeshError(f"{path}: cannot be read: {error.strerror}") from None

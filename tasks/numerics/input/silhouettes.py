@@ -21,14 +21,17 @@ from kinetree.errors import HullError, SourceError
 from kinetree.tasks.numerics.arrays import Flags
 from kinetree.tasks.numerics.input.calibration import Calibration
 from kinetree.tasks.numerics.input.source import natural_order
+from kinetree.tasks.numerics.input.unpacked import too_large
 
 SUFFIXES = (".png", ".bmp", ".pgm", ".tif", ".tiff", ".jpg", ".jpeg")
+_FORMATS = ("PNG", "BMP", "PPM", "TIFF", "JPEG")
+"""As those suffixes say; Pillow would go by the content and start other programs for some (EPS)."""
 ARRAY = "silhouettes"
 """The array of an npz."""
 MOST_PIXELS = 100_000_000
 """Of one mask; no camera in use has as many."""
 MOST_BYTES = 1_000_000_000
-"""Of one unpacked npz of silhouettes."""
+"""Of one unpacked npz of silhouettes, and of the file of one mask."""
 
 
 def image_files(folder: Path) -> list[Path]:
@@ -130,7 +133,9 @@ def _image(path: Path) -> NDArray[Any]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(path) as image:
+            if why := too_large(path, MOST_BYTES):
+                raise HullError(f"{path}: {why}")
+            with Image.open(path, formats=_FORMATS) as image:
                 if image.width * image.height > MOST_PIXELS:
                     raise HullError(f"{path}: {image.width} × {image.height} pixels are more than {MOST_PIXELS}")
                 plain = image.mode not in ("P", "PA", "CMYK", "YCbCr", "HSV", "LAB")

@@ -20,6 +20,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.foreign import advice
 from kinetree.tasks.numerics.input.formats import checked, suffixes
+from kinetree.tasks.numerics.input.unpacked import npz_bomb
 
 _PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
 """Suffixes of files that must be unpacked before they can be read."""
@@ -27,10 +28,6 @@ _WHOLE = {*suffixes(), ".zip", ".usd", ".usda", ".usdc", ".usdz", ".npz", ".npy"
 """Suffixes that only files have."""
 AnyPath = TypeVar("AnyPath", bound=PurePath)
 ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"
-UNPACKED_BYTES = 256 * 2**20
-"""An array of more bytes than this …"""
-UNPACKED_RATIO = 100
-"""… may not be more than this many times its bytes in the archive: packed meshes shrink to a tenth at best."""
 
 
 def natural_order(name: str) -> tuple[tuple[str | int, ...], str]:
@@ -205,7 +202,8 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
         # opened here, because numpy leaves a file open that turns out to be no archive
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
             for key in ARRAYS:
-                _refuse_bomb(archive, key, path)
+                if why := npz_bomb(Path(path), key):
+                    raise SourceError(f"{path}: {why}")
             arrays = {key: archive[key] for key in ARRAYS if key in archive.files}
     except SourceError:
         raise
@@ -216,16 +214,6 @@ def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     for array in arrays.values():
         array.flags.writeable = False
     return Frames.of(arrays, path)
-
-
-def _refuse_bomb(archive: Any, key: str, path: str) -> None:
-    """Refuses an array that would take much memory though little of it is stored."""
-    info = archive.zip.NameToInfo.get(f"{key}.npy")
-    if info is not None and info.file_size > UNPACKED_BYTES and info.file_size > UNPACKED_RATIO * info.compress_size:
-        raise SourceError(
-            f"{path}: {key}: {info.compress_size} bytes would unpack to {info.file_size};"
-            f" expected at most {UNPACKED_RATIO} times as many"
-        )
 
 
 def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:

@@ -23,12 +23,19 @@ import tifffile
 
 from kinetree.errors import HullError, SourceError
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.input.unpacked import npz_bomb, too_large, unpacks_beyond
 
 SUFFIXES = (".npy", ".npz", ".nrrd", ".tif", ".tiff")
 ARRAYS = ("field", "volume", "values")
 """Names under which an npz holds a volume, the first that is there."""
 MOST_VOXELS = 1_100_000_000
 """Of one frame: 1,024 along every axis."""
+MOST_BYTES = 8 * MOST_VOXELS + 2**20
+"""Of one frame as a file: the largest numbers, and a header."""
+_PACKED = ("gzip", "gz", "bzip2", "bz2")
+"""Encodings of NRRD that are unpacked."""
+_MOST_DENSE = 2**31
+"""So many bytes may an archive unpack to however few are stored of them: voxels of inside and outside are packed well."""
 _MOST_PAGES = 65_536
 
 
@@ -55,6 +62,8 @@ def read_volume(path: Path) -> Grid:
     if read is None:
         raise HullError(f"{path}: {path.suffix or 'no suffix'} is not read as a volume; {' '.join(SUFFIXES)} are")
     try:
+        if why := too_large(path, MOST_BYTES):
+            raise HullError(f"{path}: {why}; crop the volume to the body")
         values, origin, spacing = read(path)
     except HullError:
         raise
@@ -147,6 +156,8 @@ def _npz_arrays(path: Path) -> dict[str, Any]:
     if key is None:
         raise HullError(f"{path}: no array {' or '.join(ARRAYS)}; there are {', '.join(sorted(shapes)) or 'none'}")
     _refuse_large(shapes[key], path)
+    if why := next((why for name in (key, "origin", "voxel") if (why := npz_bomb(path, name, _MOST_DENSE))), ""):
+        raise HullError(f"{path}: {why}")
     with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
         return {"values": archive[key], **{name: archive[name] for name in ("origin", "voxel") if name in shapes}}
 
@@ -167,6 +178,7 @@ def _nrrd(path: Path) -> tuple[Any, Any, Any]:
     if "data file" in header or "datafile" in header:
         raise HullError(f"{path}: keeps its data in another file, which is not opened; save it as one .nrrd")
     _refuse_large(tuple(int(n) for n in header["sizes"]), path)
+    _refuse_packed(path)
     values, header = nrrd.read(str(path), index_order="F")
     if header.get("space directions") is None:
         return values, header.get("space origin", np.zeros(3)), header.get("spacings", 1.0)
@@ -179,6 +191,17 @@ def _nrrd(path: Path) -> tuple[Any, Any, Any]:
         values = np.flip(values, int(axis))
         origin[axis] += step[axis] * (values.shape[axis] - 1)
     return np.ascontiguousarray(values), origin, np.abs(step)
+
+
+def _refuse_packed(path: Path) -> None:
+    """Refuses data that unpack to more than the header's sizes need, which pynrrd would do to the end."""
+    with path.open("rb") as file:
+        header = nrrd.read_header(file)
+        if header["encoding"] not in _PACKED:
+            return
+        need = math.prod(int(n) for n in header["sizes"]) * 8  # bytes of the widest numbers
+        if unpacks_beyond(file, header["encoding"], path.stat().st_size, need):
+            raise HullError(f"{path}: unpacks to more than {need} bytes, which its sizes do not need; the file is damaged")
 
 
 def _tiff(path: Path) -> tuple[Any, Any, Any]:

@@ -5,11 +5,9 @@ from pathlib import Path, PurePosixPath
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats
-from kinetree.tasks.numerics.input.formats import mesh_of
-from kinetree.tasks.numerics.input.source import UNPACKED_BYTES, UNPACKED_RATIO, one_format
-
-_MOST_BYTES = 2**32
-"""Of one frame, unpacked."""
+from kinetree.tasks.numerics.input.formats import MOST_BYTES, mesh_of
+from kinetree.tasks.numerics.input.source import one_format
+from kinetree.tasks.numerics.input.unpacked import bomb
 
 
 class Zipped:
@@ -37,9 +35,10 @@ class Zipped:
         for info in self._members:
             if info.flag_bits & 1:
                 raise SourceError(f"{path}: {info.filename} is encrypted; zip it without a password")
-            too_dense = info.file_size > UNPACKED_BYTES and info.file_size > UNPACKED_RATIO * info.compress_size
-            if too_dense or info.file_size > _MOST_BYTES:
-                raise SourceError(f"{path}: {info.filename}: {info.compress_size} bytes would unpack to {info.file_size}")
+            if info.file_size > MOST_BYTES:
+                raise SourceError(f"{path}: {info.filename}: {info.file_size} bytes; more than {MOST_BYTES} are no frame")
+            if why := bomb(info.compress_size, info.file_size):
+                raise SourceError(f"{path}: {info.filename}: {why}")
 
     def __len__(self) -> int:
         return len(self._members)

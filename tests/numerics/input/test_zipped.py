@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinetree.errors import MeshError, SourceError
-from kinetree.tasks.numerics.input import zipped
+from kinetree.tasks.numerics.input import unpacked
 from kinetree.tasks.numerics.input.animated import read_animated
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -62,7 +62,7 @@ def test_damaged_archives_and_members_are_refused_with_their_names(archive, tmp_
 
 
 def test_bombs_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
-    monkeypatch.setattr(zipped, "UNPACKED_BYTES", 10**5)
+    monkeypatch.setattr(unpacked, "UNPACKED_BYTES", 10**5)
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as file:
         file.writestr("frame_0.ply", b"\0" * 10**6)
     with pytest.raises(SourceError, match=r"frame_0\.ply: \d+ bytes would unpack to 1000000"):
