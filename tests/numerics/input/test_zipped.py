@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinetree.errors import MeshError, SourceError
-from kinetree.tasks.numerics.input import unpacked
+from kinetree.tasks.numerics.input import unpacked, zipped
 from kinetree.tasks.numerics.input.animated import read_animated
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -67,3 +67,6 @@ def test_bombs_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
         file.writestr("frame_0.ply", b"\0" * 10**6)
     with pytest.raises(SourceError, match=r"frame_0\.ply: \d+ bytes would unpack to 1000000"):
         read_animated(tmp_path / "bomb.zip")
+    monkeypatch.setattr(zipped, "MOST_BYTES", 10**6 - 1)
+    with pytest.raises(SourceError, match=r"frame_0\.ply: 1000000 bytes; more than 999999 are no frame"):
+        zipped.Zipped(tmp_path / "bomb.zip")
