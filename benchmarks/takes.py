@@ -1,13 +1,15 @@
 """Several takes of one body against each take alone: joints found, errors, spurious ones, bone lengths.
 
-    python benchmarks/takes.py [--figures human quadruped] [--seeds 0 1 2] [--frames 16] [--vertices 2000]
+    python benchmarks/takes.py [--figures adult human quadruped] [--seeds 0 1 2] [--frames 16] [--vertices 2000]
                                [--trunk own bow] [--head 1] [--alone] [--work FOLDER]
 
 A body of other proportions for every seed is seen in three takes: in one only the arms or forelegs turn, in one only the legs,
 in one only the trunk. In the second and third the body stands elsewhere and faces another way. `--trunk own` turns the trunk as
 the figure's own motion does: the human's spine by 18° and its chest back by 22°, about one axis, and its head about its own.
-`--trunk bow` turns each joint of the trunk by 30° at a time of its own, about an axis across it. The human's head is round, so
-that its turn about its own axis moves no surface; `--head 0.8` makes it so much narrower than deep.
+`--trunk bow` turns each joint of the trunk by 30° at a time of its own, about an axis across it. Adults are the figures
+adult:SEED, whose surfaces show how heads, hands and feet turn: their arms dance, their legs run, and their trunk looks around,
+the head by up to 60° to either side. The human's head is round, so that its turn about its own axis moves no surface;
+`--head 0.8` makes it so much narrower than deep.
 """
 
 import argparse
@@ -30,6 +32,11 @@ from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 TAKES = {
+    "adult": {
+        "arms": ("shoulder", "elbow", "wrist"),
+        "legs": ("hip_", "knee", "ankle", "ball"),
+        "trunk": ("spine", "chest", "neck", "head"),
+    },
     "human": {
         "arms": ("shoulder", "elbow", "wrist"),
         "legs": ("hip_", "knee", "ankle"),
@@ -43,7 +50,9 @@ TAKES = {
 }
 """Which joints turn in each take."""
 MOTION = {"human": "wave", "quadruped": "walk"}
-ACROSS = {"human": ([1, 0, 0], [0, 1, 0]), "quadruped": ([1, 0, 0], [0, 0, 1])}
+ADULT_MOTIONS = {"arms": "dance", "legs": "run", "trunk": "look"}
+"""Which motion of the figure adult:SEED turns the joints of each take."""
+ACROSS = {"adult": ([1, 0, 0], [0, 1, 0]), "human": ([1, 0, 0], [0, 1, 0]), "quadruped": ([1, 0, 0], [0, 0, 1])}
 """Axes across the trunk, which its joints bend about in turn."""
 PLACES = (((0, 0, 0), 0), ((900, -400, 0), 100), ((-300, 700, 100), -35))
 """Where the body stands in each take, in the figure's unit, and which way it faces, degrees."""
@@ -52,14 +61,37 @@ FPS = 16.0
 
 def motions(name: str, figure: dict[str, Any], trunk: str, seconds: float) -> dict[str, Any]:
     """One motion for every take: the figure's own in some joints, the others held."""
+    if name == "adult":
+        return {take: _of_person(figure, take, trunk, seconds) for take in TAKES[name]}
     own = dict(figure["motions"][MOTION[name]])
     if trunk == "bow":
-        step = seconds / (len(TAKES[name]["trunk"]) + 1)
-        for number, joint in enumerate(TAKES[name]["trunk"]):
-            keys = [[number * step, 0], [(number + 0.5) * step, 30], [(number + 1) * step, 0]]
-            own[joint] = [{"axis": ACROSS[name][number % 2], "keys": keys}]
+        own |= _bow(name, seconds)
     held = {joint: [_held(curve) for curve in curves] for joint, curves in own.items()}
     return {take: {j: own[j] if j.startswith(names) else held[j] for j in own} for take, names in TAKES[name].items()}
+
+
+def _bow(name: str, seconds: float) -> dict[str, Any]:
+    """Each joint of the trunk turned by 30°, one after the other."""
+    step = seconds / (len(TAKES[name]["trunk"]) + 1)
+    turned = {}
+    for number, joint in enumerate(TAKES[name]["trunk"]):
+        keys = [[number * step, 0], [(number + 0.5) * step, 30], [(number + 1) * step, 0]]
+        turned[joint] = [{"axis": ACROSS[name][number % 2], "keys": keys}]
+    return turned
+
+
+def _of_person(figure: dict[str, Any], take: str, trunk: str, seconds: float) -> dict[str, Any]:
+    """What turns in one take of a person: the joints of that take as in one of its motions, no others."""
+    own = figure["motions"][ADULT_MOTIONS[take]]
+    if take == "trunk" and trunk == "bow":
+        own = _bow("adult", seconds)
+    return {joint: curves for joint, curves in own.items() if joint.startswith(TAKES["adult"][take])}
+
+
+def person(seed: int) -> dict[str, Any]:
+    """The figure adult:SEED with every motion that the takes need."""
+    told = [json.loads(recipe(SynthParams(figure=f"adult:{seed}", motion=m)))["figure"] for m in ADULT_MOTIONS.values()]
+    return {**told[0], "motions": {name: curves for figure in told for name, curves in figure["motions"].items()}}
 
 
 def _held(curve: dict[str, Any]) -> dict[str, Any]:
@@ -72,7 +104,7 @@ def _held(curve: dict[str, Any]) -> dict[str, Any]:
 
 def write(name: str, seed: int, trunk: str, head: float, frames: int, vertices: int, folder: Path) -> None:
     """The takes of one body as folders of meshes, each with its truth, and the truth of all beside them."""
-    figure = varied(name, seed)
+    figure = person(seed) if name == "adult" else varied(name, seed)
     figure["motions"] = motions(name, figure, trunk, frames / FPS)
     for joint in figure["joints"]:
         if joint["name"] == "head_top" and head != 1:

@@ -41,7 +41,7 @@ class SynthParams(Params):
     """What to generate, in place of a captured sequence."""
 
     figure: str = "human"
-    """A figure that ships with kinetree, or random:SEED for a random tree."""
+    """A figure that ships with kinetree, adult:SEED for a person of other proportions, or random:SEED for a random tree."""
     file: Annotated[str, PathLike()] = ""
     """YAML file of a figure of your own; goes before `figure`."""
     motion: str | None = None

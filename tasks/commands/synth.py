@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 def synth(
     figure: Annotated[
-        str, typer.Argument(help="adult, bird, human, quadruped, snake, starfish, random:SEED, or a YAML file of your own.")
+        str,
+        typer.Argument(
+            help="adult, bird, human, quadruped, snake, starfish, adult:SEED, random:SEED, or a YAML file of your own."
+        ),
     ] = "human",
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write; must be new or empty.")] = Path("synth"),
     motion: Annotated[

@@ -18,9 +18,11 @@ from kinetree.errors.small_text import json_only, small_text, small_yaml
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure, named
+from kinetree.tasks.numerics.input.synth.people import person
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 
 FIGURES = importlib.resources.files("kinetree.configs") / "figures"
+PEOPLE = importlib.resources.files("kinetree.configs") / "people"
 LARGEST = 4 * 2**20
 """Bytes of a figure's file that is read."""
 
@@ -94,14 +96,20 @@ def _description(params: SynthParams) -> dict[str, Any]:
     if params.file:
         return _read(Path(params.file))
     kind, colon, seed = params.figure.partition(":")
-    if kind == "random" and colon:
+    if kind in ("random", "adult") and colon:
         if not (seed.isascii() and seed.isdigit() and len(seed) <= 18):
             what = f"figure {reprlib.repr(params.figure)}"
-            raise FigureError(f"{what}: write random:SEED with a whole number of at most 18 digits, e.g. random:7")
-        return {"random": int(seed)}
+            raise FigureError(f"{what}: write {kind}:SEED with a whole number of at most 18 digits, e.g. {kind}:7")
+        return {"random": int(seed)} if kind == "random" else _person(int(seed), params.motion)
     known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}
     named(params.figure, known)
     return known[params.figure]
+
+
+@lru_cache(maxsize=4)
+def _person(seed: int, motion: str | None) -> dict[str, Any]:
+    """A person drawn from a seed, with one motion."""
+    return person(_read(PEOPLE / "adult.yaml"), motion, seed)
 
 
 def _read(path: Any) -> dict[str, Any]:

@@ -34,8 +34,9 @@ def test_figure_that_does_not_exist_is_refused_with_the_nearest() -> None:
     with pytest.raises(FigureError, match="human"):
         recipe(SynthParams(figure="humn"))
     for seed in ("x", "²", "-1"):
-        with pytest.raises(FigureError, match="random:SEED"):
-            recipe(SynthParams(figure=f"random:{seed}"))
+        for kind in ("random", "adult"):
+            with pytest.raises(FigureError, match=f"{kind}:SEED"):
+                recipe(SynthParams(figure=f"{kind}:{seed}"))
 
 
 def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:
@@ -114,4 +115,4 @@ def test_figure_of_ones_own_is_read_from_yaml(tmp_path: Path) -> None:
 
 def test_help_of_the_command_names_every_figure() -> None:
     declared = get_type_hints(synth, include_extras=True)["figure"].__metadata__[0].help
-    assert declared.startswith(f"{', '.join(figure_names())}, random:SEED")
+    assert declared.startswith(f"{', '.join(figure_names())}, adult:SEED, random:SEED")

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import shortest_path
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 
@@ -25,15 +25,18 @@ class ClearanceSettings(NamedTuple):
 _SETTINGS = ClearanceSettings()
 
 
-def clearance(figure: Figure, flesh: Flesh, X: Floats) -> Floats:
+def clearance(figure: Figure, flesh: Flesh, X: Floats, ignored: Flags | None = None) -> Floats:
     """Smallest gap between limbs that are far apart along the tree; negative when they overlap.
 
     X       : (frame, joint, xyz)
+    ignored : (limb, limb) pairs that are not compared, none when None
     returns : (frame,) in the figure's unit; infinite for a figure without two such limbs
     """
     s = np.linspace(0.0, 1.0, _SETTINGS.balls)
     r = flesh.table[:, np.linspace(0, flesh.table.shape[1] - 1, _SETTINGS.balls).astype(int)].ravel()
     far = _path_lengths(figure, flesh, s) > _SETTINGS.apart * (r[:, None] + r[None, :])
+    if ignored is not None:
+        far &= ~ignored.repeat(_SETTINGS.balls, axis=0).repeat(_SETTINGS.balls, axis=1)
     i, j = np.nonzero(np.triu(far, 1))
     gap = np.full(len(X), np.inf)
     if len(i):

@@ -16,7 +16,7 @@ from kinetree.errors import FigureError
 Triple = tuple[float, float, float]
 
 _JOINT_KEYS = ("name", "parent", "position", "radius", "radii", "flatten", "side", "blend")
-_CURVE_KEYS = ("axis", "amplitude", "distance", "frequency", "phase", "offset", "keys", "slides")
+_CURVE_KEYS = ("axis", "amplitude", "distance", "frequency", "phase", "offset", "keys", "slides", "period")
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,8 @@ class Joint:
 class Curve:
     """An angle in degrees (or, at the root, a shift in the figure's unit when `slides`) as a function of seconds.
 
-    offset + amplitude · sin 2π(frequency·s + phase), or the smooth curve through `keys` ((second, value), …) + offset.
+    offset + amplitude · sin 2π(frequency·s + phase), or the smooth curve through `keys` ((second, value), …) + offset. With a
+    `period` in seconds the keys repeat, and the way from one to the next is that of least jerk.
     """
 
     axis: Triple
@@ -51,6 +52,7 @@ class Curve:
     offset: float
     keys: tuple[tuple[float, float], ...]
     slides: bool
+    period: float = 0.0
 
 
 Motion = Mapping[str, tuple[Curve, ...]]
@@ -149,6 +151,9 @@ def _curve(where: str, entry: object, is_root: bool) -> Curve:
     keys = tuple((number(where, "a key's second", s), number(where, "a key", v)) for s, v in pairs)
     if "keys" in row and (len(keys) < 2 or any(b[0] <= a[0] for a, b in itertools.pairwise(keys))):
         raise FigureError(f"{where}: keys are {list(keys)}, expected two or more with increasing seconds")
+    period = number(where, "period", row["period"], low=0.0) if "period" in row else 0.0
+    if period and (not keys or keys[-1][0] - keys[0][0] >= period):
+        raise FigureError(f"{where}: period is {period:g}, expected keys that span less than it")
     reach, frequency, phase, offset = (
         number(where, key, row.get(key, default))
         for key, default in (
@@ -159,7 +164,7 @@ def _curve(where: str, entry: object, is_root: bool) -> Curve:
         )
     )
     unit = (axis[0] / length, axis[1] / length, axis[2] / length)
-    return Curve(unit, reach, frequency, phase, offset, keys, slides)
+    return Curve(unit, reach, frequency, phase, offset, keys, slides, period)
 
 
 def refuse_unknown(where: str, row: Mapping[str, Any], known: Sequence[str]) -> None:

@@ -13,7 +13,8 @@ A figure is data, so that a user can write one; this module checks the words and
         knuckle: [{axis: [1, 0, 0], amplitude: 30, frequency: 0.7, phase: 0.25}]
 
 `radii` is the profile of the limb from the parent to the joint, evenly spaced; without it the limb runs from the
-parent's radius to the joint's. `flatten` squeezes the limb to that share of its radius along `side`.
+parent's radius to the joint's. `keys: [[second, angle], …]` in place of an amplitude are postures; with a `period` they repeat.
+`flatten` squeezes the limb to that share of its radius along `side`.
 """
 
 from __future__ import annotations

@@ -26,17 +26,31 @@ _SETTINGS = TruthSettings()
 
 
 def curve_values(curve: Curve, seconds: Floats) -> Floats:
-    """Value of one curve: offset + amplitude · sin 2π(frequency·s + phase), or the monotone spline through its keys.
+    """Value of one curve: offset + amplitude · sin 2π(frequency·s + phase), or the smooth curve through its keys.
+
+    Keys without a period are joined by the monotone spline; with a period they repeat, and each way from one to the next has
+    the least jerk: 10u³ − 15u⁴ + 6u⁵, as people move (Flash and Hogan 1985).
 
     seconds : (frame,)
-    returns : (frame,) degrees, or the figure's unit when the curve slides; before the first and after the last key
-              the nearest key's value holds
+    returns : (frame,) degrees, or the figure's unit when the curve slides; before the first and after the last key of those
+              that do not repeat the nearest key's value holds
     """
     if curve.keys:
         knots = np.array(curve.keys, dtype=np.float64)
+        if curve.period:
+            return _repeated(knots, curve.period, seconds) + curve.offset
         held = np.clip(seconds, knots[0, 0], knots[-1, 0])
         return np.asarray(PchipInterpolator(knots[:, 0], knots[:, 1])(held) + curve.offset, dtype=np.float64)
     return curve.offset + curve.amplitude * np.sin(2.0 * np.pi * (curve.frequency * seconds + curve.phase))
+
+
+def _repeated(knots: Floats, period: float, seconds: Floats) -> Floats:
+    """(frame,) values of keys that repeat every `period` seconds; knots : (key, 2) seconds and values."""
+    times, values = np.append(knots[:, 0], knots[0, 0] + period), np.append(knots[:, 1], knots[0, 1])
+    at = times[0] + np.mod(seconds - times[0], period)
+    k = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(knots) - 1)
+    u = (at - times[k]) / (times[k + 1] - times[k])
+    return np.asarray(values[k] + (values[k + 1] - values[k]) * u**3 * (10.0 - 15.0 * u + 6.0 * u**2), dtype=np.float64)
 
 
 def joint_rotations(figure: Figure, motion: Motion, seconds: Floats) -> tuple[Floats, Floats]:

@@ -71,6 +71,12 @@ def test_axes_become_unit_vectors():
         (("motions", "nod", "knee", 0, "distance"), 4, "exactly one of amplitude, distance and keys"),
         (("motions", "nod", "knee"), [{"axis": [1, 0, 0], "distance": 1}], "only the root may slide"),
         (("motions", "nod", "knee"), [{"axis": [1, 0, 0], "keys": [[0, 1], [0, 2]]}], "increasing seconds"),
+        (
+            ("motions", "nod", "knee"),
+            [{"axis": [1, 0, 0], "keys": [[0, 1], [2, 2]], "period": 2}],
+            "period is 2, expected keys that span less than it",
+        ),
+        (("motions", "nod", "knee", 0, "period"), 2, "period is 2, expected keys that span less than it"),
         (("motions", "nod", "knee"), [{"axis": [1, 0, 0], "keys": [3, 4]}], "a list of pairs"),
         (("motions", "nod", "knee"), [{"axis": [1, 0, 0]}], "exactly one of amplitude, distance and keys"),
         (("fps",), 0, "fps is 0, expected more than 0"),

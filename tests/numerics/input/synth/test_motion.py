@@ -45,6 +45,16 @@ def test_key_frames_are_met_and_held_and_never_overshot():
     assert between.max() <= 9.0 + 1e-12
 
 
+def test_keys_with_a_period_repeat_and_rest_at_every_key_on_the_way_of_least_jerk():
+    curve = Curve(X, 0.0, 1.0, 0.0, 3.0, ((0.5, 0.0), (1.0, 10.0)), False, period=2.0)
+    np.testing.assert_allclose(curve_values(curve, np.array([0.5, 1.0, 2.5, 3.0, -1.0])), [3.0, 13.0, 3.0, 13.0, 13.0])
+    # 10/32 − 15/256 … at a quarter and the half of the way: 10u³ − 15u⁴ + 6u⁵
+    np.testing.assert_allclose(curve_values(curve, np.array([0.625, 0.75, 1.75])), [3.0 + 1.03515625, 8.0, 8.0])
+    for key in (0.5, 1.0):
+        around = curve_values(curve, key + np.array([-1e-3, 0.0, 1e-3]))
+        assert np.abs(np.diff(around)).max() < 1e-4
+
+
 def test_a_knee_bent_by_a_right_angle_moves_only_what_hangs_on_it():
     quarter = {"axis": [1, 0, 0], "amplitude": 0, "offset": 90}
     _, positions, _ = posed(hinge(knee=[quarter]), [0.0])
