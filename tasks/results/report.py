@@ -11,6 +11,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.alignment_figures import AlignmentFigures
+from kinetree.schemas.results.appearance import Appearance
 from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.evaluation import Evaluation
@@ -29,10 +30,12 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.verdict import VerdictSettings
 from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
 from kinetree.tasks.results.formats.names import in_words
+from kinetree.tasks.results.glb import NO_APPEARANCE
 from kinetree.tasks.results.page.alternatives import evaluation_words
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, picture, table
 from kinetree.tasks.results.page.scene import Limits, Trust, scene
+from kinetree.tasks.results.page.surface_colours import surface_colours
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.views.results import evaluation_remarks
@@ -65,6 +68,7 @@ def report(
     mesh: Mapping[int, Mesh],
     params: ReportParams,
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
+    appearance: Appearance = NO_APPEARANCE,
 ) -> Report:
     """Lays out the result of the run on one page that needs no network (ours)."""
     limits = Limits(len(excerpt.frames), params.vertices, coarse_mesh[0].limit)
@@ -75,6 +79,7 @@ def report(
     share = VerdictSettings().wrong
     trust = Trust(verdict.labels, error, share * size, share, verdict.state)
     assumed = [(in_words(joint.anatomy), joint.child, joint.share) for joint in assumed_joints.joints]
+    colours = surface_colours(appearance, len(skeleton.vertices))
     label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
     if evaluation.summary is not None:
         truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, sequence.fps, label))]
@@ -86,7 +91,7 @@ def report(
         headline=headline(verdict),
         faults=faults(verdict),
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
-        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed),
+        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours),
         sections=[
             Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints)),
             Section("structure", "Parts, tree and angles", structure),

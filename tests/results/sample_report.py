@@ -42,13 +42,15 @@ from kinetree.tasks.results.verdict import verdict
 UP = UpDirection(up="y", confidence=1.0)
 
 
-def trusted(assumed: tuple[tuple[str, int, float], ...] = ()) -> Scene:
+def trusted(assumed: tuple[tuple[str, int, float], ...] = (), colours: npt.NDArray[np.uint8] | None = None) -> Scene:
     """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint."""
     joints, vertices = len(spider().names), len(spider().vertices)
     body = spider(confidence=np.tile(np.linspace(0.9, 0.1, joints), (12, 1)))
     error = {frame: np.linspace(0, 1, vertices) for frame in body.frames}
     labels = ("trunk", "left shoulder", *body.names[2:])
-    return playing(body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)), assumed=assumed)
+    return playing(
+        body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)), assumed=assumed, colours=colours
+    )
 
 
 def playing(
@@ -57,6 +59,7 @@ def playing(
     anew: bool = False,
     trust: Trust | None = None,
     assumed: tuple[tuple[str, int, float], ...] = (),
+    colours: npt.NDArray[np.uint8] | None = None,
 ) -> Scene:
     """The spider playing."""
     arguments, chosen = artifacts(skeleton, anew=anew), limits or Limits()
@@ -64,7 +67,7 @@ def playing(
     shown = {body.frames[t]: arguments["mesh"][body.frames[t]] for t in evenly_spread(len(body.frames), chosen.frames)}
     inputs = coarse_meshes(shown, arguments["projection"], chosen.input_vertices)
     leaves, intervals = arguments["leaves"], arguments["intervals"]
-    return scene(body, arguments["alignment"], inputs, leaves, intervals, chosen, trust=trust, assumed=assumed)
+    return scene(body, arguments["alignment"], inputs, leaves, intervals, chosen, trust=trust, assumed=assumed, colours=colours)
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:

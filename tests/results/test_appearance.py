@@ -23,7 +23,9 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.input.frames.read import mesh_digest, packed_frames
 from kinetree.tasks.input.mesh import mesh
 from kinetree.tasks.results.appearance import appearance
+from kinetree.tasks.results.formats.colours import linear, srgb
 from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.page.surface_colours import surface_colours
 
 UP = UpDirection(up="y", confidence=1.0)
 FILES = {"frame.obj": None, "skin.mtl": MTL.encode(), "skin.png": png()}
@@ -148,3 +150,13 @@ def test_blender_has_the_texture_and_its_coordinates(tmp_path: Path):
     np.testing.assert_allclose(place, truth, atol=1e-4 * np.ptp(truth))
     uv = np.array(told["uv"][0]).reshape(-1, 3, 2)
     np.testing.assert_allclose(uv, corner_uv(body.vertices, body.faces), atol=1e-5)
+
+
+def test_page_has_the_colour_of_the_texture_at_every_vertex(tmp_path: Path):
+    found, body = shown(write(tmp_path))
+    colours = surface_colours(found, len(body.vertices))
+    assert colours is not None
+    assert colours.shape == (len(body.vertices), 3)
+    tinted = srgb(linear(np.array([200, 30, 30], np.uint8)) * np.array(found.materials[0].colour[:3]))
+    assert np.abs(colours.astype(int) - tinted).max() <= 1
+    assert surface_colours(Appearance.none(), 5) is None

@@ -1,5 +1,6 @@
 """The appearance of one frame's file on the cleaned mesh, whose seams are welded (ours)."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -55,6 +56,36 @@ def seamed(found: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None
         colour=copies[:, split:],
         material=found.material[face].astype(np.int32),
     )
+
+
+def vertex_colours(found: Seamed, base: Floats, picture: Sequence[Floats | None]) -> Floats:
+    """Colour of each vertex of the cleaned mesh, the mean over its copies and their faces (glTF 2.0, Sec. 3.9.2).
+
+    A copy has the product of its own colour, that of the material, and the pixel of the picture that is nearest to its texture
+    coordinates, which repeat.
+
+    base    : (material, 3) linear
+    picture : of each material, (row, column, 3) linear, the upper row first; None where it has none
+    returns : (vertex, 3) linear; NaN where a vertex is of no face
+    """
+    vertex = found.vertex[found.faces]
+    total, count = np.zeros((int(found.vertex.max()) + 1, 3)), np.zeros(int(found.vertex.max()) + 1)
+    for k, texels in enumerate(picture):
+        of_material = found.material == k
+        copies = found.faces[of_material].ravel()
+        colour = np.tile(base[k], (len(copies), 1))
+        if found.colour.shape[1]:
+            colour *= found.colour[copies]
+        if texels is not None and found.uv.shape[1]:
+            rows, columns = texels.shape[:2]
+            u, v = np.nan_to_num(found.uv[copies] % 1.0).T
+            colour *= texels[
+                np.minimum((v * rows).astype(np.int64), rows - 1), np.minimum((u * columns).astype(np.int64), columns - 1)
+            ]
+        np.add.at(total, vertex[of_material].ravel(), colour)
+        np.add.at(count, vertex[of_material].ravel(), 1.0)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / count[:, None])
 
 
 def _key(F: Ints, n: int) -> Ints:

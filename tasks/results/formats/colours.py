@@ -59,6 +59,16 @@ def linear(srgb: NDArray[np.uint8]) -> Floats:
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
+def srgb(light: Floats) -> NDArray[np.uint8]:
+    """Colours (sRGB) of linear light, which `linear` undoes.
+
+    light   : (…,) 0 to 1; what lies outside is clipped
+    returns : (…,) 0 to 255
+    """
+    c = np.clip(light, 0.0, 1.0)
+    return np.rint(255.0 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055)).astype(np.uint8)
+
+
 def _rgb(hexadecimal: str) -> tuple[int, ...]:
     """Three numbers from 0 to 255 of a colour such as #0072B2."""
     return tuple(bytes.fromhex(hexadecimal[1:]))

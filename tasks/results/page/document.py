@@ -86,6 +86,7 @@ def document(page: Page) -> str:
             f'<option value="{i["at"]}">{n}: frames {i["begin"]}–{i["end"]}</option>'
             for n, i in enumerate(page.scene.description["intervals"])
         ),
+        "colours": '<option value="input">the input’s own</option>' if "colours" in page.scene.description["arrays"] else "",
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
         "sections": _chapters(first) + _folded("Method details", details) + _folded("What ran", sections[-1:]),
         "scene": as_script(page.scene.description),

@@ -88,10 +88,12 @@ class ReportPlayer extends Player {
     const [none, faded] = [new THREE.Color(scene.not_rigid), new THREE.Color(FADED)];
     const doubt = scene.joints.map((_, j) => this.shade(1 - arrays.confidence[this.at * joints + j] / 255));
     const shades = [...Array(256).keys()].map((n) => this.shade(n / 255));
+    const [own, rgb] = [new THREE.Color(), surface === this.input ? arrays.input_colours : arrays.colours];
     for (let i = 0; i < count; i++) {
       const label = labels[begin + i];
       let colour = label < 0 ? none : parts[label % parts.length];
       if (this.colour === "error") colour = surface === this.input ? faded : shades[arrays.error[this.at * this.rig.count + i]];
+      if (this.colour === "input") colour = own.setHex((rgb[3 * (begin + i)] << 16) | (rgb[3 * (begin + i) + 1] << 8) | rgb[3 * (begin + i) + 2]);
       if (this.colour === "confidence") colour = label < 0 ? none : doubt[label];
       if (this.isolated && this.selected !== null && label !== this.selected) colour = faded;
       colour.toArray(colours.array, 3 * i);

@@ -73,6 +73,7 @@ def scene(
     axes: Floats | None = None,
     trust: Trust | None = None,
     assumed: Sequence[tuple[str, int, float]] = (),
+    colours: NDArray[np.uint8] | None = None,
 ) -> Scene:
     """The moving body, reduced to what a page can hold.
 
@@ -84,6 +85,7 @@ def scene(
     axes       : directions of the view, as `view` gives them; None for those of these meshes
     trust      : makes the skinned mesh, its error and the confidence of joints part of the scene
     assumed    : name of each joint that was not found, the joint at the outer end of its bone, and its share of the bone
+    colours    : (vertex, rgb) of the input at every vertex of the reference mesh
     """
     frames = [frame for frame in skeleton.frames if frame in inputs]
     selected_frames = np.array([skeleton.frames.index(frame) for frame in frames])
@@ -111,6 +113,9 @@ def scene(
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
     if trust is not None:
         arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
+    if colours is not None:
+        arrays["colours"] = colours[selected]
+        arrays["input_colours"] = np.concatenate([_carried(colours, skeleton, m) for m in shown])
     layout, block = packed(arrays)
     description = {
         **_tree(skeleton, skeleton.names if trust is None else trust.labels),
@@ -174,6 +179,14 @@ def _label(skeleton: Skeleton, mesh: CoarseMesh) -> Ints:
     label = np.full(len(known), -1, np.int64)
     label[known] = skeleton.label[skeleton.faces[mesh.reference_face[known], mesh.reference_corner[known]]]
     return label
+
+
+def _carried(colours: NDArray[np.uint8], skeleton: Skeleton, mesh: CoarseMesh) -> NDArray[np.uint8]:
+    """(vertex, rgb) colour of the point of the reference mesh that every vertex of a coarse mesh belongs to; grey for none."""
+    known = mesh.reference_face >= 0
+    out = np.full((len(known), 3), 128, np.uint8)
+    out[known] = colours[skeleton.faces[mesh.reference_face[known], mesh.reference_corner[known]]]
+    return out
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], str]:

@@ -66,7 +66,7 @@ function describe(player) {
   const { joints } = scene;
   const named = (state) => joints.filter((_, j) => arrays.state[at * joints.length + j] === state).map((joint) => joint.label).join(", ");
   const modeWords = byId("mode").selectedOptions[0].textContent;
-  const colourWords = { parts: "a colour for every part", error: "coloured by the distance to the input", confidence: "coloured by confidence", plain: "without colours" }[colour];
+  const colourWords = { parts: "a colour for every part", error: "coloured by the distance to the input", confidence: "coloured by confidence", input: "in the colours of the input", plain: "without colours" }[colour];
   const skeleton = player.skeleton.visible ? `, and its skeleton of ${joints.filter((j) => j.kind === "joint").length} joints under ${joints[0].label}` : "";
   const words = [`The body at ${frameCaption(scene, at)}, one of ${scene.frames.length} frames: ${mode === "sides" ? "" : "the "}${modeWords}, ${colourWords}${skeleton}.`];
   for (const [state, word] of [[2, "Wrong"], [1, "Uncertain"]]) if (named(state)) words.push(`${word}: ${named(state)}.`);

@@ -7,7 +7,7 @@ from textured import MTL, corner_uv, obj, png
 from kinetree.tasks.numerics.input.formats import mesh_of
 from kinetree.tasks.numerics.input.mesh import clean
 from kinetree.tasks.numerics.input.surface_appearance import surface_appearance
-from kinetree.tasks.numerics.results.appearance import seamed
+from kinetree.tasks.numerics.results.appearance import Seamed, seamed, vertex_colours
 
 
 def read(V, F, uv):
@@ -43,3 +43,21 @@ def test_face_that_the_file_does_not_have_leaves_no_appearance():
     other = cleaned.F.copy()
     other[0] = (other[0, 0], other[0, 1], (other[0, 2] + 7) % len(cleaned.V))
     assert seamed(found, cleaned.vertex_map, other) is None
+
+
+def test_vertex_has_the_mean_of_what_its_faces_show_there():
+    found = Seamed(
+        vertex=np.array([0, 0, 1, 2, 4]),
+        faces=np.array([[0, 2, 3], [1, 3, 2], [1, 4, 3]]),
+        uv=np.array([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [1.1, -0.9], [0.1, 0.9]]),
+        colour=np.array([[1, 1, 1], [1, 1, 1], [0.5, 1, 1], [1, 1, 1], [1, 1, 1]], float),
+        material=np.array([0, 0, 1]),
+    )
+    picture = np.array([[[1, 0, 0], [0, 1, 0]], [[0, 0, 1], [1, 1, 1]]], float)
+    colours = vertex_colours(found, np.array([[0.5, 0.5, 0.5], [0.2, 0.4, 0.8]]), [picture, None])
+    upper_left, upper_right = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
+    np.testing.assert_allclose(colours[0], (upper_left + upper_right + [0.2, 0.4, 0.8]) / 3)
+    np.testing.assert_allclose(colours[1], [0.25, 0.5, 0.5])
+    np.testing.assert_allclose(colours[2], (2 * upper_left + [0.2, 0.4, 0.8]) / 3)  # coordinates repeat
+    assert np.isnan(colours[3]).all()
+    np.testing.assert_allclose(colours[4], [0.2, 0.4, 0.8])

@@ -266,3 +266,27 @@ def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_pa
     assert shown[0] != shown[1]
     assert "Assumed" not in words[0]
     assert "Assumed, not found: left elbow." in words[1]
+
+
+def test_colours_of_the_input_are_shown_on_rig_and_input_where_there_are_any(browser: Any, tmp_path: Path) -> None:
+    blue = np.tile(np.array([20, 40, 230], np.uint8), (len(spider().vertices), 1))
+    offered = []
+    for colours in (None, blue):
+        path = tmp_path / "report.html"
+        path.write_bytes(views.page(Report(text=np.frombuffer(page(scene=trusted(colours=colours)).encode(), np.uint8)), RAN))
+        tab = browser.new_page(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
+        tab.goto(path.as_uri())
+        tab.wait_for_selector("body[data-ready=yes]")
+        offered.append(tab.locator("#colour option[value=input]").count())
+        if colours is not None:
+            tab.select_option("#colour", "input")
+            tab.click("#see-skeleton")
+            for mode in ("rig", "aligned", "input"):
+                tab.select_option("#mode", mode)
+                shot = np.asarray(Image.open(io.BytesIO(tab.locator("#stage").screenshot())).convert("RGB"), int)
+                strong = shot[np.ptp(shot, axis=2) > 80]  # the body, not the stage
+                assert len(strong) > 1000
+                assert (strong[:, 2] > strong[:, 0] + 60).mean() > 0.98
+            assert "in the colours of the input" in tab.get_attribute("#stage", "aria-label")
+        tab.close()
+    assert offered == [0, 1]
