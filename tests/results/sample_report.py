@@ -14,6 +14,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.appearance import Appearance
 from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
@@ -135,6 +136,7 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     }
     all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error"))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
+    all_of_it["appearance"] = changes.get("appearance", Appearance.none())
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))
     return {argument.name: all_of_it[argument.name] for argument in report.arguments}
 

@@ -82,7 +82,7 @@ class ReportPlayer extends Player {
   paint(surface, labels, begin, count) {
     const { arrays, scene } = this;
     const joints = scene.joints.length;
-    const colours = surface.geometry.attributes.color;
+    const colours = surface.mesh.geometry.attributes.color;
     if (!colours) return;
     const parts = scene.palette.map((c) => new THREE.Color(c));
     const [none, faded] = [new THREE.Color(scene.not_rigid), new THREE.Color(FADED)];
@@ -115,6 +115,11 @@ class ReportPlayer extends Player {
     this.skin();
     this.input.mesh.visible = ["input", "overlay", "sides"].includes(this.mode);
     super.show(at);
+  }
+
+  showInput() {
+    super.showInput();
+    this.painted = null; // its mesh is new
   }
 
   showSkeleton() {
