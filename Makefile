@@ -45,7 +45,7 @@ fuzz: $(READY)
 
 # every sequence with a known skeleton in the folder DATA, generated ones too, in one table
 accuracy: $(READY)
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/accuracy.py $(if $(DATA),--data $(DATA)) --markdown
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/accuracy.py $(if $(DATA),--data $(DATA)) $(if $(SEEDS),--seeds $(SEEDS)) --markdown
 
 # the oldest versions that pyproject.toml permits, in an environment of their own; tests of what leans on other packages
 lowest:

@@ -1,23 +1,31 @@
-"""Every sequence whose truth is known, each preset, in one table: joints found, errors, spurious ones, rigging measures, parts.
+"""Every sequence whose truth is known, each preset, in one table: joints, ends of bones, duplicates and false joints apart.
 
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-    python benchmarks/accuracy.py [--data FOLDER] [--only NAME ...] [--presets default paper-2014] [--seeds 10]
+    python benchmarks/accuracy.py [--data FOLDER] [--only NAME ...] [--presets default paper-2014] [--seeds 0-9]
+                                  [--kinds human adult quadruped random] [--motions NAME ...] [--fps 12 30]
                                   [--frames 36] [--vertices 6000] [--work FOLDER] [--json FILE] [--markdown]
                                   [--fixed] [--set TASK.NAME=VALUE ...]
 
 FOLDER holds NAME.npz beside NAME.truth.json, and NAME-body.npz with skinning weights where the true parts are known; a
-NAME-body.npz with a truth of its own is a sequence too. Generated ones are humans, adults, quadrupeds and random trees, so many
-seeds of each: seed 0 is the figure as it ships, the others have other proportions, thicknesses and amplitudes; motions take
-turns. --seeds 0 leaves them out; --fixed gives each one connectivity. --work keeps the stores, so that
-a second call computes only what changed. --set changes every run: geodesics.sum=bases spares the preset paper-2014 Eq. 1 over
-all vertices, half a minute a frame, for what differs by 0.2 % from it.
+NAME-body.npz with a truth of its own is a sequence too. Generated ones are of four kinds, one body a seed: adults are the
+people adult:SEED with motions as recordings have them; humans and quadrupeds are the figures that ship, seed 0 as they are and
+the others with other proportions, thicknesses and amplitudes; random trees differ in everything. Motions take turns with the
+seeds; --motions says which of the adults'. --seeds is a range (0-9), a list (0,4,7) or none. --fps samples each adult's motion
+at these rates, over the time that --frames frames cover at the first. --fixed gives each one connectivity. --work keeps the
+stores, so that a second call computes only what changed. --set changes every run: geodesics.sum=bases spares the preset
+paper-2014 Eq. 1 over all vertices, half a minute a frame, for what differs by 0.2 % from it.
 
-A run that fails is not left out: it counts as a body with one joint in its middle. The last lines average each group.
+A run that fails is not left out: it counts as a body with one joint in its middle. The lines after the bodies average groups.
 Columns: found of scored joints within 5 % and, of these, within 2.5 % of the height; mean error of those found in % of the
 height; spurious joints; CD-J2J, J2B and B2B in hundredths of the unit cube, joint IoU, precision and recall in %, all
 against the joints that move (RigNet 2020); tree edit distance; adjusted Rand index and mean IoU of the parts; R_detection,
 and E_dist in % of the height (2009); jitter of the error as a share of the true second differences; seconds a frame of what
 this call computed.
+
+A second table has the spread: per group mean ± standard deviation over the bodies of the share of joints found, their error,
+the share of ends of bones found, their error, and a body's number of second joints beside a branching joint that is found
+(several bones hang on it), of second joints beside another one, and of false ones, which have no true joint near them. A third
+table counts the lost joints by name, both sides together.
 """
 
 import argparse
@@ -43,6 +51,9 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.truth import synthetic, truth
 
+PEOPLE = ("walk", "dance", "look", "reach", "run", "squat", "greet", "throw")
+"""Motions of the figures adult:SEED, which take turns."""
+KINDS = ("human", "adult", "quadruped", "random")
 MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet")}
 HEADS = (
     "found", "close", "% err", "spur", "J2J", "J2B", "B2B", "IoU", "P", "R", "edit", "ARI", "mIoU", "R_det", "E_dist", "jit",
@@ -69,17 +80,47 @@ def recorded(folder: Path) -> Iterator[Case]:
             yield Case(name, name, {"source": {"input": str((folder / f"{name}.npz").absolute())}, "truth": told})
 
 
-def generated(seeds: int, frames: int, vertices: int, connectivity: str, work: Path) -> Iterator[Case]:
-    """Humans, adults, quadrupeds and random trees."""
-    every = {"frames": frames, "vertices": vertices, "connectivity": connectivity}
-    for seed in range(seeds):
-        for figure, motions in MOTIONS.items():
-            path = work / f"{figure}-{seed}.yaml"
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(yaml.safe_dump(varied(figure, seed)))
-            synth = {"file": str(path), "motion": motions[seed % len(motions)], "seed": seed, **every}
-            yield Case(f"{figure}-{seed}", figure, {"source": {"synth": synth}})
-        yield Case(f"random-{seed}", "random", {"source": {"synth": {"figure": f"random:{seed}", "seed": seed, **every}}})
+@dataclass(frozen=True)
+class Bodies:
+    """Which bodies are generated."""
+
+    kinds: Sequence[str] = KINDS
+    seeds: Sequence[int] = ()
+    motions: Sequence[str] = PEOPLE
+    rates: Sequence[float] = ()
+    frames: int = 36
+    vertices: int = 6000
+    connectivity: str = "new"
+
+
+def generated(bodies: Bodies, work: Path) -> Iterator[Case]:
+    """One body of every kind for every seed, adults at every rate."""
+    every = {"vertices": bodies.vertices, "connectivity": bodies.connectivity}
+    for seed in bodies.seeds:
+        for kind in bodies.kinds:
+            told = {"seed": seed, "frames": bodies.frames, **every}
+            if kind == "adult":
+                yield from _adults(seed, bodies, told)
+            elif kind == "random":
+                yield Case(f"random-{seed}", kind, {"source": {"synth": {"figure": f"random:{seed}", **told}}})
+            else:
+                path = work / f"{kind}-{seed}.yaml"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(yaml.safe_dump(varied(kind, seed)))
+                synth = {"file": str(path), "motion": MOTIONS[kind][seed % len(MOTIONS[kind])], **told}
+                yield Case(f"{kind}-{seed}", kind, {"source": {"synth": synth}})
+
+
+def _adults(seed: int, bodies: Bodies, told: Mapping[str, Any]) -> Iterator[Case]:
+    """One person at every rate, over the same time."""
+    motion = bodies.motions[seed % len(bodies.motions)]
+    synth = {**told, "figure": f"adult:{seed}", "motion": motion}
+    if not bodies.rates:
+        yield Case(f"adult-{seed}-{motion}", "adult", {"source": {"synth": synth}})
+    for rate in bodies.rates:
+        frames = 1 + round((bodies.frames - 1) * rate / bodies.rates[0])
+        block = {"source": {"synth": {**synth, "fps": rate, "frames": frames}}}
+        yield Case(f"adult-{seed}-{motion}-{rate:g}", "adult" if len(bodies.rates) == 1 else f"adult at {rate:g}", block)
 
 
 def varied(figure: str, seed: int) -> dict[str, Any]:
@@ -154,6 +195,65 @@ def cells(s: Summary, seconds: float) -> dict[str, float | None]:
     return dict(zip(HEADS, values, strict=True))
 
 
+def spread(rows: Sequence[Mapping[str, Any]], markdown: bool = False) -> Iterator[str]:
+    """Lines of the second table: every group of bodies with mean ± standard deviation over them."""
+    heads = ("bodies", "joints found", "% err", "ends found", "% err ends", "2nd at branch", "2nd elsewhere", "false")
+    yield _row(["group", *heads], markdown)
+    if markdown:
+        yield "|" + "---|" * (len(heads) + 1)
+    for group in dict.fromkeys((row["group"], row["preset"]) for row in rows):
+        mine = [row["summary"] for row in rows if (row["group"], row["preset"]) == group]
+        figures: tuple[tuple[list[float], str], ...] = (
+            ([100.0 * s["found"] / s["scored"] for s in mine if s["scored"]], ".1f"),
+            ([s["percent"] for s in mine if s["percent"] is not None], ".2f"),
+            ([100.0 * s["tips_found"] / s["tips"] for s in mine if s["tips"]], ".1f"),
+            ([s["tip_percent"] for s in mine if s["tip_percent"] is not None], ".2f"),
+            *(([float(s[key]) for s in mine], ".2f") for key in ("branch_duplicates", "duplicates", "false")),
+        )
+        cells_ = [_mean_and_deviation(values, form) for values, form in figures]
+        yield _row([" ".join(group) if group[1] != "default" else group[0], str(len(mine)), *cells_], markdown)
+
+
+def _mean_and_deviation(values: Sequence[float], form: str) -> str:
+    """Mean ± standard deviation of a sample; the mean alone of one."""
+    if not values:
+        return "–"
+    deviation = f" ± {np.std(values, ddof=1):{form}}" if len(values) > 1 else ""
+    return f"{np.mean(values):{form}}{deviation}"
+
+
+def lost_joints(rows: Sequence[Mapping[str, Any]], markdown: bool = False) -> Iterator[str]:
+    """Lines of the third table: how often each joint is lost, of how often it turns; most often first."""
+    yield _row(["group", "lost joints: lost of scored"], markdown)
+    if markdown:
+        yield "|---|---|"
+    for group in dict.fromkeys((row["group"], row["preset"]) for row in rows):
+        counts: dict[str, list[int]] = {}
+        for row in rows:
+            if (row["group"], row["preset"]) == group:
+                for name, found in row["joints"].items():
+                    count = counts.setdefault(name.removesuffix("_l").removesuffix("_r"), [0, 0])
+                    count[0] += found.count(False)
+                    count[1] += len(found)
+        told = [f"{name} {k} of {n}" for name, (k, n) in sorted(counts.items(), key=lambda c: -c[1][0] / c[1][1]) if k]
+        yield _row([" ".join(group) if group[1] != "default" else group[0], ", ".join(told) or "none"], markdown)
+
+
+def _row(cells_: Sequence[str], markdown: bool) -> str:
+    """Cells side by side."""
+    if markdown:
+        return "| " + " | ".join(cells_) + " |"
+    return "  ".join(f"{cell:16s}" for cell in cells_)
+
+
+def seeds_of(text: str) -> list[int]:
+    """0-9, 0,4,7 or none."""
+    if text == "none":
+        return []
+    first, dash, last = text.partition("-")
+    return list(range(int(first), int(last) + 1)) if dash else [int(part) for part in text.split(",")]
+
+
 def line(name: str, preset: str, told: Mapping[str, float | None], counts: str = "", markdown: bool = False) -> str:
     """A row of text; joints found as counts where there are some."""
     row = [f"{name:16s}", f"{preset:10s}"]
@@ -172,8 +272,19 @@ def averaged(rows: list[dict[str, float | None]]) -> dict[str, float | None]:
     return {head: float(np.mean(values)) if values else None for head, values in told.items()}
 
 
-def table(cases: list[Case], presets: list[str], work: Path, markdown: bool, sets: Sequence[str] = ()) -> list[dict[str, Any]]:
-    """Prints the table line by line as it comes, then the averages of each group; returns all rows."""
+def _told(told: Evaluation) -> dict[str, Any]:
+    """What a body's row says of single joints."""
+    found: dict[str, list[bool]] = {}
+    for joint in told.joints:
+        if joint.scored:
+            found.setdefault(joint.name, []).append(joint.found is not None)
+    return {"joints": found, "spurious": list(told.spurious), "duplicate_of": list(told.duplicate_of)}
+
+
+def table(
+    cases: list[Case], presets: list[str], work: Path, markdown: bool, sets: Sequence[str] = (), file: Path | None = None
+) -> list[dict[str, Any]]:
+    """Prints the table line by line as it comes, then the averages of each group; returns all rows, also in `file`."""
     blank: dict[str, float | None] = dict.fromkeys(HEADS)
     title = line("sequence", "preset", blank, markdown=markdown)
     for head in HEADS:
@@ -187,9 +298,10 @@ def table(cases: list[Case], presets: list[str], work: Path, markdown: bool, set
             row = cells(s, seconds)
             counts = f"{s.found}/{s.scored} {s.close}/{s.scored}"
             print(line(case.name, preset, row, counts, markdown), *([f"FAILED {why}"] if why else []), flush=True)
-            lost = [joint.name for joint in told.joints if joint.scored and joint.found is None]
-            rows.append({"name": case.name, "group": case.group, "preset": preset, "failed": why, "missing": lost,
-                         "spurious": list(told.spurious), "cells": row, "summary": s.model_dump(mode="json")})  # fmt: skip
+            of_case = {"name": case.name, "group": case.group, "preset": preset, "failed": why, "cells": row}
+            rows.append({**of_case, **_told(told), "summary": s.model_dump(mode="json")})
+            if file is not None:
+                file.write_text(json.dumps(rows, indent=1, ensure_ascii=False))
     for group in dict.fromkeys(case.group for case in cases):
         for preset in presets:
             mine = [row for row in rows if row["group"] == group and row["preset"] == preset]
@@ -197,6 +309,8 @@ def table(cases: list[Case], presets: list[str], work: Path, markdown: bool, set
                 failed = sum(bool(row["failed"]) for row in mine)
                 name = f"{group} ×{len(mine)}" + (f", {failed} failed" if failed else "")
                 print(line(name, preset, averaged([row["cells"] for row in mine]), markdown=markdown))
+    for lines in (spread(rows, markdown), lost_joints(rows, markdown)):
+        print("", *lines, sep="\n", flush=True)
     return rows
 
 
@@ -205,7 +319,10 @@ def main() -> None:
     parser.add_argument("--data", type=Path)
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--presets", nargs="*", default=["default", "paper-2014"])
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=seeds_of, default=[0, 1, 2], help="0-9, or 0,4,7, or none")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--motions", nargs="+", choices=PEOPLE, default=list(PEOPLE), help="of adults, in turn")
+    parser.add_argument("--fps", nargs="*", type=float, default=[], help="of adults")
     parser.add_argument("--frames", type=int, default=36)
     parser.add_argument("--vertices", type=int, default=6000)
     parser.add_argument("--fixed", action="store_true")
@@ -218,11 +335,10 @@ def main() -> None:
         work = (args.work or Path(scratch)).absolute()
         cases = [*recorded(args.data)] if args.data else []
         kind = "fixed" if args.fixed else "new"
-        cases += generated(args.seeds, args.frames, args.vertices, kind, work / "figures")
+        told = (args.kinds, args.seeds, args.motions, args.fps, args.frames, args.vertices, kind)
+        cases += generated(Bodies(*told), work / "figures")
         wanted = [case for case in cases if not args.only or any(case.name.startswith(name) for name in args.only)]
-        rows = table(wanted, args.presets, work, args.markdown, args.sets)
-    if args.json:
-        args.json.write_text(json.dumps(rows, indent=1, ensure_ascii=False))
+        table(wanted, args.presets, work, args.markdown, args.sets, args.json)
 
 
 if __name__ == "__main__":

@@ -92,12 +92,20 @@ class Summary(Params):
     """Scored joints not found."""
     spurious: int = 0
     """Joints of the result that are no true joint."""
+    branch_duplicates: int = 0
+    """Spurious joints within the limit of a true joint that is found already and that several bones hang on."""
+    duplicates: int = 0
+    """Spurious joints within the limit of another true joint that is found already."""
+    false: int = 0
+    """Spurious joints with no such joint near them."""
     excused: int = 0
     """Joints of the result that are a true joint which is not scored."""
     tips: int = 0
     """True tips of limbs."""
     tips_found: int = 0
     """True tips found."""
+    tip_percent: float | None = None
+    """Mean distance of the tips that are found, % of the height; None where none is."""
     error: float | None = None
     """Mean distance of the scored joints that are found, length; None where none is."""
     percent: float | None = None
@@ -149,6 +157,8 @@ class Evaluation(Artifact):
     """All true joints and tips."""
     spurious: tuple[str, ...]
     """Names of the joints of the result that are no true joint."""
+    duplicate_of: tuple[str, ...] = ()
+    """Per spurious joint, the true joint beside it that is found already; empty where it stands for itself."""
     summary: Summary | None
     """Counts and means; None where there is no truth."""
     error: Annotated[Floats, Array("float64", FRAME, JOINT, unit="length", finite=False)]

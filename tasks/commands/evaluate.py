@@ -82,7 +82,9 @@ def _print(evaluation: "Evaluation") -> None:
     for line in remarks(evaluation):
         out.print(printable(line), markup=False)
     if evaluation.spurious:
-        out.print(printable(f"spurious: {', '.join(evaluation.spurious)}"), markup=False)
+        of = zip(evaluation.spurious, evaluation.duplicate_of, strict=True)
+        told = ", ".join(f"{name} (a second {true})" if true else name for name, true in of)
+        out.print(printable(f"spurious: {told}"), markup=False)
     if evaluation.summary is not None:
         for line in _lines(evaluation.summary):
             out.print(printable(line), markup=False)
@@ -101,7 +103,9 @@ def _cells(row: "JointScore") -> list[str]:
 def _lines(s: "Summary") -> list[str]:
     """The summary in words."""
     lines = [
-        f"found closely: {s.close} of {s.scored}; tips found: {s.tips_found} of {s.tips}; found but not scored: {s.excused}",
+        f"found closely: {s.close} of {s.scored}; found but not scored: {s.excused}",
+        f"tips found: {s.tips_found} of {s.tips}" + ("" if s.tip_percent is None else f", mean error {s.tip_percent:.2f} %"),
+        f"spurious: {s.branch_duplicates} beside a joint of several bones, {s.duplicates} beside another, {s.false} elsewhere",
         f"R_detection {s.detection:.2f}, E_dist {s.distance:.4f} of the height (2009, Eqs. 7–9)",
         f"tree edit distance {s.tree_edit}, of the shape alone {s.tree_shape}",
     ]

@@ -15,7 +15,9 @@ from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.evaluation import Chamfer, Evaluation, EvaluationParams, JointScore, Overlap, PartScore, Summary
 from kinetree.schemas.results.truth import Truth
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.results.evaluation import body, rignet
+from kinetree.tasks.numerics.results.evaluation.duplicates import branching, duplicated
 from kinetree.tasks.numerics.results.evaluation.jitter import jitter
 from kinetree.tasks.numerics.results.evaluation.lengths import length_variation
 from kinetree.tasks.numerics.results.evaluation.matching import Matching, joint_errors, matching
@@ -41,6 +43,7 @@ class Comparison(NamedTuple):
     X, Y                  : (frame, joint, xyz) joints of the skeleton, and joints of the truth as its file has them
     height                : of the body
     tree, matching, error : of the true joints after splitting: each carries one rigid group
+    duplicated            : (spurious,) the true joint that each spurious joint is a second one of, −1 where it is none
     """
 
     skeleton: Skeleton
@@ -51,6 +54,7 @@ class Comparison(NamedTuple):
     tree: SplitTree
     matching: Matching
     error: Floats
+    duplicated: Ints
 
     @property
     def is_tip(self) -> Bools:
@@ -91,6 +95,7 @@ def evaluation(
         height=compared.height,
         joints=tuple(_joint_score(compared, j) for j in range(len(compared.tree.parents))),
         spurious=tuple(skeleton.names[i] for i in compared.matching.spurious),
+        duplicate_of=tuple(truth.names[compared.tree.origin[j]] if j >= 0 else "" for j in compared.duplicated),
         summary=_summary(compared, params).model_copy(update=of_frames_and_parts),
         error=compared.error,
         detection=rate,
@@ -113,7 +118,8 @@ def _comparison(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> C
     X, Z = skeleton.positions, Y[:, tree.origin]
     limit = params.found * height
     pairs = matching(X, Z, allowed, scored=tree.scored | is_tip, can_be_spurious=is_joint, limit=limit)
-    return Comparison(skeleton, truth, X, Y, height, tree, pairs, joint_errors(X, Z, pairs.partner))
+    second = duplicated(X, Z, pairs.spurious, ~is_tip & (pairs.partner >= 0), limit)
+    return Comparison(skeleton, truth, X, Y, height, tree, pairs, joint_errors(X, Z, pairs.partner), second)
 
 
 def _check_frames(skeleton: Skeleton, truth: Truth) -> None:
@@ -170,6 +176,8 @@ def _summary(c: Comparison, params: EvaluationParams) -> Summary:
     of_error, of_truth = jitter(c.X[:, partner[hit]], c.Y[:, c.tree.origin[hit]], c.skeleton.frames)
     is_joint = np.array([kind == "joint" for kind in c.skeleton.kinds])
     excused = np.flatnonzero(~scored & ~c.is_tip & (partner >= 0))
+    branches = branching(c.truth.parents)[c.tree.origin[c.duplicated[c.duplicated >= 0]]]
+    of_tips = c.error[:, c.is_tip & (partner >= 0)]
     edit, shape = _tree_distances(c)
     return Summary(
         scored=int(scored.sum()),
@@ -177,9 +185,13 @@ def _summary(c: Comparison, params: EvaluationParams) -> Summary:
         close=int((mean <= params.close * c.height).sum()),
         missing=int((scored & ~hit).sum()),
         spurious=len(c.matching.spurious),
+        branch_duplicates=int(branches.sum()),
+        duplicates=int((c.duplicated >= 0).sum() - branches.sum()),
+        false=int((c.duplicated < 0).sum()),
         excused=int(is_joint[partner[excused]].sum()),
         tips=int(c.is_tip.sum()),
-        tips_found=int((c.is_tip & (partner >= 0)).sum()),
+        tips_found=of_tips.shape[1],
+        tip_percent=float(of_tips.mean() / c.height * 100.0) if of_tips.size else None,
         error=float(mean.mean()) if hit.any() else None,
         percent=float(mean.mean() / c.height * 100.0) if hit.any() else None,
         deviation=float(c.error[:, hit].std(axis=0).mean()) if hit.any() else None,

@@ -129,6 +129,27 @@ def test_joint_too_many_is_spurious_and_one_edit_of_the_tree():
     assert s.overlap_moving.precision < 100.0
 
 
+def test_spurious_joints_are_duplicates_at_branches_duplicates_elsewhere_or_false():
+    knee, hips = PERFECT.names.index("knee_l"), PERFECT.names.index("hips")
+    for joint, by, counts, true in (
+        (knee, 0.02, (0, 1, 0), "knee_l"),
+        (hips, 0.02, (1, 0, 0), "hips"),
+        (knee, 0.2, (0, 0, 1), ""),
+    ):
+        result = evaluated(skeleton=more("extra", "joint", joint, joint, [0, by * HEIGHT, 0]))
+        s = result.summary
+        assert (s.branch_duplicates, s.duplicates, s.false) == counts
+        assert (result.spurious, result.duplicate_of) == (("extra",), (true,))
+    assert evaluated().summary.tip_percent == pytest.approx(0.0)
+
+
+def test_error_of_the_ends_of_bones_is_apart_from_that_of_joints():
+    tip = PERFECT.kinds.index("leaf")
+    s = evaluated(skeleton=moved(tip, [0, 0, 0.02 * HEIGHT])).summary
+    assert s.percent == 0.0
+    assert s.tip_percent == pytest.approx(2.0 / s.tips_found)
+
+
 def test_joint_that_hangs_on_the_wrong_part_is_two_edits():
     elsewhere = PERFECT.names.index("knee_l"), PERFECT.names.index("elbow_r")
     parents = list(PERFECT.parents)
