@@ -44,7 +44,8 @@ def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | 
     if names.topology != "human" or names.front_confidence < CERTAIN_FRONT:
         return None
     s = skeleton
-    found = joint_angles(names.anatomy, s.parents, np.array(s.rest), np.array(s.rotation), np.array(names.front), _upwards(up))
+    moving = np.array(s.rest), np.array(s.positions), np.array(s.rotation)
+    found = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up))
     shown = dict(zip(names.anatomy, s.names, strict=True))
     titles = [f"{shown[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in found)]
     return series(s, titles, np.column_stack([np.empty((len(s.frames), 0)), *found.values()]))

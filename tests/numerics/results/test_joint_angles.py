@@ -28,7 +28,16 @@ def angles(turns, rest=None, turned=None):
         before = np.eye(3) if p < 0 else R[1, p]
         R[0, j], R[1, j] = np.eye(3), before @ own
     Q = np.eye(3) if turned is None else turned
-    return joint_angles(NAMES, PARENTS, rest @ Q.T, Q @ R @ Q.T, Q @ FRONT, Q @ UP)
+    return joint_angles(NAMES, PARENTS, rest @ Q.T, places(PARENTS, rest, R) @ Q.T, Q @ R @ Q.T, Q @ FRONT, Q @ UP)
+
+
+def places(parents, rest, R):
+    """(frame, joint, xyz) where rotations bring the joints of a tree whose root stays."""
+    X = np.tile(rest, (len(R), 1, 1))
+    for j, p in enumerate(parents):
+        if p >= 0:
+            X[:, j] = X[:, p] + np.einsum("tyx,x->ty", R[:, p], rest[j] - rest[p])
+    return X
 
 
 @pytest.mark.parametrize("side", ["l", "r"])
@@ -93,5 +102,23 @@ def test_reference_pose_with_a_raised_knee_has_its_angles_already():
 
 
 def test_joint_whose_segment_has_no_end_has_no_angles():
-    found = joint_angles(["pelvis", "hip_r"], [-1, 0], np.zeros((2, 3)), np.tile(np.eye(3), (1, 2, 1, 1)), FRONT, UP)
+    found = joint_angles(
+        ["pelvis", "hip_r"], [-1, 0], np.zeros((2, 3)), np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1)), FRONT, UP
+    )
     assert found == {}
+
+
+def test_hips_are_measured_from_the_bony_pelvis_and_not_from_a_surface_that_follows_the_thighs():
+    names, parents = [*NAMES, "chest"], [*PARENTS, 0]
+    rest = np.vstack([standing(), [0, 12, 0]])
+    flexed = Rotation.from_euler("z", 60, degrees=True).as_matrix()
+    R = np.tile(np.eye(3), (2, len(names), 1, 1))
+    for name in ("hip_l", "knee_l", "ankle_l", "hip_r", "knee_r", "ankle_r"):
+        R[1, names.index(name)] = flexed
+    X = places(parents, rest, R)
+    R[1, 0] = Rotation.from_euler("z", 20, degrees=True).as_matrix()  # a third of the thighs' turning, in place
+    found = joint_angles(names, parents, rest, X, R, FRONT, UP)
+    for side in "lr":
+        np.testing.assert_allclose(found[f"hip_{side}.flexion"], [0, 60], atol=1e-9)
+    leaning = joint_angles(NAMES, PARENTS, rest[:-1], X[:, :-1], R[:, :-1], FRONT, UP)  # no spine: the surface is all there is
+    np.testing.assert_allclose(leaning["hip_r.flexion"], [0, 40], atol=1e-9)
