@@ -26,13 +26,10 @@ class Owned:
     @staticmethod
     def of(folder: Path) -> "Owned":
         """What is known of a folder, which need not exist."""
-        place = _place(folder)
-        try:
-            listed = json.loads(place.get(MARKER) or b"")["files"]
-            return Owned(folder, {str(name) for name in listed})
-        except (ValueError, KeyError, TypeError):
-            is_output = (place.get(SAVED) or b"").startswith(HEAD.encode())
-            return Owned(folder, None if is_output else set())
+        listed = _listed(folder)
+        if listed is None and not (_place(folder).get(SAVED) or b"").startswith(HEAD.encode()):
+            listed = set()
+        return Owned(folder, listed)
 
     def claim(self, paths: Iterable[str]) -> None:
         """Lists what a run is about to write, so that the next run knows it again even if this one is killed.
@@ -47,17 +44,27 @@ class Owned:
         was_lost = self.names is None
         if self.names is None:
             self.names = {name for name in _place(self.folder).names("") if not name.startswith(".")}
+        else:
+            self.names |= _listed(self.folder) or set()  # another run into this folder may be under way
         new = sorted(wanted - self.names)
         foreign = [name for name in new if (self.folder / name).exists() or (self.folder / name).is_symlink()]
         if foreign:
-            more = f" and {', '.join(foreign[1:])}" if foreign[1:] else ""
+            named = " and ".join([*filter(None, [", ".join(foreign[:-1])]), foreign[-1]])
             raise StoreError(
-                f"output folder {self.folder}: no run has left {foreign[0]}{more} there, and a run would replace what is;"
+                f"output folder {self.folder}: no run has left {named} there, and a run would replace what is;"
                 " move it away or name another folder with --output; what is computed is kept"
             )
         if new or was_lost:
             self.names.update(new)
             _place(self.folder).put(MARKER, json.dumps({"files": sorted(self.names)}, indent=1).encode())
+
+
+def _listed(folder: Path) -> set[str] | None:
+    """What the folder's list has now; None where there is none that can be read."""
+    try:
+        return {str(name) for name in json.loads(_place(folder).get(MARKER) or b"")["files"]}
+    except (ValueError, KeyError, TypeError):
+        return None
 
 
 def _place(folder: Path) -> Folder:

@@ -36,6 +36,23 @@ def test_files_are_listed_before_they_are_written(tmp_path):
     Owned.of(tmp_path).claim(["a.json"])
 
 
+def test_two_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
+    first, second = Owned.of(tmp_path), Owned.of(tmp_path)
+    first.claim(["a.json"])
+    (tmp_path / "a.json").write_text("of the first run")
+    second.claim(["a.json", "b.json"])
+    (tmp_path / "b.json").write_text("of the second run")
+    first.claim(["b.json"])
+    assert Owned.of(tmp_path).names == {"a.json", "b.json"}
+
+
+def test_what_is_foreign_is_named_as_a_list(tmp_path):
+    for name in ("a.json", "b.json", "c.json"):
+        (tmp_path / name).write_text("mine")
+    with pytest.raises(StoreError, match=r"no run has left a\.json, b\.json and c\.json there"):
+        Owned.of(tmp_path).claim(["a.json", "b.json", "c.json"])
+
+
 def test_output_folder_that_was_copied_without_its_list_is_ours(toys):
     toys.write(1)
     first = toys.pipeline()
