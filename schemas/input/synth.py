@@ -64,5 +64,11 @@ class SynthParams(Params):
     """Radius of a hole as a share of the height."""
     connectivity: Literal["new", "fixed"] = "new"
     """new: every frame is surfaced by itself; fixed: one skinned mesh."""
+    paint: Literal["none", "patterned", "plain"] = "none"
+    """Colours of the skin: clothes with patterns, or plain ones."""
+    illumination: float = Field(default=0.0, ge=0, le=1)
+    """How far exposure and the direction of light change from frame to frame, 0 to 1; needs `paint`."""
+    grain: float = Field(default=0.01, ge=0, lt=0.5)
+    """Standard deviation of noise of every vertex's colour, of its range; needs `paint`."""
     seed: int = Field(default=0, ge=0)
     """Of everything random."""

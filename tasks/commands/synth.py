@@ -35,6 +35,13 @@ def synth(
     holes: Annotated[int, typer.Option("--holes", min=0, help="Holes in every frame.")] = 0,
     hole_size: Annotated[float, typer.Option("--hole-size", help="Radius of a hole as a share of the height.")] = 0.03,
     fixed: Annotated[bool, typer.Option("--fixed", help="One skinned mesh: fixed connectivity.")] = False,
+    paint: Annotated[
+        str, typer.Option("--paint", metavar="CLOTHES", help="Colours of the skin: patterned, plain or none.")
+    ] = "none",
+    illumination: Annotated[
+        float, typer.Option("--illumination", help="How far painted frames differ in exposure and light, 0 to 1.")
+    ] = 0.0,
+    grain: Annotated[float, typer.Option("--grain", help="Noise of painted colours, rms as a share of their range.")] = 0.01,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of everything random.")] = 0,
     volumes: Annotated[bool, typer.Option("--volumes", help="Also write a grid of signed distances for every frame.")] = False,
     silhouettes: Annotated[
@@ -59,6 +66,9 @@ def synth(
         holes=holes,
         hole_size=hole_size,
         connectivity="fixed" if fixed else "new",
+        paint=paint,
+        illumination=illumination,
+        grain=grain,
         seed=seed,
     )
     write_sequence(params, output, volumes=volumes, cameras=silhouettes)

@@ -18,6 +18,7 @@ from kinetree.errors.small_text import json_only, small_text, small_yaml
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure, named
+from kinetree.tasks.numerics.input.synth.paint import Paint
 from kinetree.tasks.numerics.input.synth.people import person
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 
@@ -25,6 +26,8 @@ FIGURES = importlib.resources.files("kinetree.configs") / "figures"
 PEOPLE = importlib.resources.files("kinetree.configs") / "people"
 LARGEST = 4 * 2**20
 """Bytes of a figure's file that is read."""
+_PAINTED = ("paint", "illumination", "grain")
+"""What a recipe says of colours."""
 
 
 def recipe(params: SynthParams) -> str:
@@ -32,7 +35,8 @@ def recipe(params: SynthParams) -> str:
 
     raises : FigureError where the figure, the motion or a limb is not known
     """
-    options = params.model_dump(mode="json", exclude={"figure", "file"})
+    unpainted = params.paint == "none"  # the recipe of a body without colours says nothing of them
+    options = params.model_dump(mode="json", exclude={"figure", "file", *(_PAINTED if unpainted else ())})
     written = json.dumps({"figure": _description(params), **options}, sort_keys=True)
     body(written)
     return written
@@ -41,10 +45,20 @@ def recipe(params: SynthParams) -> str:
 @lru_cache(maxsize=4)
 def body(written: str) -> Body:
     """The body that a recipe describes, posed in every frame and not surfaced yet."""
-    options: dict[str, Any] = json.loads(written)
+    options: dict[str, Any] = {k: v for k, v in json.loads(written).items() if k not in _PAINTED}
     figure = options.pop("figure")
     tree = random_tree(figure["random"]) if "random" in figure else Figure.of(figure)
     return Body.of(tree, **options)
+
+
+@lru_cache(maxsize=4)
+def paint(written: str) -> Paint | None:
+    """The colours of the body that a recipe describes; None where it is not painted."""
+    told: dict[str, Any] = json.loads(written)
+    if "paint" not in told:
+        return None
+    skinned = {**told, "connectivity": "fixed", "noise": 0.0, "holes": 0, "dropped": []}
+    return Paint(body(written), body(json.dumps(skinned, sort_keys=True)), told["paint"], told["illumination"], told["grain"])
 
 
 def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, cameras: int = 0) -> None:
@@ -56,11 +70,12 @@ def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, 
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"{folder}: not an empty folder; name a new one, so that no frame of another sequence stays in it")
-    generated = body(recipe(params))
+    written = recipe(params)
+    generated = body(written)
     beside = folder.absolute().with_name(f".{folder.name}.{os.getpid()}")
     try:
         beside.mkdir(parents=True)
-        _write_frames(generated, beside, volumes, cameras)
+        _write_frames(generated, paint(written), beside, volumes, cameras)
         (beside / "truth.json").write_text(json.dumps(generated.truth()))
         if folder.is_dir():
             folder.rmdir()
@@ -71,14 +86,15 @@ def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, 
         shutil.rmtree(beside, ignore_errors=True)
 
 
-def _write_frames(generated: Body, folder: Path, volumes: bool, cameras: int) -> None:
+def _write_frames(generated: Body, colours: Paint | None, folder: Path, volumes: bool, cameras: int) -> None:
     """Writes every frame, with volumes and silhouettes where wanted."""
     ring = generated.cameras(cameras) if cameras else None
     if ring is not None:
         np.savez_compressed(folder / "cameras.npz", **{f.name: getattr(ring, f.name) for f in fields(ring)})
     for t in range(len(generated.X)):
         V, F = generated.frame(t)
-        ply = trimesh.Trimesh(V, F, process=False).export(file_type="ply", vertex_normal=False)
+        shown = None if colours is None else np.round(255.0 * colours.colours(t, V, F)).astype(np.uint8)
+        ply = trimesh.Trimesh(V, F, vertex_colors=shown, process=False).export(file_type="ply", vertex_normal=False)
         (folder / f"frame_{t:04d}.ply").write_bytes(ply)
         if volumes:
             np.savez_compressed(folder / f"volume_{t:04d}.npz", **generated.volume(t)._asdict())

@@ -7,16 +7,23 @@ import numpy as np
 
 from kinetree.schemas.array import Ints
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.pose import Pose
 from kinetree.schemas.registration.recovery import Recovery
+from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
+from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration import deformation, roll_candidates, tracking
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
+from kinetree.tasks.numerics.registration.colour_term import FrameColour
 from kinetree.tasks.numerics.registration.correspondence import Target
+
+NO_COLOUR, NO_REFERENCE_COLOUR, NO_AGREEMENT = VertexColour.none(), ReferenceColour.none(), ColourAgreement.none()
+"""Of a frame, of the reference mesh and of all frames where files have no colours."""
 
 
 def pose(stored: Pose) -> deformation.Pose:
@@ -69,9 +76,17 @@ def stored_tracking(
     )
 
 
-def target(mesh: Mesh, stored: DeformationGraph) -> Target:
-    """A frame prepared to be fitted."""
-    return Target.of(np.array(mesh.vertices), mesh.faces, stored.size)
+def target(
+    mesh: Mesh,
+    stored: DeformationGraph,
+    colour: VertexColour = NO_COLOUR,
+    body: ReferenceColour | ColourAgreement = NO_REFERENCE_COLOUR,
+) -> Target:
+    """A frame prepared to be fitted, with colours where both the frame and the body have them."""
+    if not len(colour.colour) or not len(body.colour):
+        return Target.of(np.array(mesh.vertices), mesh.faces, stored.size)
+    shown = FrameColour(colour.colour / 255.0, body.colour / 255.0)
+    return Target.of(np.array(mesh.vertices), mesh.faces, stored.size, colour=shown)
 
 
 def graph(stored: DeformationGraph) -> numerics.DeformationGraph:

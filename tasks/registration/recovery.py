@@ -1,6 +1,7 @@
 """Lost limbs found again: frames in which tracking failed, tracked again from the frame beyond them."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -9,11 +10,13 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
+from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import recovery as numerics
-from kinetree.tasks.registration.pose import fit_settings, graph, pose, target
+from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, target
 
 
 @task(among=Sequence)
@@ -22,6 +25,8 @@ def recovery(
     take_entries: TakeEntries,
     tracking: Mapping[int, Tracking],
     mesh: Mapping[int, Mesh],
+    vertex_colour: Mapping[int, VertexColour] = MappingProxyType({}),
+    reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Recovery:
     """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
     frames = tuple(tracking)
@@ -32,7 +37,7 @@ def recovery(
         graph(deformation_graph),
         uncovered,
         lambda at: pose(tracking[frames[at]]),
-        lambda at: target(mesh[frames[at]], deformation_graph),
+        lambda at: target(mesh[frames[at]], deformation_graph, vertex_colour.get(frames[at], NO_COLOUR), reference_colour),
         frames.index(deformation_graph.frame),
         fit_settings(tracking[deformation_graph.frame].fitting),
         takes=spans,

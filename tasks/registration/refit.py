@@ -5,6 +5,7 @@ import numpy as np
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Index, Ints
 from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
@@ -12,10 +13,11 @@ from kinetree.schemas.registration.roll import Roll
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration.deformation import fit
 from kinetree.tasks.numerics.registration.roll import frame_rolls
 from kinetree.tasks.numerics.registration.stiffness import refit_pass
-from kinetree.tasks.registration.pose import graph, rolled_pose, target, tracked_pose
+from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, graph, rolled_pose, target, tracked_pose
 
 
 @task(over="pass/frame", along=DeformationGraph)
@@ -29,6 +31,8 @@ def refit(
     roll: Roll,
     previous: Refit | None,
     index: Index,
+    vertex_colour: VertexColour = NO_COLOUR,
+    colour_agreement: ColourAgreement = NO_AGREEMENT,
 ) -> Refit:
     """Fits a frame again from its pose of the pass before, stiff where the sequence never bent (ours)."""
     number, frame = index
@@ -38,7 +42,8 @@ def refit(
     else:
         start = rolled_pose(nodes, previous, candidates, stiffness, _chosen(roll, candidates, frame))
     if frame != deformation_graph.frame:  # the reference stays what it is
-        start = fit(nodes, start, target(mesh, deformation_graph), refit_pass(number).fit, roll.stiffness.copy()).pose
+        surface = target(mesh, deformation_graph, vertex_colour, colour_agreement)
+        start = fit(nodes, start, surface, refit_pass(number).fit, roll.stiffness.copy()).pose
     return Refit(rotation=start.rotation, translation=start.translation)
 
 

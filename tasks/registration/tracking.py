@@ -6,12 +6,14 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.array import Index
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
+from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
-from kinetree.tasks.registration.pose import fit_settings, graph, pose, stored_tracking, target
+from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, stored_tracking, target
 
 
 @task(over="frame", along=TrackingOrder)
@@ -22,6 +24,8 @@ def tracking(
     previous: Tracking | None,
     params: TrackingParams,
     index: Index,
+    vertex_colour: VertexColour = NO_COLOUR,
+    reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Tracking:
     """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
@@ -33,7 +37,8 @@ def tracking(
     is_entry = index[0] in take_entries.frames
     if is_entry:  # another take: the body stands elsewhere, and how it moved before says nothing
         earlier, last = None, _moved(last, take_entries, take_entries.frames.index(index[0]))
-    fitted = numerics.tracking(body, earlier, last, target(mesh, deformation_graph), fit_settings(params), usual=previous.usual)
+    frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
+    fitted = numerics.tracking(body, earlier, last, frame, fit_settings(params), usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
     return stored_tracking(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)

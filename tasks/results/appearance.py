@@ -1,8 +1,6 @@
 """Texture coordinates, textures and colours of the input, for the files that show the reference mesh."""
 
-import zipfile
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
@@ -12,11 +10,9 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.appearance import Appearance, SurfaceMaterial
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.input.frames.read import name, surface
+from kinetree.tasks.input.frames.appearance import appearance_of, has_own_file
+from kinetree.tasks.input.frames.read import name
 from kinetree.tasks.numerics.input.gltf_appearance import SurfaceAppearance
-from kinetree.tasks.numerics.input.pictures import MOST_BYTES
-from kinetree.tasks.numerics.input.surface_appearance import surface_appearance
-from kinetree.tasks.numerics.input.zipped import Zipped
 from kinetree.tasks.numerics.results.appearance import Seamed, seamed
 
 
@@ -28,11 +24,11 @@ def appearance(skeleton: Skeleton, source: Mapping[int, Source], mesh: Mapping[i
     beside it is not brought from there.
     """
     frame = next((t for t in sorted(mesh) if _is_reference(mesh[t], skeleton)), None)
-    if frame is None or source[frame].kind not in ("file", "animated") or "://" in source[frame].path:
+    if frame is None or not has_own_file(source[frame]):
         return Appearance.none()
     told = name(source[frame])
     try:
-        found = _read(source[frame])
+        found = appearance_of(source[frame])
         held = None if found is None else seamed(found, np.array(mesh[frame].vertex_of_input), np.array(mesh[frame].faces))
     except Exception as error:  # readers of other people's files raise anything
         reason = str(error) if isinstance(error, KinetreeError) else f"cannot be read ({type(error).__name__})"
@@ -45,33 +41,6 @@ def _is_reference(mesh: Mesh, skeleton: Skeleton) -> bool:
     """Whether the reference mesh is that of a frame."""
     same = mesh.faces.shape == skeleton.faces.shape and mesh.vertices.shape == skeleton.vertices.shape
     return bool(same and (mesh.faces == skeleton.faces).all() and (mesh.vertices == skeleton.vertices).all())
-
-
-def _read(frame: Source) -> SurfaceAppearance | None:
-    """What the file of a frame looks like; None where it has no appearance, or its format's is not read."""
-    path = Path(frame.path)
-    _, F = surface(frame)
-    if path.suffix.lower() != ".zip":
-        is_one = frame.kind == "animated"
-        return surface_appearance(path.read_bytes(), path.suffix, F, lambda named: _beside(path.parent, named), is_one)
-    member = Zipped(path).names[frame.part or 0]
-    with zipfile.ZipFile(path) as archive:
-        raw = archive.read(str(member))
-        return surface_appearance(raw, member.suffix, F, lambda named: _packed(archive, str(member.parent / named)))
-
-
-def _packed(archive: zipfile.ZipFile, named: str) -> bytes | None:
-    """The bytes of a member of a zip; None where there is none, or it is too large."""
-    info = archive.NameToInfo.get(named)
-    return archive.read(info) if info is not None and info.file_size <= MOST_BYTES else None
-
-
-def _beside(folder: Path, named: str) -> bytes | None:
-    """The bytes of a file in a folder or below it; None where there is none, it is too large or it leads out of the folder."""
-    path = (folder / named.replace("\\", "/")).resolve()
-    if not path.is_relative_to(folder.resolve()) or not path.is_file() or path.stat().st_size > MOST_BYTES:
-        return None
-    return path.read_bytes()
 
 
 def _appearance(

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinetree.pipeline.views import remarks_of
 from kinetree.schemas.array import Bools
+from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.registration.reference import Reference
 
@@ -31,6 +32,17 @@ def reference_remarks(reference: Reference) -> tuple[str, ...]:
     elif reference.loop >= CONTACT_LOOP:
         lines.append(f"the surface of frame {reference.frame} has a loop, such as a hand on the hip makes; {joined}")
     return tuple(lines)
+
+
+@remarks_of(ColourAgreement)
+def colour_agreement_remarks(agreement: ColourAgreement) -> tuple[str, ...]:
+    """Whether colours hold the alignment; nothing where there are none."""
+    if not agreement.frames:
+        return ()
+    share = f"those of the reference explain {np.median(agreement.share):.0%} of a frame's in the median"
+    if agreement.is_used:
+        return (f"colours of the frames agree and hold the alignment: {share}",)
+    return (f"colours of the frames do not agree and are not used: {share}",)
 
 
 @remarks_of(FrameConfidence)

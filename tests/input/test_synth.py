@@ -116,3 +116,12 @@ def test_figure_of_ones_own_is_read_from_yaml(tmp_path: Path) -> None:
 def test_help_of_the_command_names_every_figure() -> None:
     declared = get_type_hints(synth, include_extras=True)["figure"].__metadata__[0].help
     assert declared.startswith(f"{', '.join(figure_names())}, adult:SEED, random:SEED")
+
+
+def test_painted_sequence_has_colours_in_its_files(tmp_path: Path) -> None:
+    painted = SMALL.model_copy(update={"paint": "patterned"})
+    write_sequence(painted, tmp_path / "walk")
+    read = trimesh.load_mesh(tmp_path / "walk" / "frame_0001.ply", process=False)
+    V, _ = body(recipe(SMALL)).frame(1)
+    assert np.allclose(read.vertices, V, atol=1e-3)  # paint moves nothing
+    assert np.ptp(read.visual.vertex_colors[:, :3], axis=0).min() > 50

@@ -47,6 +47,16 @@ def surface(frame_source: Source) -> tuple[Floats, Ints]:
     return V, F
 
 
+def painted(frame_source: Source) -> Floats | None:
+    """(vertex, rgb) sRGB from 0 to 1 of one frame of a synthetic sequence; None where it is not painted."""
+    from kinetree.tasks.input.synth import body, paint
+
+    colours = paint(frame_source.recipe)
+    if colours is None or frame_source.part is None:
+        return None
+    return colours.colours(frame_source.part, *body(frame_source.recipe).frame(frame_source.part))
+
+
 def silhouettes(frame_source: Source) -> tuple[Calibration, list[Flags | None]]:
     """The cameras, and the mask of each in one frame, None where it has none.
 

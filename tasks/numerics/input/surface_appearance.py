@@ -4,6 +4,7 @@ Geometry is read by `formats`, `animated` and `zipped`, which know nothing of ap
 Sources: Wavefront OBJ and MTL (Bourke's notes); Turk 1994 for PLY with the properties of MeshLab; glTF 2.0, Sec. 3.7.2 and 3.9.
 """
 
+import re
 from collections.abc import Callable
 from io import BytesIO
 from typing import Any, NamedTuple
@@ -42,6 +43,26 @@ def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, mo
     if found is not None and (found.faces.shape != faces.shape or (found.faces != faces).any()):
         raise MeshError("its texture coordinates and colours are of other faces than its surface")
     return found
+
+
+def names_appearance(raw: bytes, suffix: str) -> bool:
+    """Whether a file promises colours or textures, seen without reading its rows; True where that cannot be seen.
+
+    suffix : of the format
+    """
+    if suffix.lower() == ".ply":
+        header = raw[:_MOST_HEADER].partition(b"end_header")[0].lower()
+        return b" red" in header or b"texturefile" in header
+    if suffix.lower() == ".obj":
+        first = re.search(rb"^v[ \t]+(.*)$", raw, re.MULTILINE)
+        return b"mtllib" in raw or (first is not None and len(first.group(1).split()) == 6)
+    if suffix.lower() == ".glb":
+        return b"COLOR_0" in raw or b"TEXCOORD_0" in raw
+    return suffix.lower() == ".drc"
+
+
+_MOST_HEADER = 65536
+"""Bytes of a PLY in which its header ends."""
 
 
 class _Corners(NamedTuple):

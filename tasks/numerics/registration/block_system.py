@@ -42,12 +42,8 @@ def add_data(
     vertex   : (row,) the model's vertex of each row
     residual : (row, xyz) · normal : (row, xyz) · plane, point : (row,) weights
     """
-    A = np.empty((4, 3, 3))
-    q = np.empty((4, 3))
-    M = np.empty((3, 3))
-    f = np.empty(3)
+    A, q, M, f = np.empty((4, 3, 3)), np.empty((4, 3)), np.empty((3, 3)), np.empty(3)
     for i in range(len(vertex)):
-        v = vertex[i]
         along = 0.0
         for x in range(3):
             along += normal[i, x] * residual[i, x]
@@ -56,35 +52,59 @@ def add_data(
             for y in range(3):
                 M[x, y] = plane[i] * normal[i, x] * normal[i, y]
             M[x, x] += point[i]
-        for k in range(4):
-            j, w = bound[v, k], weight[v, k]
-            d0, d1, d2 = rest[v, 0] - g[j, 0], rest[v, 1] - g[j, 1], rest[v, 2] - g[j, 2]
-            for x in range(3):
-                q[k, x] = R[j, x, 0] * d0 + R[j, x, 1] * d1 + R[j, x, 2] * d2
-            for y in range(3):
-                A[k, 0, y] = q[k, 1] * M[2, y] - q[k, 2] * M[1, y]
-                A[k, 1, y] = q[k, 2] * M[0, y] - q[k, 0] * M[2, y]
-                A[k, 2, y] = q[k, 0] * M[1, y] - q[k, 1] * M[0, y]
-            b[j, 0] -= w * (q[k, 1] * f[2] - q[k, 2] * f[1])
-            b[j, 1] -= w * (q[k, 2] * f[0] - q[k, 0] * f[2])
-            b[j, 2] -= w * (q[k, 0] * f[1] - q[k, 1] * f[0])
-            for x in range(3):
-                b[j, 3 + x] -= w * f[x]
-        pair = 0
-        for k in range(4):
-            j = bound[v, k]
-            _add(D[j], A[k], A[k], q[k], M, weight[v, k] * weight[v, k])
-            for m in range(k + 1, 4):
-                w = weight[v, k] * weight[v, m]
-                block = of_vertex[v, pair]
-                pair += 1
-                if w == 0.0:
-                    continue
-                if block >= 0:
-                    _add(B[block], A[k], A[m], q[m], M, w)
-                else:
-                    _add(D[j], A[k], A[m], q[m], M, w)
-                    _add(D[j], A[m], A[k], q[k], M, w)
+        _add_row(D, B, b, rest, bound, weight, of_vertex, R, g, vertex[i], f, M, A, q)
+
+
+@compiled
+def add_forms(
+    D: Floats, B: Floats, b: Floats, rest: Floats, bound: Ints, weight: Floats, of_vertex: Ints,
+    R: Floats, g: Floats, vertex: Ints, form: Floats, slope: Floats,
+) -> None:  # fmt: skip
+    """Add rows with any quadratic form of r = x(v) − y to the blocks; see `add_data` for the other arguments.
+
+    form  : (row, 3, 3) half of the second derivative by x(v), symmetric
+    slope : (row, xyz) half of the first
+    """
+    A, q = np.empty((4, 3, 3)), np.empty((4, 3))
+    for i in range(len(vertex)):
+        _add_row(D, B, b, rest, bound, weight, of_vertex, R, g, vertex[i], slope[i], form[i], A, q)
+
+
+@compiled
+def _add_row(
+    D: Floats, B: Floats, b: Floats, rest: Floats, bound: Ints, weight: Floats, of_vertex: Ints,
+    R: Floats, g: Floats, v: int, f: Floats, M: Floats, A: Floats, q: Floats,
+) -> None:  # fmt: skip
+    """One row with form M (3, 3) and slope f (xyz); A (4, 3, 3) and q (4, 3) are room to work in."""
+    for k in range(4):
+        j, w = bound[v, k], weight[v, k]
+        d0, d1, d2 = rest[v, 0] - g[j, 0], rest[v, 1] - g[j, 1], rest[v, 2] - g[j, 2]
+        for x in range(3):
+            q[k, x] = R[j, x, 0] * d0 + R[j, x, 1] * d1 + R[j, x, 2] * d2
+        for y in range(3):
+            A[k, 0, y] = q[k, 1] * M[2, y] - q[k, 2] * M[1, y]
+            A[k, 1, y] = q[k, 2] * M[0, y] - q[k, 0] * M[2, y]
+            A[k, 2, y] = q[k, 0] * M[1, y] - q[k, 1] * M[0, y]
+        b[j, 0] -= w * (q[k, 1] * f[2] - q[k, 2] * f[1])
+        b[j, 1] -= w * (q[k, 2] * f[0] - q[k, 0] * f[2])
+        b[j, 2] -= w * (q[k, 0] * f[1] - q[k, 1] * f[0])
+        for x in range(3):
+            b[j, 3 + x] -= w * f[x]
+    pair = 0
+    for k in range(4):
+        j = bound[v, k]
+        _add(D[j], A[k], A[k], q[k], M, weight[v, k] * weight[v, k])
+        for m in range(k + 1, 4):
+            w = weight[v, k] * weight[v, m]
+            block = of_vertex[v, pair]
+            pair += 1
+            if w == 0.0:
+                continue
+            if block >= 0:
+                _add(B[block], A[k], A[m], q[m], M, w)
+            else:
+                _add(D[j], A[k], A[m], q[m], M, w)
+                _add(D[j], A[m], A[k], q[k], M, w)
 
 
 @compiled

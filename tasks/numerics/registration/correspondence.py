@@ -17,6 +17,7 @@ from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.edge_rings import averaged_normals, edge_rings
 from kinetree.tasks.numerics.geometry.morton_curve import spread_along_curve
+from kinetree.tasks.numerics.registration.colour_term import FrameColour
 
 _STEPS = 64
 """Safety bound: a match moves over at most so many edges."""
@@ -46,6 +47,7 @@ class Target:
     tree   : search tree of (x, βn) of the samples
     beta   : β, mesh unit
     size   : √area of the reference body, mesh unit
+    colour : of the frame and of the body, None where one of them has none
     """
 
     V: Floats
@@ -57,6 +59,7 @@ class Target:
     tree: cKDTree
     beta: float
     size: float
+    colour: FrameColour | None = None
 
     @classmethod
     def of(
@@ -66,12 +69,15 @@ class Target:
         size: float,
         samples: int = 6000,
         settings: CorrespondenceSettings | None = None,
+        *,
+        colour: FrameColour | None = None,
     ) -> "Target":
         """Prepare a frame (ours).
 
         V, F    : (vertex, xyz) mesh unit · (face, corner) clean
         size    : √area of the reference body, mesh unit; not of this frame, which may lack a limb
         samples : vertices that stand for the surface, all if there are fewer
+        colour  : of the frame and of the body, None where one of them has none
         returns : Target
         """
         settings = settings or CorrespondenceSettings()
@@ -81,7 +87,7 @@ class Target:
         N = averaged_normals(V, faces, start, ring, count)
         sample = spread_along_curve(V, samples)
         tree = cKDTree(np.hstack([V[sample], beta * N[sample]]), balanced_tree=False)
-        return cls(np.ascontiguousarray(V), faces, N, start, ring, sample, tree, beta, size)
+        return cls(np.ascontiguousarray(V), faces, N, start, ring, sample, tree, beta, size, colour)
 
     def nearest(self, x: Floats, n: Floats) -> Ints:
         """The sample of the frame that is nearest to each point in (x, βn).

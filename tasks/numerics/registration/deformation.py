@@ -12,7 +12,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.registration.block_system import add_data, conjugate_gradients
+from kinetree.tasks.numerics.registration.block_system import add_data, add_forms, conjugate_gradients
+from kinetree.tasks.numerics.registration.colour_term import Compared
+from kinetree.tasks.numerics.registration.coloured_matches import agreeing_colours, coloured_matches, forms_of_matches
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, local_matches
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy
@@ -83,14 +85,23 @@ class Fitted(NamedTuple):
     energy: Floats
 
 
+class _Forms(NamedTuple):
+    """What colours add to every match: rᵀHr − 2 rᵀp + c with r = x − y."""
+
+    H: Floats
+    p: Floats
+    c: Floats
+
+
 class _Rows(NamedTuple):
-    """Matches of one step: the model's vertex, the point, the normal there and both weights."""
+    """Matches of one step: the model's vertex, the point, the normal there, both weights, and colours where they count."""
 
     vertex: Ints
     point: Floats
     normal: Floats
     plane: Floats
     nearness: Floats
+    colour: _Forms | None = None
 
 
 def at_rest(graph: DeformationGraph) -> Pose:
@@ -124,7 +135,7 @@ def fit(
     returns   : Fitted; a step that would raise the energy is halved, and left out if that does not help
     """
     s = np.ones(len(graph.edge)) if stiffness is None else stiffness
-    pose, energy, match = start, np.zeros((settings.steps, 2)), None
+    pose, energy, match, shown = start, np.zeros((settings.steps, 2)), None, None
     samples = graph.sample[:: settings.thin], target.sample[:: settings.thin]
     for i in range(settings.steps):
         share = i / max(settings.steps - 1, 1)
@@ -133,8 +144,15 @@ def fit(
             for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point_weight)
         )
         x, n = shape(graph, pose)
-        match = _matches(graph, target, samples, x, n, None if i < settings.searches else match, settings.beta * target.size)
-        rows = _rows(graph, target, samples, x, n, match, (reach * graph.size, scale * graph.size, b))
+        if shown is None:
+            last = None if i < settings.searches else match
+            match = _matches(graph, target, samples, x, n, last, settings.beta * target.size)
+        if shown is not None or i + 1 == settings.searches:
+            begun = None if shown is None else match
+            shown = agreeing_colours(graph, target, samples, match)
+            if shown is not None:
+                match = coloured_matches(graph, target, samples, x, n, begun, shown, settings.beta * target.size)
+        rows = _rows(graph, target, samples, x, n, match, (reach * graph.size, scale * graph.size, b), shown)
         pose, energy[i] = _step(graph, pose, rows, lam * s, settings.solver_steps)
     return Fitted(pose, energy / graph.size**2)
 
@@ -163,6 +181,7 @@ def _rows(
     n: Floats,
     match: _Pair,
     limits: tuple[float, float, float],
+    shown: Compared | None,
 ) -> _Rows:
     """Matches nearer than `reach`, weighted (n·m) / (1 + (distance from the plane / scale)²)²; limits: reach, scale, b.
 
@@ -178,7 +197,10 @@ def _rows(
     halfway /= np.maximum(np.linalg.norm(halfway, axis=1, keepdims=True), np.finfo(float).tiny)
     off = np.einsum("rx,rx->r", r, halfway)
     a = len(graph.node) / len(vertex) * alike / (1.0 + (off / scale) ** 2) ** 2
-    return _Rows(vertex[near], target.V[other[near]], halfway[near], a[near], b * a[near])
+    forms = None
+    if shown is not None:
+        forms = _Forms(*forms_of_matches(target, shown, vertex[near], other[near], r[near], a[near]))
+    return _Rows(vertex[near], target.V[other[near]], halfway[near], a[near], b * a[near], forms)
 
 
 def _energy(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats) -> tuple[float, Floats]:
@@ -187,7 +209,18 @@ def _energy(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats)
     r = deformed(graph.V[v], graph.bound[v], graph.weight[v], graph.g, *pose) - rows.point
     off = np.einsum("rx,rx->r", r, rows.normal)
     data = (rows.plane * off**2).sum() + (rows.nearness * np.einsum("rx,rx->r", r, r)).sum()
+    if rows.colour is not None:
+        H, p, c = rows.colour
+        data += (np.einsum("rx,rxy,ry->r", r, H, r) - 2.0 * np.einsum("rx,rx->r", r, p) + c).sum()
     return float(data) + edge_energy(graph.edge, stiffness, *pose, graph.g), r
+
+
+def _whole_forms(rows: _Rows, colour: _Forms, r: Floats) -> tuple[Floats, Floats]:
+    """(row, 3, 3) form and (row, xyz) slope at r of plane, point and colour together."""
+    H, p, _ = colour
+    n, plane = rows.normal, rows.plane[:, None]
+    M = H + plane[:, :, None] * n[:, :, None] * n[:, None, :] + rows.nearness[:, None, None] * np.eye(3)
+    return M, np.einsum("rxy,ry->rx", M, r) - p
 
 
 def _step(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats, solves: int) -> tuple[Pose, tuple[float, float]]:
@@ -196,7 +229,10 @@ def _step(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats, s
     nodes, g = len(graph.node), graph.g
     D, B, b = np.zeros((nodes, 6, 6)), np.zeros((len(graph.pair), 6, 6)), np.zeros((nodes, 6))
     body = (graph.V, graph.bound, graph.weight)
-    add_data(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, r, rows.normal, rows.plane, rows.nearness)
+    if rows.colour is None:
+        add_data(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, r, rows.normal, rows.plane, rows.nearness)
+    else:
+        add_forms(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, *_whole_forms(rows, rows.colour, r))
     add_edges(D, B, b, graph.edge, graph.of_edge, stiffness, *pose, g)
     D[:, range(6), range(6)] += _DAMPING * np.einsum("jaa->ja", D).mean(axis=0)
     inverse = np.linalg.inv(D).astype(np.float64)
