@@ -2,7 +2,8 @@
 
 A hypothesis gives limbs the roles of legs, arms, head and tail. It is judged by what hardly depends on the pose: equal lengths
 of the two of a pair, where limbs hang on the trunk, how high their ends are over the sequence. The best one counts if it is
-good enough. Front is told by toes, knees, elbows and travel, each a vote between −1 and 1; sides follow from front and up.
+good enough; where none is, a second look leaves out ears, horns and tusks. Front is told by toes, knees, elbows and travel,
+each a vote between −1 and 1; sides follow from front and up.
 """
 
 from collections.abc import Iterator, Mapping
@@ -32,6 +33,12 @@ class AnatomySettings(NamedTuple):
     """Penalty of a limb without a role, times its share of the longest one."""
     no_head: float = 0.4
     """Penalty of a person whose head is no limb."""
+    foot_height: float = 0.2
+    """Mean height above which an end is hardly a foot of an animal, share of the body's height; tails end at 0.3 and more."""
+    ear_height: float = 0.3
+    """Least mean height of the ends of ears, horns and tusks, share of the body's height: those of legs are below 0.15."""
+    ear_likeness: float = 0.2
+    """Most that the two of such a pair differ in length, share of their mean."""
     foot: float = 0.22
     """Share of a leg's length from its end within which the last joint lies that is taken for the ankle."""
     bend: float = 0.06
@@ -96,12 +103,34 @@ def anatomy(body: Motion, front: Floats | None = None, settings: AnatomySettings
     front : (xyz,) direction that the body faces in the reference pose, where somebody knows it
     """
     s = settings or AnatomySettings()
-    found = limbs(body.rest, body.parents)[: s.most_limbs]
-    best = min(_hypotheses(body, found, s), key=lambda roles: roles.penalty, default=None)
-    if best is None or best.penalty >= s.limit:
+    found = limbs(body.rest, body.parents)
+    best, ears = _best(body, found, s), list[Pair]()
+    if best is None and (ears := _ears(body, found, s)):
+        left_out = {limb.joints[0] for pair in ears for limb in pair}
+        best = _best(body, limbs(body.rest, body.parents, without=left_out), s)
+    if best is None:
         return None
-    sided = _human_sides if best.topology == "human" else _quadruped_sides
-    return sided(body, best, front, 1.0 - best.penalty / s.limit, s)
+    confidence = 1.0 - best.penalty / s.limit
+    if best.topology == "human":
+        return _human_sides(body, best, front, confidence, s)
+    return _quadruped_sides(body, best, ears, front, confidence, s)
+
+
+def _best(body: Motion, found: list[Limb], s: AnatomySettings) -> _Roles | None:
+    """The roles that fit the limbs best; None where none fit."""
+    best = min(_hypotheses(body, found[: s.most_limbs], s), key=lambda roles: roles.penalty, default=None)
+    return None if best is None or best.penalty >= s.limit else best
+
+
+def _ears(body: Motion, found: list[Limb], s: AnatomySettings) -> list[Pair]:
+    """Pairs of ends that may be ears, horns or tusks: of like length, high up, turning with the joint they hang on."""
+    tall = zip(found, _heights(body, found).tolist(), strict=True)
+    bare = [limb for limb, height in tall if len(limb.joints) == 1 and height > s.ear_height]
+    return [
+        (a, b)
+        for a, b in combinations(bare, 2)
+        if a.base == b.base and abs(a.length - b.length) < s.ear_likeness * (a.length + b.length) / 2.0
+    ]
 
 
 def _hypotheses(body: Motion, found: list[Limb], s: AnatomySettings) -> Iterator[_Roles]:
@@ -119,7 +148,9 @@ def _hypotheses(body: Motion, found: list[Limb], s: AnatomySettings) -> Iterator
                 yield _Roles("human", legs, arms, () if head is None else (head,), penalty)
             if found.index(legs[0]) > found.index(arms[0]):
                 continue  # which of the pairs is in front is decided later
-            level = common + 3.0 * float(np.mean([height[x] for x in (*legs, *arms)])) + 1.5 * _slope(body, legs, arms)
+            feet = [height[x] for x in (*legs, *arms)]
+            level = common + 3.0 * float(np.mean(feet)) + 4.0 * max(0.0, max(feet) - s.foot_height)
+            level += 1.5 * _slope(body, legs, arms)
             for ends in [pair for count in range(3) for pair in combinations(others, count)]:
                 left = [limb for limb in others if limb not in ends]
                 yield _Roles("quadruped", legs, arms, ends, level + _spare(left, found, s) + 0.1 * (2 - len(ends)))
@@ -202,24 +233,19 @@ def _human_sides(body: Motion, roles: _Roles, front: Floats | None, confidence: 
     return Anatomy("human", (legs, arms), head, None, _level(ahead, body.up), confidence, certainty)
 
 
-def _quadruped_sides(body: Motion, roles: _Roles, front: Floats | None, confidence: float, s: AnatomySettings) -> Anatomy:
-    """Front and sides of an animal: of the two ends of the trunk, the front is the one that most speaks for."""
+def _quadruped_sides(
+    body: Motion, roles: _Roles, ears: list[Pair], front: Floats | None, confidence: float, s: AnatomySettings
+) -> Anatomy:
+    """Front and sides of an animal: of the two ends of the trunk, the front is the one that most speaks for.
+
+    ears : pairs of ears, horns or tusks, which are at the front
+    """
     hind, fore = roles.legs, roles.arms
     base = hind[0].base
     ahead = _level(_in_rest(body, base, _middle(body, fore) - _middle(body, hind)), body.up)
     votes = _votes(body, (*hind, *fore), base, ahead, 0.0, s)
-    near = [
-        (
-            limb,
-            float(
-                np.mean(
-                    np.linalg.norm(_middle(body, fore) - body.X[:, limb.base], axis=1)
-                    - np.linalg.norm(_middle(body, hind) - body.X[:, limb.base], axis=1)
-                )
-            ),
-        )
-        for limb in roles.ends
-    ]
+    near = [(limb, _nearer(body, limb.base, fore, hind)) for limb in roles.ends]
+    votes += [-float(np.sign(_nearer(body, pair[0].base, fore, hind))) for pair in ears]
     before = min(near, key=lambda pair: pair[1], default=None)
     behind = max(near, key=lambda pair: pair[1], default=None)
     if before and behind and before[0] is not behind[0]:
@@ -239,6 +265,12 @@ def _quadruped_sides(body: Motion, roles: _Roles, front: Floats | None, confiden
     head = next((limb for limb, x in near if x < 0.0), None)
     tail = next((limb for limb, x in near if x >= 0.0), None)
     return Anatomy("quadruped", (sided[0], sided[1]), head, tail, ahead, confidence, certainty)
+
+
+def _nearer(body: Motion, joint: int, fore: Pair, hind: Pair) -> float:
+    """How much nearer a joint is to the one pair than to the other, mesh unit; negative where it is nearer to the first."""
+    there = [np.linalg.norm(_middle(body, pair) - body.X[:, joint], axis=1) for pair in (fore, hind)]
+    return float(np.mean(there[0] - there[1]))
 
 
 def _across(body: Motion, a: Limb, b: Limb) -> Floats:

@@ -1,5 +1,6 @@
 """The limbs of a tree of joints, whatever its root is: chains from an end to where the tree branches (ours)."""
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -28,18 +29,19 @@ class Limb(NamedTuple):
     length: float
 
 
-def limbs(rest: Floats, parents: Ints, settings: LimbSettings | None = None) -> list[Limb]:
+def limbs(rest: Floats, parents: Ints, settings: LimbSettings | None = None, without: Collection[int] = ()) -> list[Limb]:
     """All limbs, the longest first; appendages are left out  (ours).
 
     At the end of a limb the longest appendage carries on the limb, such as the toes beside a heel.
 
     rest    : (joint, xyz) mesh unit
     parents : (joint,) −1 for the root
+    without : ends that are left out
     """
     s = settings or LimbSettings()
     beside: list[set[int]] = [set() for _ in parents]
     for j, p in enumerate(parents.tolist()):
-        if p >= 0:
+        if p >= 0 and j not in without:
             beside[j].add(p)
             beside[p].add(j)
     limit = s.short * max(float(ways(rest, parents, j).max()) for j in range(len(parents)))

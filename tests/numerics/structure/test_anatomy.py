@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from walkers import moved, shipped, turned, walker
+from walkers import beast, moved, shipped, turned, walker
 
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 from kinetree.tasks.numerics.structure.anatomy import anatomy
@@ -27,6 +27,20 @@ def test_limbs_front_and_sides_are_those_that_were_generated(name, motion, seed)
     assert (found.tail is None) == (name == "human")
     assert found.front @ [0, -1, 0] > 0.95
     assert found.certainty > 0.5
+
+
+@pytest.mark.parametrize("kind", [("ears",), ("tusks",), ("horns", "nose"), ("ears", "trunk"), ("ears", "tusks", "trunk")])
+@pytest.mark.parametrize("motion", ["walk", "look"])
+def test_ears_horns_tusks_and_a_trunk_are_no_legs(kind, motion):
+    for seed in range(2):
+        body = moved(beast(*kind), motion, seed)
+        found = anatomy(body.motion)
+        assert found is not None
+        assert found.topology == "quadruped"
+        assert tuple(tips(body, pair) for pair in found.pairs) == (("toe_l", "toe_r"), ("claw_l", "claw_r"))
+        assert body.names[found.tail.joints[0]] == "tail_tip"
+        assert found.front @ [0, -1, 0] > 0.95
+        assert found.certainty > 0.5
 
 
 @pytest.mark.parametrize("name", ["human", "quadruped"])
