@@ -220,10 +220,11 @@ class Folder:
                     f"{self._name} {self.url}: no space left while writing {path}; nothing stored is lost:"
                     " free some space and run again"
                 ) from error
-            raise StoreError(
-                f"{self._name} {self.url}: cannot write {path}: {error.strerror}; check its permissions or name another"
-                " folder (--output, --store)"
-            ) from error
+            dangling = next((p for p in (self.root, *self.root.parents) if p.is_symlink() and not p.exists()), None)
+            why = f"cannot write {path}: {error.strerror}; check its permissions"
+            if dangling is not None:
+                why = f"{dangling} is a link to {os.readlink(dangling)}, which is not there; make that folder"
+            raise StoreError(f"{self._name} {self.url}: {why} or name another folder (--output, --store)") from error
 
 
 def _listed(folder: str, prefix: str) -> Iterator[tuple[str, Listed]]:

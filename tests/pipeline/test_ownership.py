@@ -96,3 +96,13 @@ def test_store_that_cannot_be_written_serves_a_run_that_has_nothing_to_compute(t
     toys.write(3, start=2)
     with pytest.raises(StoreError, match="Read-only"):
         toys.run(store=str(tmp_path / "store"))
+
+
+def test_output_folder_that_is_a_link_to_nothing_is_named(toys):
+    toys.write(1)
+    there = toys.pipeline()
+    shutil.rmtree(toys.output, ignore_errors=True)
+    toys.output.symlink_to("nowhere")
+    with pytest.raises(StoreError, match=f"{toys.output.name} is a link to nowhere, which is not there; make that folder or"):
+        there.run()
+    assert toys.output.is_symlink()

@@ -29,6 +29,10 @@ class Zipped:
         except Exception as error:  # of many kinds, some of them undocumented
             reason = f"{type(error).__name__}: {error}"
             raise SourceError(f"{path}: cannot be read as a zip ({reason}); it is damaged or something else") from error
+        if out := next((info.filename for info in there if ".." in PurePosixPath(info.filename).parts), ""):
+            raise SourceError(
+                f"{path}: the name {out!r} leads out of the zip; nothing of it is read, zip the folder itself again"
+            )
         shown = {PurePosixPath(i.filename): i for i in there if not _is_hidden(PurePosixPath(i.filename))}
         self.names = one_format(list(shown), self.name)
         self._members = [shown[name] for name in self.names]

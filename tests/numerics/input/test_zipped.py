@@ -70,3 +70,11 @@ def test_bombs_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
     monkeypatch.setattr(zipped, "MOST_BYTES", 10**6 - 1)
     with pytest.raises(SourceError, match=r"frame_0\.ply: 1000000 bytes; more than 999999 are no frame"):
         zipped.Zipped(tmp_path / "bomb.zip")
+
+
+def test_names_that_lead_out_of_the_zip_are_refused_by_name(tmp_path):
+    with zipfile.ZipFile(tmp_path / "out.zip", "w") as file:
+        file.writestr("../../frame_0.ply", b"ply")
+        file.writestr("frame_1.ply", b"ply")
+    with pytest.raises(SourceError, match=r"out\.zip: the name '\.\./\.\./frame_0\.ply' leads out of the zip"):
+        read_animated(tmp_path / "out.zip")
