@@ -223,7 +223,7 @@ class Folder:
             dangling = next((p for p in (self.root, *self.root.parents) if p.is_symlink() and not p.exists()), None)
             why = f"cannot write {path}: {error.strerror}; check its permissions"
             if dangling is not None:
-                why = f"{dangling} is a link to {os.readlink(dangling)}, which is not there; make that folder"
+                why = f"{dangling} is a link to {dangling.readlink()}, which is not there; make that folder"
             raise StoreError(f"{self._name} {self.url}: {why} or name another folder (--output, --store)") from error
 
 
