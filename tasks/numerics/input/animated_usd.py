@@ -3,9 +3,10 @@
 Source: UsdGeom and UsdSkel of OpenUSD (the extra `usd`), which read the stage and bake its skins.
 """
 
+import zipfile
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -17,6 +18,11 @@ _UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm"}
 """Units by their length in metres; any other stage is brought to metres."""
 _MOST_FRAMES = 100_000
 _MOST_VERTICES = 50_000_000
+_DEEPEST = 1000
+"""Prims, lists and dictionaries within each other; bodies have some tens."""
+_PIECE_BYTES = 2**20
+_STEPS = np.array([(chr(c) in "{[(") - (chr(c) in "}])") for c in range(256)], dtype=np.int8)
+"""How far each byte opens brackets."""
 
 
 class AnimatedUsd:
@@ -53,6 +59,7 @@ class AnimatedUsd:
     def _opened(self, path: Path, pxr: Any) -> Any:
         """The stage, with a layer of its own for what is baked."""
         is_package = path.suffix.lower() == ".usdz"
+        _refuse_deep(path)
         try:
             # the library remembers a layer by its path, also after the file has changed
             layer = pxr["Sdf"].Layer.FindOrOpen(str(path)) if is_package else pxr["Sdf"].Layer.OpenAsAnonymous(str(path))
@@ -69,7 +76,7 @@ class AnimatedUsd:
         baked.timeCodesPerSecond = layer.timeCodesPerSecond  # else its time codes would be stretched
         stage = self._usd.Stage.Open(layer, baked)
         own = str(path.resolve())
-        foreign = [used.realPath for used in stage.GetUsedLayers() if not (used.anonymous or used.realPath.startswith(own))]
+        foreign = [used.realPath for used in stage.GetUsedLayers() if not (used.anonymous or _is_of(used.realPath, own))]
         if foreign:  # a package whose layers refer to what lies outside it
             raise SourceError(_composed(path, foreign[0]))
         stage.SetEditTarget(stage.GetSessionLayer())
@@ -105,6 +112,39 @@ class AnimatedUsd:
 def _composed(path: Path, other: str) -> str:
     """What is said of a stage that needs other files."""
     return f"{path}: is composed of other files ({other!r}), which are not read; flatten it (usdcat --flatten)"
+
+
+def _is_of(layer: str, package: str) -> bool:
+    """Whether a layer is a package or lies in it, which is written package[layer]."""
+    return layer == package or layer.startswith(f"{package}[")
+
+
+def _refuse_deep(path: Path) -> None:
+    """Refuses text that is nested so deeply that the library would end the process; it does at about 10,000."""
+    try:
+        if not zipfile.is_zipfile(path):
+            with path.open("rb") as file:
+                depth = _text_depth(file)
+        else:
+            with zipfile.ZipFile(path) as archive:
+                stored = [i for i in archive.infolist() if i.compress_type == zipfile.ZIP_STORED]  # no other is read
+                depth = max((_text_depth(file) for i in stored for file in [archive.open(i)]), default=0)
+    except Exception as error:  # zipfile raises many kinds for altered bytes
+        raise SourceError(f"{path}: cannot be read as USD ({type(error).__name__}: {error})") from None
+    if depth > _DEEPEST:
+        raise SourceError(f"{path}: its prims or values are nested more than {_DEEPEST} deep; no body needs as many")
+
+
+def _text_depth(file: IO[bytes]) -> int:
+    """How many brackets of a text are open at once; 0 of what is no text of USD."""
+    piece, depth, most = file.read(_PIECE_BYTES), 0, 0
+    if not piece.lstrip().startswith(b"#"):
+        return 0
+    while piece and most <= _DEEPEST:
+        open_ = depth + np.cumsum(_STEPS[np.frombuffer(piece, np.uint8)], dtype=np.int64)
+        depth, most = int(open_[-1]), max(most, int(open_.max()))
+        piece = file.read(_PIECE_BYTES)
+    return most
 
 
 def _fans(counts: Any, corners: Any, name: str) -> Any:

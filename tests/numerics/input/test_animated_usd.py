@@ -1,5 +1,6 @@
 """Laws of a USD stage over time; the skinned ones are proved by a round trip of our own export."""
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -104,3 +105,26 @@ def test_package_that_refers_outside_itself_is_refused(stage, tmp_path):
     writer.Save()
     with pytest.raises(SourceError, match=r"walk\.usdz: is composed of other files \('.*pyramid\.usda'\), which are not read"):
         read_animated(tmp_path / "walk.usdz")
+
+
+@pytest.mark.parametrize("packed", [False, True])
+@pytest.mark.parametrize(("begin", "end"), [('def Xform "a" {\n', "}\n"), ("(", ")"), ("custom double[] a = [", "]")])
+def test_text_nested_beyond_reason_ends_in_words_and_not_in_the_process(tmp_path, begin, end, packed):
+    text = "#usda 1.0\n" + begin * 20_000 + end * 20_000
+    path = tmp_path / ("deep.usdz" if packed else "deep.usda")
+    if packed:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("deep.usda", text)
+    else:
+        path.write_text(text)
+    with pytest.raises(SourceError, match=r"deep\.usd.: its prims or values are nested more than 1000 deep"):
+        AnimatedUsd(path)
+
+
+def test_package_that_refers_to_a_file_whose_name_begins_like_its_own_is_refused(stage, tmp_path):
+    stage.GetRootLayer().Export(str(tmp_path / "walk.usdz_other.usda"))
+    text = f"#usda 1.0\n(\n    subLayers = [@{tmp_path / 'walk.usdz_other.usda'}@]\n)\n"
+    with zipfile.ZipFile(tmp_path / "walk.usdz", "w") as archive:
+        archive.writestr("root.usda", text)
+    with pytest.raises(SourceError, match="is composed of other files"):
+        AnimatedUsd(tmp_path / "walk.usdz")
