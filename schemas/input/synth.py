@@ -52,6 +52,8 @@ class SynthParams(Params):
     """Frames a second; None takes the figure's own."""
     vertices: int = Field(default=3000, ge=100, le=500_000)
     """Vertices of a frame, within about a tenth."""
+    clothes: bool = False
+    """Whether a person adult:SEED wears loose clothes, which come after the body and fold."""
     contacts: tuple[ContactParams, ...] = ()
     """Which limb touches what, when; there the surface's topology changes."""
     dropped: tuple[DroppedParams, ...] = ()

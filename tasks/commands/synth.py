@@ -25,6 +25,7 @@ def synth(
     frames: Annotated[int, typer.Option("--frames", min=1, help="How many frames.")] = 36,
     fps: Annotated[float | None, typer.Option("--fps", help="Frames a second; default: the figure's own.")] = None,
     vertices: Annotated[int, typer.Option("--vertices", min=100, help="Vertices of a frame, to within about a tenth.")] = 3000,
+    clothes: Annotated[bool, typer.Option("--clothes", help="Loose clothes that lag and fold, on adult:SEED.")] = False,
     contact: Annotated[
         list[str] | None, typer.Option("--contact", metavar="LIMB:TARGET:BEGIN:END", help="A limb touches the body.")
     ] = None,
@@ -60,6 +61,7 @@ def synth(
         frames=frames,
         fps=fps,
         vertices=vertices,
+        clothes=clothes,
         contacts=tuple(_contact(text) for text in contact or ()),
         dropped=tuple(_dropped(text) for text in drop or ()),
         noise=noise,

@@ -36,7 +36,7 @@ def recipe(params: SynthParams) -> str:
     raises : FigureError where the figure, the motion or a limb is not known
     """
     unpainted = params.paint == "none"  # the recipe of a body without colours says nothing of them
-    options = params.model_dump(mode="json", exclude={"figure", "file", *(_PAINTED if unpainted else ())})
+    options = params.model_dump(mode="json", exclude={"figure", "file", "clothes", *(_PAINTED if unpainted else ())})
     written = json.dumps({"figure": _description(params), **options}, sort_keys=True)
     body(written)
     return written
@@ -109,23 +109,25 @@ def figure_names() -> list[str]:
 
 def _description(params: SynthParams) -> dict[str, Any]:
     """The figure as data."""
-    if params.file:
+    if params.file and not params.clothes:
         return _read(Path(params.file))
     kind, colon, seed = params.figure.partition(":")
+    if params.clothes and not (kind == "adult" and colon):
+        raise FigureError(f"clothes: figure {reprlib.repr(params.figure)} has none; they are for adult:SEED, e.g. adult:7")
     if kind in ("random", "adult") and colon:
         if not (seed.isascii() and seed.isdigit() and len(seed) <= 18):
             what = f"figure {reprlib.repr(params.figure)}"
             raise FigureError(f"{what}: write {kind}:SEED with a whole number of at most 18 digits, e.g. {kind}:7")
-        return {"random": int(seed)} if kind == "random" else _person(int(seed), params.motion)
+        return {"random": int(seed)} if kind == "random" else _person(int(seed), params.motion, params.clothes)
     known = {name: _read(FIGURES / f"{name}.yaml") for name in figure_names()}
     named(params.figure, known)
     return known[params.figure]
 
 
 @lru_cache(maxsize=4)
-def _person(seed: int, motion: str | None) -> dict[str, Any]:
+def _person(seed: int, motion: str | None, clothed: bool) -> dict[str, Any]:
     """A person drawn from a seed, with one motion."""
-    return person(_read(PEOPLE / "adult.yaml"), motion, seed)
+    return person(_read(PEOPLE / "adult.yaml"), motion, seed, clothed)
 
 
 def _read(path: Any) -> dict[str, Any]:

@@ -39,6 +39,15 @@ def test_figure_that_does_not_exist_is_refused_with_the_nearest() -> None:
                 recipe(SynthParams(figure=f"{kind}:{seed}"))
 
 
+def test_clothes_are_for_people_and_leave_other_recipes_as_they_are() -> None:
+    bare, clothed = (json.loads(recipe(SynthParams(figure="adult:3", frames=2, clothes=c))) for c in (False, True))
+    assert clothed["figure"].pop("clothes")
+    assert bare == clothed
+    for figure in ("human", "adult", "random:3"):
+        with pytest.raises(FigureError, match="they are for adult:SEED"):
+            recipe(SynthParams(figure=figure, clothes=True))
+
+
 def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:
     with pytest.raises(FigureError, match="hand_r"):
         recipe(SynthParams(contacts=(ContactParams(limb="hnd_r", target="hip_r", begin=1, end=2),)))

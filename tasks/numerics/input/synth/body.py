@@ -16,15 +16,17 @@ import numpy as np
 from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.input.cameras import Cameras, camera_ring, silhouettes
+from kinetree.tasks.numerics.input.synth.clothes import Tubes, dressed, tubes
 from kinetree.tasks.numerics.input.synth.contacts import Contact, merging, touching
 from kinetree.tasks.numerics.input.synth.defects import punctured, roughened
-from kinetree.tasks.numerics.input.synth.descriptions import suggestion
+from kinetree.tasks.numerics.input.synth.descriptions import Motion, suggestion
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.implicit import Cones, extent, grid_values, limb_distances
 from kinetree.tasks.numerics.input.synth.losses import Dropped
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations, true_joints
 from kinetree.tasks.numerics.input.synth.skins import Skin
+from kinetree.tasks.numerics.input.synth.softness import STEP, softened
 from kinetree.tasks.numerics.input.synth.surfacing import spacing_for, surface
 
 MOST_FRAMES = 1_000_000
@@ -54,6 +56,7 @@ class Body:
     noise        : root mean square along the normals, share of the height
     hole_size    : radius of a hole, share of the height
     connectivity : "new" in every frame, or "fixed": one mesh skinned to the joints
+    sag, worn    : how far soft flesh stays behind (frame, limb, xyz), and the garments; None where there are none
     """
 
     figure: Figure
@@ -70,6 +73,8 @@ class Body:
     R: Floats
     X: Floats
     G: Floats
+    sag: Floats | None
+    worn: Tubes | None
 
     @classmethod
     def of(
@@ -102,18 +107,21 @@ class Body:
         rate = figure.fps if fps is None else float(fps)
         touches = tuple(Contact.of(figure, row, frames) for row in contacts)
         losses = tuple(Dropped.of(figure, flesh, row, frames) for row in dropped)
-        R, shift = joint_rotations(figure, figure.motion(motion), np.arange(frames) / rate)
+        if connectivity == "fixed" and figure.clothes:
+            raise FigureError("fixed connectivity can have no clothes: they slide over the skin")
+        seconds = np.arange(frames) / rate
+        R, shift = joint_rotations(figure, figure.motion(motion), seconds)
         for touch in touches:
             R = touching(figure, flesh, touch, R, shift)
         X, G = forward_kinematics(figure.rest, figure.parents, R, shift)
         options = (rate, vertices, seed, touches, losses, float(noise), holes, float(hole_size), connectivity)
-        return cls(figure, flesh, *options, R, X, G)
+        return cls(figure, flesh, *options, R, X, G, *_loose(figure, flesh, figure.motion(motion), X, G, seconds))
 
     def frame(self, t: int) -> tuple[Floats, Ints]:
         """Mesh of frame t: (vertex, xyz) in the figure's unit, (face, corner) counter-clockwise seen from outside."""
         self._check_frame(t)
         if self.connectivity == "fixed":
-            V, F = self.skin.posed(self.flesh, self.figure.rest, self.X[t], self.G[t]), self.skin.F
+            V, F = self.skin.posed(self._limbs(t), self.flesh, self.figure.rest, self.X[t], self.G[t]), self.skin.F
         else:
             V, F = surface(self._cones(t), self._first_spacing, self._rng(_SURFACE, t), self.vertices)
         if self.noise:
@@ -150,7 +158,7 @@ class Body:
         self._check_frame(t)
         carried = [joint["part"] for joint in self._true_joints[0]]
         of_limb = np.array([carried[p] for p in self.flesh.parent], dtype=np.int64)
-        return np.asarray(of_limb[np.argmin(limb_distances(self._cones(t), V), axis=1)], dtype=np.int64)
+        return np.asarray(of_limb[np.argmin(limb_distances(self._limbs(t), V), axis=1)], dtype=np.int64)
 
     def volume(self, t: int, voxel: float | None = None) -> Volume:
         """Clipped signed distance of frame t on a grid that is the same in every frame of the clip.
@@ -181,7 +189,8 @@ class Body:
         identity = np.tile(np.eye(3), (len(self.figure.joints), 1, 1))
         cones = self.flesh.at(self.figure.rest, identity)
         V, F = surface(cones, self._first_spacing, self._rng(_REST, 0), self.vertices)
-        return Skin.of(self.flesh, self.figure.rest, V, F)
+        soft = self.figure.softness
+        return Skin.of(self.flesh, self.figure.rest, V, F, *([] if soft is None else [soft.skin]))
 
     def weights(self) -> Floats:
         """(vertex, joint) true skinning weights of the fixed connectivity; a tip moves nothing."""
@@ -197,7 +206,7 @@ class Body:
 
     @cached_property
     def _box(self) -> tuple[Floats, Floats]:
-        corners = [extent(self.flesh.at(x, g)) for x, g in zip(self.X, self.G, strict=True)]
+        corners = [extent(self._dressed(t, self._soft(t, None))) for t in range(len(self.X))]
         return np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
 
     @cached_property
@@ -205,7 +214,22 @@ class Body:
         return spacing_for(self.flesh.at(self.X[0], self.G[0]), self.vertices)
 
     def _cones(self, t: int) -> Cones:
-        cones = self.flesh.at(self.X[t], self.G[t], self._missing(t))
+        """What is surfaced: the limbs and the clothes on them."""
+        return self._dressed(t, self._limbs(t))
+
+    def _dressed(self, t: int, cones: Cones) -> Cones:
+        return cones if self.worn is None else dressed(cones, self.worn, t)
+
+    def _soft(self, t: int, missing: Flags | None) -> Cones:
+        """The limbs of a frame before any of them merge."""
+        cones, soft = self.flesh.at(self.X[t], self.G[t], missing), self.figure.softness
+        if soft is None or self.sag is None:
+            return cones
+        return softened(cones, self.sag[t], soft.swelling(self.flesh, self.R[t : t + 1])[0])
+
+    def _limbs(self, t: int) -> Cones:
+        """The limbs without clothes."""
+        cones = self._soft(t, self._missing(t))
         for contact in self.contacts:
             if contact.begin <= t <= contact.end:
                 cones = merging(self.figure, self.flesh, contact, cones)
@@ -221,6 +245,26 @@ class Body:
     def _check_frame(self, t: int) -> None:
         if not 0 <= t < len(self.X):
             raise FigureError(f"frame {t} was asked for, but the clip has frames 0 to {len(self.X) - 1}")
+
+
+def _loose(
+    figure: Figure, flesh: Flesh, motion: Motion, X: Floats, G: Floats, seconds: Floats
+) -> tuple[Floats | None, Tubes | None]:
+    """How far soft flesh stays behind, and the garments, from the motion around every moment, whatever the frame rate.
+
+    X, G : (frame, joint, xyz) positions and (frame, joint, 3, 3) world rotations at these seconds
+    """
+
+    def at(times: Floats) -> Floats:
+        return forward_kinematics(figure.rest, figure.parents, *joint_rotations(figure, motion, times))[0]
+
+    sag = worn = None
+    if figure.softness is not None:
+        sag = figure.softness.sag(flesh, at(seconds - STEP), at(seconds), at(seconds + STEP))
+    if figure.clothes:
+        earlier = [at(seconds - g.lag) for g in figure.clothes]
+        worn = tubes(figure.clothes, figure.rest, X, G, earlier, seconds, flesh.table.shape[1])
+    return sag, worn
 
 
 def _check(

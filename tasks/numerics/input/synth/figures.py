@@ -14,7 +14,11 @@ A figure is data, so that a user can write one; this module checks the words and
 
 `radii` is the profile of the limb from the parent to the joint, evenly spaced; without it the limb runs from the
 parent's radius to the joint's. `keys: [[second, angle], …]` in place of an amplitude are postures; with a `period` they repeat.
-`flatten` squeezes the limb to that share of its radius along `side`.
+`flatten` squeezes the limb to that share of its radius along `side`. Flesh is rigid unless
+`softness: {frequency: 6, bulge: 0.05}` says how late it comes after its bone and how much it swells. Garments are listed as
+`clothes`, each with its joints:
+
+    - {name: skirt, from: [hips], to: [knee_l, knee_r], span: [0, 0.7], radii: [170, 110], folds: 8, depth: 0.06, lag: 0.1}
 """
 
 from __future__ import annotations
@@ -27,6 +31,7 @@ import numpy as np
 
 from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.input.synth.clothes import Garment
 from kinetree.tasks.numerics.input.synth.descriptions import (
     Joint,
     Motion,
@@ -37,8 +42,9 @@ from kinetree.tasks.numerics.input.synth.descriptions import (
     refuse_unknown,
     suggestion,
 )
+from kinetree.tasks.numerics.input.synth.softness import Softness
 
-_FIGURE_KEYS = ("name", "unit", "fps", "joints", "motions")
+_FIGURE_KEYS = ("name", "unit", "fps", "joints", "motions", "softness", "clothes")
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,8 @@ class Figure:
     fps: float
     joints: tuple[Joint, ...]
     motions: Mapping[str, Motion]
+    softness: Softness | None = None
+    clothes: tuple[Garment, ...] = ()
 
     @classmethod
     def of(cls, description: Mapping[str, Any]) -> Figure:
@@ -68,7 +76,16 @@ class Figure:
         for name, curves in mapping(where, "motions", description.get("motions", {"still": {}})).items():
             motions[str(name)] = read_motion(f"{where}, motion {name!r}", curves, names)
         fps = number(where, "fps", description.get("fps", 25.0), low=0.0)
-        return cls(str(description.get("name", "tree")), str(description.get("unit", "unknown")), fps, joints, motions)
+        name, unit = str(description.get("name", "tree")), str(description.get("unit", "unknown"))
+        softness = (
+            Softness.of(where, mapping(where, "softness", description["softness"])) if "softness" in description else None
+        )
+        rows = description.get("clothes", ())
+        if not isinstance(rows, Sequence) or isinstance(rows, str):
+            raise FigureError(f"{where}: clothes is {rows!r}, expected a list of garments")
+        ordered = [joint.name for joint in joints]
+        clothes = tuple(Garment.of(where, mapping(where, "a garment", row), ordered) for row in rows)
+        return cls(name, unit, fps, joints, motions, softness, clothes)
 
     @property
     def names(self) -> list[str]:

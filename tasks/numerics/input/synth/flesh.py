@@ -76,7 +76,8 @@ class Flesh:
         side = np.einsum("bij,bj->bi", G[self.parent], self.side)
         table = self.table if without is None else np.where(without[:, None], -1e6 * self.table.max(), self.table)
         A, D = X[self.parent], X[self.child] - X[self.parent]
-        return Cones(A, D, side, table, self.flat, self.first, self.members, self.reach, self.slope)
+        none = (np.zeros_like(D), np.zeros_like(D), np.zeros(len(D), np.bool_))
+        return Cones(A, D, side, table, self.flat, *none, self.first, self.members, self.reach, self.slope)
 
 
 def _profile(radii: tuple[float, ...]) -> Floats:

@@ -24,6 +24,9 @@ class Cones(NamedTuple):
 
     A, D    : (limb, xyz) start and vector to the end; side : (limb, xyz) unit direction in which it is flat
     table   : (limb, knot) radius at even steps; flat : (limb,) share of the radius kept along `side`
+    bow     : (limb, xyz) how far the axis is bent sideways in its middle
+    folds   : (limb, 3) number of folds around, their depth at the end as a share of the radius, their phase
+    cut     : (limb,) whether the limb ends in planes across its axis and not in balls
     first   : (blend + 1,) where each blend's limbs begin in `members`; reach : (blend,) its width
     slope   : Lipschitz bound of every limb's value
     """
@@ -33,6 +36,9 @@ class Cones(NamedTuple):
     side: Floats
     table: Floats
     flat: Floats
+    bow: Floats
+    folds: Floats
+    cut: Flags
     first: Ints
     members: Ints
     reach: Floats
@@ -76,7 +82,7 @@ def extent(cones: Cones) -> tuple[Floats, Floats]:
     r = cones.table.max(axis=1)
     held = r > 0.0
     ends = np.stack([cones.A[held], cones.A[held] + cones.D[held]])
-    grow = (r[held] + 0.25 * cones.reach.max(initial=0.0))[:, None]
+    grow = (r[held] + np.linalg.norm(cones.bow[held], axis=1) + 0.25 * cones.reach.max(initial=0.0))[:, None]
     return (ends - grow).min(axis=(0, 1)), (ends + grow).max(axis=(0, 1))
 
 
@@ -86,8 +92,11 @@ def _limb(cones, b, x, y, z, of_limb):  # type: ignore[no-untyped-def]
     ax, ay, az = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
     sx, sy, sz = cones.side[b, 0], cones.side[b, 1], cones.side[b, 2]
     x, y, z = x - cones.A[b, 0], y - cones.A[b, 1], z - cones.A[b, 2]
-    t = min(max((x * ax + y * ay + z * az) / (ax * ax + ay * ay + az * az), 0.0), 1.0)
+    at = (x * ax + y * ay + z * az) / (ax * ax + ay * ay + az * az)
+    t = min(max(at, 0.0), 1.0)
     x, y, z = x - t * ax, y - t * ay, z - t * az
+    bent = 4.0 * t * (1.0 - t)
+    x, y, z = x - bent * cones.bow[b, 0], y - bent * cones.bow[b, 1], z - bent * cones.bow[b, 2]
     squeeze = 1.0 / cones.flat[b] - 1.0
     along = squeeze * (x * sx + y * sy + z * sz)
     x, y, z = x + along * sx, y + along * sy, z + along * sz
@@ -95,12 +104,23 @@ def _limb(cones, b, x, y, z, of_limb):  # type: ignore[no-untyped-def]
     s = t * (cones.table.shape[1] - 1)
     i = min(int(s), cones.table.shape[1] - 2)
     r = cones.table[b, i] + (s - i) * (cones.table[b, i + 1] - cones.table[b, i])
+    if cones.folds[b, 1] > 0.0:
+        across = np.sqrt(ax * ax + ay * ay + az * az)
+        vx, vy, vz = (ay * sz - az * sy) / across, (az * sx - ax * sz) / across, (ax * sy - ay * sx) / across
+        turn = np.arctan2(x * vx + y * vy + z * vz, x * sx + y * sy + z * sz)
+        r *= 1.0 + cones.folds[b, 1] * t * np.cos(cones.folds[b, 0] * turn + cones.folds[b, 2])
     of_limb[b, 0] = (length - r) * cones.flat[b]
     if squeeze > 0.0:
         along = squeeze * (x * sx + y * sy + z * sz)
         x, y, z = x + along * sx, y + along * sy, z + along * sz
         length = np.sqrt(x * x + y * y + z * z) + 1e-300
     of_limb[b, 1], of_limb[b, 2], of_limb[b, 3] = x / length, y / length, z / length
+    if cones.cut[b]:
+        length = np.sqrt(ax * ax + ay * ay + az * az)
+        beyond = max(-at, at - 1.0) * length
+        if beyond > of_limb[b, 0]:
+            length = length if at > 0.5 else -length
+            of_limb[b, 0], of_limb[b, 1], of_limb[b, 2], of_limb[b, 3] = beyond, ax / length, ay / length, az / length
 
 
 @compiled

@@ -17,6 +17,7 @@ import numpy as np
 from kinetree.errors import FigureError
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.input.synth.clearance import clearance
+from kinetree.tasks.numerics.input.synth.clothes import outfit
 from kinetree.tasks.numerics.input.synth.descriptions import suggestion
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
@@ -55,16 +56,21 @@ class PeopleSettings(NamedTuple):
     """Range of the amplitude of the slow movements of every joint, degrees; there are two about random axes."""
     slow: tuple[float, float] = (0.25, 1.1)
     """Range of their frequency, 1/s."""
+    frequency: tuple[float, float] = (5.0, 9.0)
+    """Range of the frequency of soft flesh on its bone, 1/s; not measured (ours)."""
+    bulge: tuple[float, float] = (0.02, 0.07)
+    """Range of the share by which a limb swells when the joint beyond bends by a right angle."""
 
 
 _SETTINGS = PeopleSettings()
 
 
-def person(description: Mapping[str, Any], motion: str | None, seed: int) -> dict[str, Any]:
+def person(description: Mapping[str, Any], motion: str | None, seed: int, clothed: bool = False) -> dict[str, Any]:
     """A figure as data: the given one with proportions and a motion drawn from a seed.
 
     description : of an adult, with the names of joints of the one that ships
     motion      : one of its motions, the first by name when None; each is drawn without the others
+    clothed     : whether loose clothes are worn
     raises      : FigureError at an unknown motion
     """
     motions: Mapping[str, Any] = description["motions"]
@@ -76,7 +82,13 @@ def person(description: Mapping[str, Any], motion: str | None, seed: int) -> dic
     made = next(_apart({**draft, "motions": {}} for draft in drafts))
     size = Figure.of(made).height / Figure.of(description).height
     own = _own_motion(made, motions[name], size, np.random.default_rng([seed, 1761, zlib.crc32(name.encode())]))
-    return {**made, "name": f"{description['name']}-{seed}", "motions": {name: own}}
+    softness = {"frequency": _uniform(rng, _SETTINGS.frequency), "bulge": _uniform(rng, _SETTINGS.bulge), "skin": 1.2}
+    told = {**made, "name": f"{description['name']}-{seed}", "motions": {name: own}, "softness": softness}
+    return {**told, "clothes": outfit(made["joints"], seed)} if clothed else told
+
+
+def _uniform(rng: np.random.Generator, between: tuple[float, float]) -> float:
+    return round(float(rng.uniform(*between)), 4)
 
 
 def _apart(drafts: Iterator[dict[str, Any]]) -> Iterator[dict[str, Any]]:

@@ -41,7 +41,8 @@ def surface(cones: Cones, spacing: float, rng: np.random.Generator, vertices: in
     """
     turn = Rotation.from_quat(rng.normal(size=4)).as_matrix()
     shift = rng.random(3)
-    turned = cones._replace(A=_turned(cones.A, turn), D=_turned(cones.D, turn), side=_turned(cones.side, turn))
+    A, D, side, bow = (_turned(X, turn) for X in (cones.A, cones.D, cones.side, cones.bow))
+    turned = cones._replace(A=A, D=D, side=side, bow=bow)
     if vertices is not None:
         for coarseness in _SETTINGS.coarseness:
             coarse, _ = _sampled(turned, coarseness * spacing, shift)
