@@ -33,12 +33,13 @@ _PAINTED = ("paint", "illumination", "grain")
 def recipe(params: SynthParams) -> str:
     """All that decides the sequence, as JSON with the figure written out: equal recipes, equal bytes, on any machine.
 
-    raises : FigureError where the figure, the motion or a limb is not known
+    raises : FigureError where the figure, the motion or a limb is not known, or a clothed figure would be painted
     """
     unpainted = params.paint == "none"  # the recipe of a body without colours says nothing of them
     options = params.model_dump(mode="json", exclude={"figure", "file", "clothes", *(_PAINTED if unpainted else ())})
     written = json.dumps({"figure": _description(params), **options}, sort_keys=True)
-    body(written)
+    if body(written).figure.clothes and not unpainted:
+        raise FigureError("paint colours the skin, which loose clothes cover and slide over; ask for paint or for clothes")
     return written
 
 

@@ -46,6 +46,8 @@ def test_clothes_are_for_people_and_leave_other_recipes_as_they_are() -> None:
     for figure in ("human", "adult", "random:3"):
         with pytest.raises(FigureError, match="they are for adult:SEED"):
             recipe(SynthParams(figure=figure, clothes=True))
+    with pytest.raises(FigureError, match="ask for paint or for clothes"):
+        recipe(SynthParams(figure="adult:3", frames=2, clothes=True, paint="plain"))
 
 
 def test_limb_that_does_not_exist_is_refused_before_anything_runs() -> None:
