@@ -225,7 +225,7 @@ class Body:
         cones, soft = self.flesh.at(self.X[t], self.G[t], missing), self.figure.softness
         if soft is None or self.sag is None:
             return cones
-        return softened(cones, self.sag[t], soft.swelling(self.flesh, self.R[t : t + 1])[0])
+        return softened(cones, self.sag[t], soft.swelling((self.flesh.parent, self.flesh.child), self.R[t : t + 1])[0])
 
     def _limbs(self, t: int) -> Cones:
         """The limbs without clothes."""
@@ -260,7 +260,8 @@ def _loose(
 
     sag = worn = None
     if figure.softness is not None:
-        sag = figure.softness.sag(flesh, at(seconds - STEP), at(seconds), at(seconds + STEP))
+        ends, radius = (flesh.parent, flesh.child), flesh.table.mean(axis=1)
+        sag = figure.softness.sag(ends, radius, at(seconds - STEP), at(seconds), at(seconds + STEP))
     if figure.clothes:
         earlier = [at(seconds - g.lag) for g in figure.clothes]
         worn = tubes(figure.clothes, figure.rest, X, G, earlier, seconds, flesh.table.shape[1])

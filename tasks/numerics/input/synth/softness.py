@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.input.synth.descriptions import number, refuse_unknown
 from kinetree.tasks.numerics.input.synth.implicit import Cones
-
-if TYPE_CHECKING:
-    from kinetree.tasks.numerics.input.synth.flesh import Flesh
 
 STEP = 0.01
 """Seconds between the moments that accelerations are taken from, as second differences."""
@@ -45,27 +42,30 @@ class Softness:
             number(where, "skin", row.get("skin", 0.8), low=0.0, high=2.0),
         )
 
-    def sag(self, flesh: Flesh, before: Floats, now: Floats, after: Floats) -> Floats:
+    def sag(self, ends: tuple[Ints, Ints], radius: Floats, before: Floats, now: Floats, after: Floats) -> Floats:
         """How far the middle of every limb stays behind: u = −a / (2πf)², the answer of a spring to slow shaking, limited.
 
+        ends               : (limb,) and (limb,) joints at the limbs' ends; radius : (limb,) mean, the figure's unit
         before, now, after : (frame, joint, xyz) positions `STEP` seconds apart
         returns            : (frame, limb, xyz) across the limb, in the figure's unit
         """
+        start, end = ends
         a = (before - 2.0 * now + after) / STEP**2
-        u = -0.5 * (a[:, flesh.parent] + a[:, flesh.child]) / (2.0 * np.pi * self.frequency) ** 2
-        D = now[:, flesh.child] - now[:, flesh.parent]
+        u = -0.5 * (a[:, start] + a[:, end]) / (2.0 * np.pi * self.frequency) ** 2
+        D = now[:, end] - now[:, start]
         u -= np.sum(u * D, axis=2, keepdims=True) / np.sum(D * D, axis=2, keepdims=True) * D
-        most = self.most * flesh.table.mean(axis=1)[:, None] + 1e-12
+        most = self.most * radius[:, None] + 1e-12
         return np.asarray(u * most / (most + np.linalg.norm(u, axis=2, keepdims=True)), dtype=np.float64)
 
-    def swelling(self, flesh: Flesh, R: Floats) -> Floats:
+    def swelling(self, ends: tuple[Ints, Ints], R: Floats) -> Floats:
         """(frame, limb) by which share of its radius the middle of each limb swells: bulge · (1 − cos θ) of the joint beyond.
 
-        R : (frame, joint, 3, 3) rotations against the parent
+        ends : (limb,) and (limb,) joints at the limbs' ends; R : (frame, joint, 3, 3) rotations against the parent
         """
+        start, end = ends
         cosine = 0.5 * (np.trace(R, axis1=2, axis2=3) - 1.0)
-        carries = np.isin(flesh.child, flesh.parent)
-        return np.asarray(self.bulge * np.where(carries, 1.0 - cosine[:, flesh.child], 0.0), dtype=np.float64)
+        carries = np.isin(end, start)
+        return np.asarray(self.bulge * np.where(carries, 1.0 - cosine[:, end], 0.0), dtype=np.float64)
 
 
 def softened(cones: Cones, sag: Floats, swelling: Floats) -> Cones:

@@ -34,7 +34,7 @@ def test_flesh_of_a_limb_that_swings_answers_as_a_spring_does():
     def at(s):
         return figure.rest + amplitude * np.sin(omega * s)[:, None, None] * np.array([1.0, 0.0, 0.0])
 
-    sag = figure.softness.sag(flesh, at(t - STEP), at(t), at(t + STEP))
+    sag = figure.softness.sag((flesh.parent, flesh.child), flesh.table.mean(axis=1), at(t - STEP), at(t), at(t + STEP))
     expected = amplitude * np.sin(omega * t) / 50.0**2
     np.testing.assert_allclose(sag[:, 0, 0], expected, atol=2e-6)
     np.testing.assert_allclose(sag[:, :, 1:], 0.0, atol=1e-12)
@@ -44,7 +44,7 @@ def test_flesh_never_goes_farther_than_its_share_of_the_radius_and_not_along_the
     figure = arm(frequency=0.6, most=0.2)
     flesh = Flesh.of(figure)
     shaken = np.random.default_rng(0).normal(size=(3, 20, 3, 3)) * 5.0 + figure.rest
-    sag = figure.softness.sag(flesh, *shaken)
+    sag = figure.softness.sag((flesh.parent, flesh.child), flesh.table.mean(axis=1), *shaken)
     most = 0.2 * flesh.table.mean(axis=1)
     assert (np.linalg.norm(sag, axis=2) < most).all()
     assert np.linalg.norm(sag, axis=2).max() > 0.9 * most.min()
@@ -64,7 +64,7 @@ def test_surface_in_the_middle_of_a_limb_goes_with_its_flesh_and_swells():
 
 def test_a_limb_swells_as_the_joint_beyond_it_bends():
     clip = Body.of(arm(bulge=0.1), frames=13, fps=12)
-    swelling = clip.figure.softness.swelling(clip.flesh, clip.R)
+    swelling = clip.figure.softness.swelling((clip.flesh.parent, clip.flesh.child), clip.R)
     angle = np.arccos(np.clip(0.5 * (np.trace(clip.R[:, 1], axis1=1, axis2=2) - 1.0), -1, 1))
     np.testing.assert_allclose(swelling[:, 0], 0.1 * (1.0 - np.cos(angle)), atol=1e-12)
     np.testing.assert_array_equal(swelling[:, 1], 0.0)
