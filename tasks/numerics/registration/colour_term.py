@@ -12,10 +12,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 
+_MEDIAN = 2.366
+"""Of χ² with three degrees of freedom."""
 _STEPS = 64
 """Safety bound: a match moves over at most so many edges."""
 
@@ -24,13 +27,17 @@ class ColourSettings(NamedTuple):
     """How colours count beside place and normal, and from which agreement on."""
 
     agreement: float = 0.2
-    """Share of the variance of a frame's colours, beyond normals, that those of the body must explain."""
+    """Share of the variance of a frame's colours, beyond normals, that those of the body must explain: 0.9 and more on
+    patterned clothes, below 0.05 with noise, or with light on plain ones."""
     least_noise: float = 0.02
     """Standard deviation of colours that agree perfectly, sRGB: 8 bits, and light that is not distant."""
     search: float = 0.01
     """What one standard deviation of colour counts against distance in the search for matches, share of √area."""
-    hold: float = 0.002
-    """What it counts against distance from the plane in the energy, share of √area."""
+    hold: float = 0.0015
+    """What it counts against distance from the plane in the energy, share of √area. Chosen, with `chance`, on a walking human
+    and a random tree of 3,000 vertices: with 0.004 noise of colours pulls points, with 0.0005 they slide more."""
+    chance: float = 2.0
+    """So many times the gradient that noise of single vertices makes, see `gradient_of_noise`, is taken off."""
     outlier: float = 3.0
     """Standard deviations at which a match counts a quarter."""
     firmest: float = 1.0
@@ -88,7 +95,7 @@ def compared(
     without = np.linalg.lstsq(A[keep, :7], seen[keep], rcond=None)[0]
     plain = ((seen[keep] - A[keep, :7] @ without) ** 2).sum()
     share = 1.0 - float(square[keep].sum()) / max(float(plain), 1e-12)
-    noise = max(float(np.sqrt(np.median(square) / 2.366)), settings.least_noise)  # of χ² with three degrees of freedom
+    noise = max(float(np.sqrt(np.median(square) / _MEDIAN)), settings.least_noise)
     return Compared(x[0] + rest @ x[4:7] + colour.body @ x[7:], colour.frame - now @ x[1:4], share, noise)
 
 
@@ -101,6 +108,23 @@ def surface_gradient(V: Floats, N: Floats, colour: Floats, start: Ints, ring: In
     returns     : (vertex, rgb, xyz) per mesh unit, at right angles to the normal
     """
     return _gradient(V, N, np.ascontiguousarray(colour), start, ring)
+
+
+def gradient_of_noise(V: Floats, colour: Floats, start: Ints, ring: Ints) -> float:
+    """Mean |G|² that noise of single vertices gives `surface_gradient`: 2 σ² / ℓ², for six neighbours at ℓ (ours).
+
+    σ² is the median square of what a vertex differs from the mean of its neighbours, which colours that are linear do not.
+
+    V, colour   : (vertex, xyz) mesh unit · (vertex, rgb)
+    start, ring : see `edge_rings`
+    returns     : per mesh unit²
+    """
+    count = np.maximum(np.diff(start), 1)
+    around = csr_array((np.ones(len(ring)), ring, start), shape=(len(V), len(V)))
+    own = ((colour - (around @ colour) / count[:, None]) ** 2).sum(axis=1)
+    variance = float(np.median(own)) / (_MEDIAN * (1.0 + 1.0 / 6.0))
+    edge = V[ring] - np.repeat(V, np.diff(start), axis=0)
+    return 2.0 * variance / max(float(np.einsum("ex,ex->e", edge, edge).mean()), 1e-30)
 
 
 @compiled
@@ -132,7 +156,15 @@ def feature_matches(P: Floats, match: Ints, Q: Floats, start: Ints, ring: Ints) 
 
 @compiled
 def colour_forms(
-    r: Floats, wanted: Floats, G: Floats, weight: Floats, kappa: float, noise: float, outlier: float, firmest: float
+    r: Floats,
+    wanted: Floats,
+    G: Floats,
+    weight: Floats,
+    kappa: float,
+    noise: float,
+    outlier: float,
+    firmest: float,
+    chance: float,
 ) -> tuple[Floats, Floats, Floats]:
     """κ w |G r − e|² of every match as rᵀHr − 2 rᵀp + c, with w smaller where colours disagree.
 
@@ -142,6 +174,7 @@ def colour_forms(
     weight  : (match,) that of the match
     kappa   : mesh unit² per colour²
     firmest : most that the trace of κ GᵀG counts
+    chance  : |G|² of noise alone, which is taken off
     returns : H (match, 3, 3) · p (match, xyz) · c (match,)
     """
     H, p, c = np.zeros((len(r), 3, 3)), np.zeros((len(r), 3)), np.zeros(len(r))
@@ -152,7 +185,7 @@ def colour_forms(
             off = G[i, k, 0] * r[i, 0] + G[i, k, 1] * r[i, 1] + G[i, k, 2] * r[i, 2] - wanted[i, k]
             square += off * off
         w = kappa * weight[i] / (1.0 + square / (3.0 * outlier * outlier * noise * noise)) ** 2
-        w *= min(1.0, firmest / max(trace, 1e-30))
+        w *= min(1.0, firmest / max(trace, 1e-30)) * max(0.0, 1.0 - kappa * chance / max(trace, 1e-30))
         for k in range(3):
             c[i] += w * wanted[i, k] ** 2
             for x in range(3):

@@ -4,12 +4,14 @@ import numpy as np
 from limbs import tube
 from painted import waves
 from scipy.spatial import cKDTree
+from shapes import sphere
 
 from kinetree.tasks.numerics.registration.colour_term import (
     FrameColour,
     colour_forms,
     compared,
     feature_matches,
+    gradient_of_noise,
     surface_gradient,
 )
 from kinetree.tasks.numerics.registration.correspondence import Target
@@ -79,14 +81,29 @@ def test_a_walk_in_features_ends_where_a_search_of_all_vertices_does() -> None:
 def test_form_is_the_square_of_what_colours_leave() -> None:
     rng = np.random.default_rng(0)
     r, wanted, G = rng.normal(size=(5, 3)), rng.normal(size=(5, 3)), rng.normal(size=(5, 3, 3))
-    H, p, c = colour_forms(r, wanted, G, np.ones(5), 0.5, 1.0, 1e9, 1e9)
+    H, p, c = colour_forms(r, wanted, G, np.ones(5), 0.5, 1.0, 1e9, 1e9, 0.0)
     mine = np.einsum("rx,rxy,ry->r", r, H, r) - 2.0 * np.einsum("rx,rx->r", r, p) + c
     np.testing.assert_allclose(mine, 0.5 * ((np.einsum("rkx,rx->rk", G, r) - wanted) ** 2).sum(axis=1))
 
 
 def test_flat_colours_hold_nothing_and_steep_ones_no_more_than_is_allowed() -> None:
     r = np.ones((1, 3))
-    assert not colour_forms(r, r, np.zeros((1, 3, 3)), np.ones(1), 1.0, 1.0, 3.0, 1.0)[0].any()
+    assert not colour_forms(r, r, np.zeros((1, 3, 3)), np.ones(1), 1.0, 1.0, 3.0, 1.0, 0.1)[0].any()
     steep = 1e3 * np.eye(3)[None]
-    H = colour_forms(np.zeros((1, 3)), np.zeros((1, 3)), steep, np.ones(1), 1.0, 1.0, 3.0, 1.0)[0]
+    H = colour_forms(np.zeros((1, 3)), np.zeros((1, 3)), steep, np.ones(1), 1.0, 1.0, 3.0, 1.0, 0.0)[0]
     np.testing.assert_allclose(np.trace(H[0]), 1.0)
+
+
+def test_a_gradient_that_noise_makes_holds_nothing() -> None:
+    zero, one, G = np.zeros((1, 3)), np.ones(1), 0.1 * np.eye(3)[None]
+    held = [colour_forms(zero, zero, G, one, 1.0, 1.0, 3.0, 9.0, chance)[0] for chance in (0.0, 0.015, 0.03)]
+    assert [float(np.trace(H[0]).round(9)) for H in held] == [0.03, 0.015, 0.0]
+
+
+def test_noise_of_vertices_is_known_by_the_gradient_that_it_makes() -> None:
+    V, F = sphere(4)
+    frame = Target.of(V, F, 3.5)
+    colour = 0.02 * np.random.default_rng(0).normal(size=V.shape)
+    made = (surface_gradient(V, frame.N, colour, frame.start, frame.ring) ** 2).sum(axis=(1, 2)).mean()
+    np.testing.assert_allclose(gradient_of_noise(V, colour, frame.start, frame.ring), made, rtol=0.1)
+    assert gradient_of_noise(V, 0.1 * V, frame.start, frame.ring) < 0.01 * 0.1**2

@@ -40,11 +40,11 @@ def sliding(body, target):
 
 def test_roll_of_a_round_limb_comes_back_by_its_colours(round_body) -> None:
     assert sliding(round_body, turned(round_body, None)) > 0.8
-    assert sliding(round_body, turned(round_body, waves)) < 0.1
+    assert sliding(round_body, turned(round_body, waves)) < 0.3
 
 
 def test_exposure_changes_little(round_body) -> None:
-    assert sliding(round_body, turned(round_body, lambda V: 0.6 * waves(V) + 0.1)) < 0.15
+    assert sliding(round_body, turned(round_body, lambda V: 0.6 * waves(V) + 0.1)) < 0.3
 
 
 def test_colours_that_do_not_agree_change_no_bit(round_body) -> None:
