@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from kinetree.errors import ConfigError, InputError, NodesFailedError, UnknownNodeError
+from kinetree.errors import ConfigError, InputError, KinetreeError, NodesFailedError, UnknownNodeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.schemas.array import Artifact, Params
@@ -17,14 +17,16 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.comparison import Comparison, ParameterDifference
-from kinetree.schemas.results.evaluation import Evaluation, EvaluationParams
+from kinetree.schemas.results.evaluation import Evaluation, EvaluationParams, JointScore
 from kinetree.schemas.results.truth import TruthParams
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.comparison import check_frames_and_unit, check_sequence, compared_run, comparison
+from kinetree.tasks.results.formats.names import readable_names
 from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.scene import Limits, Scene, scene
 from kinetree.tasks.results.plots.drawing import view
@@ -43,6 +45,9 @@ class FinishedRun:
     pipeline: Pipeline
     there: Snapshot
     skeleton: Skeleton
+    """Its joints as people call them, where that is known."""
+    label: Mapping[str, str]
+    """What people call each joint, by the name in the store."""
 
     @staticmethod
     def of(run: str | Path) -> "FinishedRun":
@@ -50,13 +55,16 @@ class FinishedRun:
         pipeline = Pipeline.of(run)
         there = pipeline.inspect()
         try:
-            return FinishedRun(str(run), pipeline, there, there.artifact(Skeleton))
+            skeleton = there.artifact(Skeleton)
         except UnknownNodeError:
             stale = next((node for node in there.plan.nodes if node.state == "stale"), "nothing of it is computed")
             raise UnknownNodeError(
                 f"{run} is not finished, or was computed by another version or with other parameters: {stale};"
                 f" kinetree run {run} computes what is missing"
             ) from None
+        label = _labels(there)
+        names = tuple(label.get(name, name) for name in skeleton.names)
+        return FinishedRun(str(run), pipeline, there, skeleton.model_copy(update={"names": names}), label)
 
     def by_frame(self, cls: type[A]) -> dict[int, A]:
         """The artifacts of one class by source frame number."""
@@ -75,7 +83,34 @@ class FinishedRun:
 
     def evaluation(self, sets: list[str]) -> Evaluation | None:
         """Its skeleton against the truth, computed where it is not there; None where there is no truth."""
-        return evaluated(Pipeline.of(self.name, sets=sets))
+        found = evaluated(Pipeline.of(self.name, sets=sets))
+        return None if found is None else labelled(found, self.label)
+
+
+def _labels(there: Snapshot) -> Mapping[str, str]:
+    """What people call each joint, by the name in the store; empty where nothing is known, or two would be called the same."""
+    try:
+        known = there.artifact(JointNames)
+    except KinetreeError:  # a graph without names, or a run that did not come so far
+        return {}
+    labels = readable_names(known)
+    return dict(zip(known.given, labels, strict=True)) if len(set(labels)) == len(labels) else {}
+
+
+def labelled(evaluation: Evaluation, label: Mapping[str, str]) -> Evaluation:
+    """The same evaluation with other names for found joints.
+
+    label : by the name in the evaluation; a joint that is not there keeps its name
+    """
+
+    def named(joint: JointScore) -> JointScore:
+        return joint if joint.found is None else joint.model_copy(update={"found": label.get(joint.found, joint.found)})
+
+    others = {
+        "joints": tuple(named(joint) for joint in evaluation.joints),
+        "spurious": tuple(label.get(name, name) for name in evaluation.spurious),
+    }
+    return evaluation.model_copy(update=others)
 
 
 def compare(run_a: str | Path, run_b: str | Path, truth: str | Path | None = None) -> Comparison:

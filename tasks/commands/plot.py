@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinetree.errors import ConfigError, KinetreeError
+from kinetree.errors import ConfigError, KinetreeError, UnknownNodeError
 from kinetree.pipeline.command_line.options import pipeline_of
 
 if TYPE_CHECKING:
@@ -48,10 +48,21 @@ def plot(
     of_method = {a.__name__: task.name for a, task in pipeline.tasks.writers.items()}
     names = {"skeleton": of_method.get(Skeleton.__name__), "interval_reference": of_method.get(IntervalReference.__name__)}
 
+    unnamed: list[UnknownNodeError] = []
+
     def fetch(name: str, **index: int) -> Any:
-        return there.artifact(names.get(name) or name, **index)
+        try:
+            return there.artifact(names.get(name) or name, **index)
+        except UnknownNodeError as error:
+            if name == "joint_names":  # a picture is drawn without
+                unnamed.append(error)
+            raise
 
     draw(what, fetch, _wanted(frames, known), path, _axis(up, fetch), PLOTS_OF_METHOD[pipeline.config.method], style)  # type: ignore[arg-type]
+    if unnamed:
+        typer.echo(
+            f"{unnamed[0]}: joints have the names of the store; kinetree run {pipeline.config.output} names them", err=True
+        )
     typer.echo(str(path))
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import typer
 from click.testing import Result
@@ -15,9 +16,11 @@ from typer.testing import CliRunner
 from kinetree.errors import ConfigError, InputError, UnknownNodeError
 from kinetree.pipeline import application
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.schemas.results.evaluation import Evaluation, JointScore
+from kinetree.tasks import compare as compare_module
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.compare import compare as command
-from kinetree.tasks.compare import compare
+from kinetree.tasks.compare import compare, labelled
 
 METHODS = {"mesoscopic": comparison_graphs.WHOLE, "one-armed": comparison_graphs.ONE_ARMED}
 SYNTH = {"figure": "human", "frames": 4, "vertices": 600, "connectivity": "fixed"}
@@ -128,3 +131,24 @@ def test_what_cannot_be_compared_is_refused_in_words(runs: tuple[str, str], tmp_
     assert "compute one of them again with --frames" in str(refused(runs[0], fewer))
     finer = computed(tmp_path / "finer", "mesoscopic", source={"synth": {**SYNTH, "vertices": 700}})
     assert "they are not runs of the same sequence" in str(refused(runs[0], finer))
+
+
+def test_found_joints_are_called_as_people_call_them_and_the_truth_keeps_its_names() -> None:
+    joints = (JointScore(name="knee_l", found="limb_a_2"), JointScore(name="hip_l"))
+    told = Evaluation(
+        truth="t", frames=(0,), true_frames=1, unit=None, height=1.0, joints=joints, spurious=("limb_b_1", "root"),
+        duplicate_of=("knee_l", ""), summary=None, error=np.zeros((1, 2)), detection=np.zeros(1), distance=np.zeros(1),
+    )  # fmt: skip
+    named = labelled(told, {"limb_a_2": "left knee", "limb_b_1": "left elbow", "knee_l": "wrong"})
+    assert [(joint.name, joint.found) for joint in named.joints] == [("knee_l", "left knee"), ("hip_l", None)]
+    assert named.spurious == ("left elbow", "root")
+    assert named.duplicate_of == ("knee_l", "")
+
+
+def test_runs_that_know_what_joints_are_called_are_compared_in_these_names(
+    runs: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compare_module, "_labels", lambda there: {"shoulder_r": "right shoulder", "elbow_r": "right elbow"})
+    result = asked(*runs)
+    assert "only in A: right shoulder (nearest" in result.output
+    assert "true joints found by A alone: shoulder_r" in result.output
