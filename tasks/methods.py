@@ -18,6 +18,7 @@ from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQ
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.structure import STRUCTURE
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.joint_names import joint_names
 from kinetree.tasks.structure.pose_refinement import pose_refinement
@@ -25,14 +26,16 @@ from kinetree.tasks.structure.skeleton import skeleton
 from kinetree.tasks.topology import TOPOLOGY
 from kinetree.tasks.topology.up_direction import up_direction
 
-POSES = (pose_refinement, further_pose, skeleton, joint_names)
+POSES = (pose_refinement, further_pose, skeleton, unknown_error_bars, joint_names)
 """What turns a kinematic tree into the skeleton, in every method that has one."""
 
 METHODS = {
     "mesoscopic": Graph.of((*INPUT, *TOPOLOGY, *REGISTRATION, *STRUCTURE, *FIGURES, *RESULTS)),
-    "mesoscopic-2014": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2014, joint_names, frame_confidence, *FIGURES_2014, *RESULTS)),
+    "mesoscopic-2014": Graph.of(
+        (*INPUT, *TOPOLOGY, *PAPER_2014, unknown_error_bars, joint_names, frame_confidence, *FIGURES_2014, *RESULTS)
+    ),
     "mesoscopic-2014-aligned": Graph.of(
-        (*INPUT, *TOPOLOGY, *REGISTRATION, *PAPER_2014_ALIGNED, joint_names, *FIGURES_2014, *RESULTS)
+        (*INPUT, *TOPOLOGY, *REGISTRATION, *PAPER_2014_ALIGNED, unknown_error_bars, joint_names, *FIGURES_2014, *RESULTS)
     ),
     "reeb": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *SURFACE_2009, *ALIGNED, *POSES, *FIGURES_2009, *RESULTS)),
     "reeb-2009": Graph.of((*INPUT, *TOPOLOGY, *PAPER_2009, *LETTER_2009, frame_confidence, *POSES, *FIGURES_2009, *RESULTS)),

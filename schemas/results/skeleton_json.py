@@ -30,6 +30,30 @@ class Rest(_FileObject):
     """Axes of the joint against those of its parent, of the root against those of the input; y points along the bone."""
 
 
+Length = Annotated[float, Field(ge=0)]
+
+
+class JointError(_FileObject):
+    """How far off a joint is expected to be, and the evidence for it; lengths in the file's unit."""
+
+    expected: Length
+    """Expected distance from the true joint, mean over the frames."""
+    bound: Length
+    """Distance that nine joints of ten keep, mean over the frames."""
+    drift: Length
+    """Root mean square distance between the joint as one of its parts and as the other carries it."""
+    spread: Length | None
+    """Root mean square distance of the joint over several cuts of the body from their mean; null where one cut alone has it."""
+    residual: Length
+    """Root mean square of what the motions of its two parts leave unexplained."""
+    cuts: Annotated[int, Field(ge=1)]
+    """Cuts of the body, each in another pose."""
+    agreeing: Annotated[int, Field(ge=0)]
+    """Cuts that have the joint."""
+    support: Annotated[int, Field(ge=0)]
+    """Frames in which its parts were seen."""
+
+
 class Joint(_FileObject):
     """One joint of the tree."""
 
@@ -46,6 +70,8 @@ class Joint(_FileObject):
     """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves."""
     rest: Rest
     """Where it is in the reference pose, and how its axes lie."""
+    error: JointError | None = None
+    """How far off it is expected to be; null for root and leaves, for assumed joints, and where the method does not know."""
 
 
 class Bone(_FileObject):
@@ -103,6 +129,9 @@ class Document(_FileObject):
     """The bones, one for every joint but the root."""
     confidence: list[list[Share]]
     """Confidence of every joint's position in every frame, 0 to 1, [frame][joint]."""
+    errors: list[list[Length | None]] | None = None
+    """Expected distance of every joint from the true one in every frame, [frame][joint]: larger where the pose is uncertain.
+    null where the joint's own error is null, in frames that were not measured, and as a whole where nothing is known."""
     interpolated: list[InterpolatedFrame] = []
     """The frames that were not measured, which have little confidence."""
 

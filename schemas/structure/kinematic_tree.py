@@ -56,6 +56,15 @@ class KinematicTree(ArticulatedBody):
     """Mean length of each joint's bone as the parts alone carry its ends, before lengths are held; 0 for the root."""
     free_deviation: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Standard deviation of that length over the frames; held lengths have none."""
+    cuts: int = 1
+    """Cuts of the body into rigid parts, each in another pose, whose joints were averaged."""
+    spread: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance of these cuts' joints from their mean; NaN where one cut alone has the joint, and for root and
+    leaves."""
+    agreeing: Annotated[Ints, Array("int32", JOINT)]
+    """Cuts that have each joint; 0 for root and leaves."""
+    joint_residual: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Root mean square of what the motions of the joint's two parts leave unexplained; 0 for root and leaves."""
 
     @property
     def length_variation(self) -> Floats:

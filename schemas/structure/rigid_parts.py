@@ -1,10 +1,11 @@
 """The rigid parts of the body, and the cut that they were made from (2014, Sec. 6.1 and 6.2)."""
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
 from kinetree.schemas.dims import ANNULUS, CONE, FRAME, PART, REMOVAL, ROW, VERTEX, XYZ
 
 
@@ -17,15 +18,22 @@ class RigidPartsParams(Params):
     """Patches that the surface is cut into at first."""
     removal_cost: float = Field(default=0.0025, gt=0)
     """Motion left unexplained without a part, share of the root of the area; a part that costs less is removed."""
+    cuts: int = Field(default=4, ge=1, le=50)
+    """Poses in which the body is cut; joints are the mean over all cuts, and know how far these are apart."""
 
 
 class RigidParts(Artifact):
     """Which vertex of the reference mesh belongs to which rigid part, how the parts move, and how they were found.
 
     A reference mesh of more than 14,000 vertices is cut at a sample of them: every other vertex has the values of the nearest
-    vertex of the sample.
+    vertex of the sample. Each frame in whose pose the body is cut once more is a member of "cut".
     """
 
+    opens: ClassVar[tuple[str, ...]] = ("cut",)
+    further: tuple[int, ...] = ()
+    """Source frame numbers of the poses in which the body is cut once more, in the order in which they were chosen."""
+    settings: RigidPartsParams = RigidPartsParams()
+    """How it was cut; further cuts are made alike."""
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     label: Annotated[Ints, Array("int32", VERTEX)]
@@ -60,3 +68,7 @@ class RigidParts(Artifact):
     """Cost from which on a part stays; above the parameter where the body is soft or badly aligned."""
     origin: Annotated[Ints, Array("int32", PART)]
     """Part of the first cut that each rigid part has grown from; parts that are in neither list lost all their vertices."""
+
+    def members(self, space: str, index: Index) -> Sequence[int]:
+        """The frames of further cuts."""
+        return sorted(self.further)

@@ -35,7 +35,7 @@ def graph_skeleton(
     count, parts = len(tree.parents), int(s.part.max()) + 1
     derived = derivation._asdict() if derivation else numerics.Derivation(
         np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.full(parts, -1), (),
-        np.zeros(count), np.zeros(count),
+        np.zeros(count), np.zeros(count), np.full(count, np.nan), np.zeros(count, np.int64), np.zeros(count),
     )._asdict()  # fmt: skip
     return KinematicTree(
         frames=tuple(motions),

@@ -23,6 +23,7 @@ from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.topology_figures import TopologyFigures
 from kinetree.schemas.results.verdict import Verdict
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
@@ -44,6 +45,7 @@ from kinetree.tasks.views.topology import UNSURE
 from kinetree.tasks.views.verdict import headline
 
 VARIATION = "length varies by, %"
+ERROR = "expected error"
 
 
 @task()
@@ -62,6 +64,7 @@ def report(
     frame_confidence: FrameConfidence,
     surface_error: Mapping[int, SurfaceError],
     verdict: Verdict,
+    error_bars: ErrorBars,
     excerpt: Excerpt,
     coarse_mesh: tuple[CoarseMesh, ...],
     alignment: Mapping[int, Alignment],
@@ -84,6 +87,7 @@ def report(
     if evaluation.summary is not None:
         truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, sequence.fps, label))]
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
+    joints = _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints, error_bars)
     page = Page(
         title=params.title or f"kinetree: {counted(skeleton.kinds.count('joint'), 'joint')} in {len(skeleton.frames)} frames",
         facts=_facts(skeleton, sequence, intervals, up_direction, alignment_figures),
@@ -93,7 +97,7 @@ def report(
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
         scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours),
         sections=[
-            Section("joints", "Joints", _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints)),
+            Section("joints", "Joints", joints),
             Section("structure", "Parts, tree and angles", structure),
             *truth,
             *sections(structure_figures),
@@ -110,17 +114,18 @@ def _joints(
     intervals: Intervals,
     figures: StructureFigures,
     assumed: AssumedJoints,
+    bars: ErrorBars,
 ) -> str:
     """A table of the skeleton's joints, and below it those that are assumed."""
     unit = skeleton.unit or "the unit of the input"
     note = f"<p>Lengths in {escape(unit)}. Intervals are listed where a joint's mean confidence is at least 0.5.</p>"
     words = (assumed_words(joint, labels, skeleton.parents) for joint in assumed.joints)
     below = "".join(f'<p class="assumed">{escape(text[0].upper() + text[1:])}.</p>' for text in words)
-    return note + table(*_joint_table(skeleton, labels, intervals, figures), joints=True) + below
+    return note + table(*_joint_table(skeleton, labels, intervals, figures, bars), joints=True) + below
 
 
 def _joint_table(
-    skeleton: Skeleton, labels: tuple[str, ...], intervals: Intervals, figures: StructureFigures
+    skeleton: Skeleton, labels: tuple[str, ...], intervals: Intervals, figures: StructureFigures, bars: ErrorBars
 ) -> tuple[list[str], list[list[object]]]:
     """Names of the columns and a row for every joint, without the column of lengths where none is known."""
     parents = np.array(skeleton.parents)
@@ -132,6 +137,7 @@ def _joint_table(
         "bone length": skeleton.lengths.tolist(),
         VARIATION: [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, figures.length_variation)],
         "range, °": skeleton.degrees.tolist(),
+        ERROR: [_error_words(bars, j) for j in range(len(parents))],
         "drift": skeleton.drift.tolist(),
         "frames": skeleton.support.tolist(),
         "intervals": [_confident_intervals(skeleton, intervals, j) for j in range(len(parents))],
@@ -139,7 +145,15 @@ def _joint_table(
     }
     if not np.isfinite(figures.length_variation).any():
         del columns[VARIATION]
+    if not bars.cuts:
+        del columns[ERROR]
     return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
+
+
+def _error_words(bars: ErrorBars, j: int) -> str:
+    """The expected error of a joint and its bound."""
+    known = bool(bars.cuts) and np.isfinite(bars.expected[j])
+    return f"{bars.expected[j]:.2g} (90 %: {bars.bound[j]:.2g})" if known else "–"
 
 
 def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> str:

@@ -1,5 +1,7 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
+from kinetree.tasks.structure.error_bars import error_bars
+from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.joint_names import joint_names
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
@@ -9,9 +11,11 @@ from kinetree.tasks.structure.skeleton import skeleton
 
 STRUCTURE = (
     rigid_parts,
+    further_cut,
     kinematic_tree,
     pose_refinement,
     further_pose,
     skeleton,
+    error_bars,
     joint_names,
 )

@@ -9,6 +9,7 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
@@ -20,12 +21,14 @@ from kinetree.tasks.numerics.structure.given_correspondence import is_given, lim
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, JointEvidenceSettings
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.numerics.structure.pruning import PruningSettings
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
 
 
 @task(among=Sequence)
 def kinematic_tree(
     reference: Reference,
     rigid_parts: RigidParts,
+    further_cut: Mapping[int, FurtherCut],
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
     leaves: Leaves,
@@ -55,15 +58,23 @@ def kinematic_tree(
         None if given else evidence,
         settings=tree_settings(params),
         takes=take_spans(frames),
+        further=[_cut(cut, alignment[frame]) for frame, cut in further_cut.items()],
     )
     return KinematicTree(
         frames=frames,
         vertices=V,
         faces=F,
+        cuts=1 + len(further_cut),
         uncertain=np.zeros(len(frames), np.bool_) if given else needs_refinement(tree.confidence),
         **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
         **{**derivation._asdict(), "dropped": tuple((d.part, d.reason) for d in derivation.dropped)},
     )
+
+
+def _cut(further: FurtherCut, pose: Alignment) -> Cut:
+    """What the numerics take."""
+    V, label = np.array(pose.vertices, np.float64), np.asarray(further.label, dtype=np.int64)
+    return Cut(V, label, np.array(further.rotation), np.array(further.translation), np.array(further.residual))
 
 
 def evidence_settings(params: KinematicTreeParams) -> JointEvidenceSettings:
@@ -71,6 +82,6 @@ def evidence_settings(params: KinematicTreeParams) -> JointEvidenceSettings:
     return JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving)
 
 
-def tree_settings(params: KinematicTreeParams) -> numerics.KinematicTreeSettings:
+def tree_settings(params: KinematicTreeParams) -> KinematicTreeSettings:
     """How parts become joints."""
-    return numerics.KinematicTreeSettings(PruningSettings(params.degrees, params.ratio))
+    return KinematicTreeSettings(PruningSettings(params.degrees, params.ratio))

@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
+from kinetree.tasks.numerics.structure.further_cut import distinct_poses
 from kinetree.tasks.numerics.structure.given_correspondence import limited_confidence
 from kinetree.tasks.numerics.structure.oversegmentation import OversegmentationSettings
 
@@ -24,17 +25,22 @@ def rigid_parts(
 ) -> RigidParts:
     """Divides the surface into the rigid parts that the motion shows (2014, Sec. 6.1 and 6.2)."""
     aligned, at = list(alignment.values()), leaves.frames.index(reference.frame)
+    frames, x = tuple(alignment), np.stack([a.vertices for a in aligned])
+    confidence = limited_confidence(np.stack([a.confidence for a in aligned]))
     parts = numerics.rigid_parts(
         reference.vertices,
         np.asarray(reference.faces, dtype=np.int64),
-        np.stack([a.vertices for a in aligned]),
-        limited_confidence(np.stack([a.confidence for a in aligned])),
+        x,
+        confidence,
         leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         settings=parts_settings(params),
-        takes=take_spans(tuple(alignment)),
+        takes=take_spans(frames),
     )
+    further = distinct_poses(x, confidence, frames.index(reference.frame), params.cuts - 1)
     return RigidParts(
-        frames=tuple(alignment),
+        frames=frames,
+        further=tuple(frames[t] for t in further),
+        settings=params,
         label=parts.label,
         rigid=parts.rigid,
         rotation=parts.R,

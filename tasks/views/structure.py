@@ -2,9 +2,12 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from kinetree.pipeline.views import remarks_of, text_of
 from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.verdict import Verdict
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
@@ -27,11 +30,17 @@ def skeleton_remarks(skeleton: Skeleton) -> tuple[str, ...]:
     return (f"{turning} joint{'s' * (turning != 1)} and {leaves} lea{'f' if leaves == 1 else 'ves'} under {skeleton.names[0]}",)
 
 
-@text_of(Skeleton, JointNames, Verdict, AssumedJoints)
+@text_of(Skeleton, JointNames, Verdict, AssumedJoints, ErrorBars)
 def skeleton_text(
-    skeleton: Skeleton, joint_names: JointNames | None, verdict: Verdict | None, assumed: AssumedJoints | None = None
+    skeleton: Skeleton,
+    joint_names: JointNames | None,
+    verdict: Verdict | None,
+    assumed: AssumedJoints | None = None,
+    bars: ErrorBars | None = None,
 ) -> tuple[str, ...]:
-    """The tree, one line a joint: length of its bone, range of its angle, uncertainty, frames that support it.
+    """The tree, one line a joint: length of its bone, range of its angle, expected error, frames that support it.
+
+    The error is followed by the bound that nine of ten joints keep; where no error is known, the drift stands for it.
 
     Above it the verdict; joints as people call them, with the skeleton's own name where that is another. Below it joints that
     are assumed.
@@ -43,7 +52,7 @@ def skeleton_text(
     names = [f"{_branch(skeleton, joint)}{label}" for joint, label in enumerate(labels)]
     width = max(map(len, names))
     above = (headline(verdict), "") if verdict else ()
-    tree = (f"{name:{width}}  {_measures(skeleton, joint)}".rstrip() for joint, name in enumerate(names))
+    tree = (f"{name:{width}}  {_measures(skeleton, joint, bars)}".rstrip() for joint, name in enumerate(names))
     return (*above, *tree, *(assumed_words(joint, labels, skeleton.parents) for joint in (assumed.joints if assumed else ())))
 
 
@@ -71,7 +80,7 @@ def _branch(skeleton: Skeleton, joint: int) -> str:
     return lead
 
 
-def _measures(skeleton: Skeleton, joint: int) -> str:
+def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
     """What is measured of a joint, in words."""
     if skeleton.kinds[joint] == "root":
         return f"root, {len(skeleton.frames)} frames"
@@ -80,7 +89,35 @@ def _measures(skeleton: Skeleton, joint: int) -> str:
     if skeleton.kinds[joint] == "leaf":
         return length
     support = f"supported by {skeleton.support[joint]} of {len(skeleton.frames)} frames"
-    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, ±{skeleton.drift[joint]:.2g}{unit}, {support}"
+    off = f"±{skeleton.drift[joint]:.2g}{unit}"
+    if bars is not None and bars.cuts:
+        off = f"±{bars.expected[joint]:.2g}{unit} (90 %: {bars.bound[joint]:.2g})"
+    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, {off}, {support}"
+
+
+@remarks_of(ErrorBars)
+def error_bars_remarks(bars: ErrorBars) -> tuple[str, ...]:
+    """The joints' errors in one sentence."""
+    known = np.array(bars.expected)[np.isfinite(bars.expected)]
+    if not len(known):
+        return ()
+    cuts = f"{bars.cuts} cuts" if bars.cuts > 1 else "one cut"
+    return (f"joints are expected to be off by {np.median(known):.2g}, at most {known.max():.2g} ({cuts})",)
+
+
+@text_of(ErrorBars)
+def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
+    """One line a joint: its expected error, the bound, and the evidence."""
+    rows = [j for j in range(len(bars.joints)) if np.isfinite(bars.expected[j])]
+    if not rows:
+        return ("no errors are known",)
+    wide = max(len(bars.joints[j]) for j in rows)
+    return tuple(
+        f"{bars.joints[j]:{wide}}  ±{bars.expected[j]:.2g}, 90 % below {bars.bound[j]:.2g}; drift {bars.drift[j]:.2g},"
+        f" spread {bars.spread[j]:.2g} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {bars.residual[j]:.2g},"
+        f" seen in {bars.support[j]} frames"
+        for j in rows
+    )
 
 
 @remarks_of(JointNames)

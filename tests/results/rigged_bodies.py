@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure
@@ -110,3 +111,16 @@ def skinned(skeleton: Skeleton) -> Floats:
         moved = np.einsum("tvxy,vy->tvx", skeleton.rotation[:, i], v) + skeleton.positions[:, i]
         out += skeleton.weight[:, slot, None] * moved
     return out
+
+
+def bars_of(skeleton: Skeleton) -> ErrorBars:
+    """Expected errors of a hundredth of the unit times the joint's number; a half more in the first frame."""
+    turning = np.array([kind == "joint" for kind in skeleton.kinds])
+    expected = np.where(turning, 0.01 * (1 + np.arange(len(turning))), np.nan)
+    in_frame = np.tile(expected, (len(skeleton.frames), 1))
+    in_frame[0] *= 1.5
+    count = np.where(turning, 3, 0)
+    return ErrorBars(
+        joints=skeleton.names, frames=skeleton.frames, cuts=4, expected=expected, bound=2.0 * expected, in_frame=in_frame,
+        drift=expected, spread=0.5 * expected, residual=0.2 * expected, agreeing=count, support=4 * count,
+    )  # fmt: skip

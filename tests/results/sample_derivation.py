@@ -46,4 +46,5 @@ def tree_of(skeleton: Skeleton) -> KinematicTree:
         centre=skeleton.rest[[*(carriers[k] for k in below), 0]], border_drift=np.full(len(pair), 0.01),
         border_degrees=np.full(len(pair), 20.0), joint_of_part=np.array([*carriers, -1]), dropped=((count, "sliding"),),
         free_length=skeleton.lengths, free_deviation=0.01 * skeleton.lengths,
+        spread=np.full(len(parents), np.nan), agreeing=np.zeros(len(parents), int), joint_residual=np.zeros(len(parents)),
     )  # fmt: skip

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from results.plain_names import plain
-from results.rigged_bodies import skinned, spider
+from results.rigged_bodies import bars_of, skinned, spider
 from results.sample_derivation import parts_of, tree_of
 
 from kinetree.schemas.input.connectivity import Connectivity
@@ -135,6 +135,7 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
         frame: surface_error(**some("skeleton"), mesh=mesh, index=(frame,)) for frame, mesh in all_of_it["mesh"].items()
     }
     all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error"))
+    all_of_it.setdefault("error_bars", bars_of(all_of_it["skeleton"]))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
     all_of_it["appearance"] = changes.get("appearance", Appearance.none())
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 from results.gltf_reader import Glb as Read
-from results.rigged_bodies import skeleton_of, skinned, without_joint
+from results.rigged_bodies import bars_of, skeleton_of, skinned, without_joint
 from walkers import FIGURES
 
 from kinetree.pipeline import views
@@ -120,7 +120,7 @@ def test_several_joints_of_one_bone_follow_each_other(found, names):
 
 
 def test_skeleton_json_says_that_it_is_assumed(found, names, knee):
-    content = views.files(skeleton_json(found, names, Z_UP, knee), ())["skeleton.json"]
+    content = views.files(skeleton_json(found, names, Z_UP, bars_of(found), knee), ())["skeleton.json"]
     told = Document.model_validate_json(content).joints
     assert [joint.name for joint in told if joint.kind == "assumed"] == ["knee_l"]
     (ankle,) = [joint for joint in told if joint.anatomy == "ankle_l"]
@@ -129,11 +129,14 @@ def test_skeleton_json_says_that_it_is_assumed(found, names, knee):
     assert kinds == list(found.kinds)
     confidence = np.array(json.loads(content)["confidence"])
     assert confidence[:, [joint.kind == "assumed" for joint in told]].max() == 0
+    assert [joint.error is None for joint in told] == [joint.kind != "joint" for joint in told]
 
 
 def test_without_it_the_files_are_the_same_to_the_byte(found, names):
     nothing = assumed_joints(found, names, AssumedJointsParams())
-    assert skeleton_json(found, names, Z_UP, nothing).content.tobytes() == skeleton_json(found, names, Z_UP).content.tobytes()
+    bars = bars_of(found)
+    told = (skeleton_json(found, names, Z_UP, bars, nothing), skeleton_json(found, names, Z_UP, bars))
+    assert told[0].content.tobytes() == told[1].content.tobytes()
     given = (glb(found, names, Z_UP, GlbParams(), assumed_joints=nothing), glb(found, names, Z_UP, GlbParams()))
     assert given[0].content.tobytes() == given[1].content.tobytes()
 

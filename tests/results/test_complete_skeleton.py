@@ -3,8 +3,9 @@
 import json
 
 import numpy as np
+import pytest
 from results.plain_names import plain
-from results.rigged_bodies import spider
+from results.rigged_bodies import bars_of, spider
 
 from kinetree.pipeline import views
 from kinetree.schemas.input.sequence import Sequence
@@ -15,6 +16,7 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 from kinetree.tasks.results.complete_skeleton import complete_skeleton
 from kinetree.tasks.results.skeleton_json import skeleton_json
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 
 WHOLE = spider()
 POSES = ("positions", "rotation", "confidence")
@@ -66,7 +68,9 @@ def test_a_long_gap_stays_open() -> None:
 
 def test_the_file_names_them() -> None:
     found = completed(4)
-    told = json.loads(bytes(skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0)).content))
+    told = json.loads(
+        bytes(skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0), unknown_error_bars(found)).content)
+    )
     assert told["interpolated"] == [{"frame": WHOLE.frames[4], "cause": "missing", "reason": ""}]
     assert told["frames"] == list(WHOLE.frames)
 
@@ -78,9 +82,15 @@ def test_every_take_has_files_of_its_own_with_the_same_bones() -> None:
     sequence = Sequence(frames=frames, fps=None, unit=None, takes=("walk", "run"))
     found = complete_skeleton(skeleton, sequence, CompleteSkeletonParams())
     assert found.frames == frames
-    made = skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0))
+    bars = bars_of(found)
+    made = skeleton_json(found, plain(found), UpDirection(up="y", confidence=1.0), bars)
     assert made.names == ("skeleton-walk.json", "skeleton-run.json")
     walk, run = (json.loads(part) for part in views.files(made, ()).values())
     assert (walk["frames"], run["frames"][0]) == (list(range(half)), 3)
     assert walk["bones"] == run["bones"]
+    j = found.kinds.index("joint")
+    assert (walk["errors"][0][j], run["errors"][0][j]) == (
+        pytest.approx(bars.in_frame[0, j]),
+        pytest.approx(bars.in_frame[half, j]),
+    )
     assert walk["positions"] + run["positions"] == WHOLE.positions.tolist()

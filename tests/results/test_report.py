@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 from results.plain_names import plain
-from results.rigged_bodies import spider
+from results.rigged_bodies import bars_of, spider
 from results.sample_report import artifacts, confident, judged, page_artifacts
 
 from kinetree.schemas.input.mesh import Cleaning
@@ -16,6 +16,7 @@ from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.results.report import RUN, ReportParams
 from kinetree.tasks.results.report import report
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 
 
 def page(title: str = "", **changes: Any) -> str:
@@ -174,3 +175,12 @@ def test_page_is_whole_and_asks_for_nothing(plain_page: str) -> None:
     assert plain_page.startswith("<!doctype html>")
     assert plain_page.rstrip().endswith("</html>")
     assert not re.search(r'(src|href)="(?!data:|#)', plain_page)
+
+
+def test_joints_have_their_expected_error_beside_them_where_it_is_known() -> None:
+    body = spider()
+    bars = bars_of(body)
+    text, j = page(), body.kinds.index("joint")
+    assert "expected error" in text
+    assert f"{bars.expected[j]:.2g} (90 %: {bars.bound[j]:.2g})" in text
+    assert "expected error" not in page(error_bars=unknown_error_bars(body))

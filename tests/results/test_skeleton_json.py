@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 from results.plain_names import plain
-from results.rigged_bodies import spider
+from results.rigged_bodies import bars_of, spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.pipeline import views
@@ -16,6 +16,7 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.document import schema
 from kinetree.tasks.results.skeleton_json import skeleton_json
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 
 
 @pytest.fixture
@@ -26,17 +27,18 @@ def body():
 Z_UP = UpDirection(up="z", confidence=0.9)
 
 
-def text(skeleton, names=None):
+def text(skeleton, names=None, bars=None):
     fields = {name: getattr(skeleton, name) for name in Skeleton.model_fields}
     complete = CompleteSkeleton(**fields, interpolated=())
-    return views.files(skeleton_json(complete, names or plain(skeleton), Z_UP), ())["skeleton.json"].decode()
+    made = skeleton_json(complete, names or plain(skeleton), Z_UP, bars or unknown_error_bars(skeleton))
+    return views.files(made, ())["skeleton.json"].decode()
 
 
 def test_file_holds_the_skeleton_as_it_is(body):
     content = json.loads(text(body))
     assert list(content) == [
         "format", "unit", "fps", "up", "up_confidence", "topology", "front", "front_confidence", "frames", "seconds", "joints",
-        "positions", "rotations", "bones", "confidence", "interpolated",
+        "positions", "rotations", "bones", "confidence", "errors", "interpolated",
     ]  # fmt: skip
     assert content["format"] == "kinetree.skeleton/2"
     assert (content["unit"], content["fps"], content["up"], content["frames"]) == ("mm", 10.0, "z", list(range(12)))
@@ -108,3 +110,37 @@ def test_names_are_kept_whatever_they_are_and_the_file_is_ascii():
     content = text(spider(names=names))
     assert [joint["name"] for joint in json.loads(content)["joints"]] == list(names)
     assert content.isascii()
+
+
+def test_expected_errors_stand_with_their_joints_and_in_every_frame(body):
+    bars = bars_of(body)
+    content = json.loads(text(body, bars=bars))
+    assert Document.model_validate(content)
+    for j, joint in enumerate(content["joints"]):
+        if body.kinds[j] != "joint":
+            assert joint["error"] is None
+            assert {row[j] for row in content["errors"]} == {None}
+            continue
+        assert joint["error"]["expected"] == bars.expected[j]
+        assert joint["error"]["bound"] == bars.bound[j]
+        assert (joint["error"]["cuts"], joint["error"]["agreeing"], joint["error"]["support"]) == (4, 3, 12)
+        np.testing.assert_allclose([row[j] for row in content["errors"]], bars.in_frame[:, j], rtol=1e-3)
+
+
+def test_spread_of_a_joint_that_one_cut_has_and_a_frame_that_was_not_measured_are_null(body):
+    bars = bars_of(body)
+    spread = np.full_like(bars.spread, np.nan)
+    lacking = bars.model_copy(update={"spread": spread, "frames": bars.frames[1:], "in_frame": bars.in_frame[1:]})
+    content = json.loads(text(body, bars=lacking))
+    j = body.kinds.index("joint")
+    assert content["joints"][j]["error"]["spread"] is None
+    assert content["errors"][0][j] is None
+    assert content["errors"][1][j] is not None
+
+
+def test_files_without_expected_errors_are_still_read(body):
+    content = json.loads(text(body))
+    assert content["errors"] is None
+    assert {joint.pop("error") for joint in content["joints"]} == {None}
+    del content["errors"]
+    assert Document.model_validate(content).errors is None

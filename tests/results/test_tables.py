@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from results.plain_names import plain
-from results.rigged_bodies import spider
+from results.rigged_bodies import bars_of, spider
 from results.true_skeletons import generated, perfect
 from scipy.signal import savgol_filter
 from scipy.spatial.transform import Rotation
@@ -21,6 +21,7 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats import tables as format_of_tables
 from kinetree.tasks.results.formats.tables import bone_angles
 from kinetree.tasks.results.tables import tables
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 from kinetree.tasks.structure.joint_names import joint_names
 
 UP = UpDirection(up="z", confidence=1.0)
@@ -32,7 +33,7 @@ def body():
 
 
 def files(skeleton, **params):
-    return views.files(tables(skeleton, plain(skeleton), UP, TablesParams(**params)), ())
+    return views.files(tables(skeleton, plain(skeleton), UP, unknown_error_bars(skeleton), TablesParams(**params)), ())
 
 
 def rows(skeleton, name, **params):
@@ -72,10 +73,12 @@ def test_text_of_strangers_is_no_formula_of_a_spreadsheet(body):
 
 
 def test_smoothing_is_said():
-    assert views.remarks(tables(spider(), plain(spider()), UP, TablesParams(window=0.7, degree=2))) == (
-        "velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",
+    assert views.remarks(
+        tables(spider(), plain(spider()), UP, unknown_error_bars(spider()), TablesParams(window=0.7, degree=2))
+    ) == ("velocities and accelerations: Savitzky-Golay over 7 frames (0.7 s), polynomials of degree 2",)
+    (remark,) = views.remarks(
+        tables(spider(fps=None), plain(spider(fps=None)), UP, unknown_error_bars(spider()), TablesParams())
     )
-    (remark,) = views.remarks(tables(spider(fps=None), plain(spider(fps=None)), UP, TablesParams()))
     assert "no velocities" in remark
     assert {row[6] for row in rows(spider(fps=None), "motion")[1:]} == {""}
 
@@ -154,7 +157,7 @@ def walker():
 
 def table(walker, name):
     body, names = walker
-    written = views.files(tables(body, names, UP, TablesParams()), ())[f"tables/{name}.csv"].decode()
+    written = views.files(tables(body, names, UP, unknown_error_bars(body), TablesParams()), ())[f"tables/{name}.csv"].decode()
     return list(csv.DictReader(io.StringIO(written, newline="")))
 
 
@@ -175,7 +178,7 @@ def test_knees_of_a_walker_only_bend_backwards(walker):
 
 def test_steps_of_a_walker_alternate_and_last_as_long_as_they_were_made_to(walker):
     body, names = walker
-    told = json.loads(views.files(tables(body, names, UP, TablesParams()), ())["tables/gait.json"])
+    told = json.loads(views.files(tables(body, names, UP, unknown_error_bars(body), TablesParams()), ())["tables/gait.json"])
     for foot in ("foot_l", "foot_r"):
         assert told["feet"][foot]["stride_seconds"] == pytest.approx(1.25, abs=0.04)
     assert abs(told["symmetry"]["foot"]["stride_percent"]) < 5
@@ -189,7 +192,7 @@ def test_steps_of_a_walker_alternate_and_last_as_long_as_they_were_made_to(walke
 def test_body_that_is_not_recognised_or_faces_nobody_knows_where_has_no_anatomical_tables(walker):
     body, names = walker
     for unsure in (plain(body), names.model_copy(update={"front_confidence": 0.2})):
-        held = views.files(tables(body, unsure, UP, TablesParams()), ())
+        held = views.files(tables(body, unsure, UP, unknown_error_bars(body), TablesParams()), ())
         assert not {"tables/joint_angles.csv", "tables/gait.csv", "tables/gait.json"} & set(held)
         assert "tables/turns.csv" in held
 
@@ -203,3 +206,22 @@ def test_turns_of_every_joint_are_those_of_the_rig_and_zero_at_rest(body):
     relative = body.rotation[:, 0].transpose(0, 2, 1) @ body.rotation[:, 1]
     whole = Rotation.from_rotvec(np.radians(moved * (1, 0, 1))) * Rotation.from_rotvec(np.radians(moved * (0, 1, 0)))
     np.testing.assert_allclose(whole.magnitude(), Rotation.from_matrix(relative).magnitude(), atol=1e-6)
+
+
+def test_joints_have_their_expected_error_and_its_evidence_and_frames_have_theirs(body):
+    bars = bars_of(body)
+    made = views.files(tables(body, plain(body), UP, bars, TablesParams()), ())
+    head, *values = csv.reader(io.StringIO(made["tables/joints.csv"].decode(), newline=""))
+    for row, kind, expected in zip(values, body.kinds, bars.expected, strict=True):
+        told = dict(zip(head, row, strict=True))
+        if kind == "joint":
+            assert float(told["expected_error"]) == pytest.approx(expected)
+            assert float(told["error_bound"]) == pytest.approx(2 * expected)
+            assert (told["cuts_agreeing"], told["cuts"], told["frames_seen"]) == ("3", "4", "12")
+        else:
+            assert told["expected_error"] == told["cuts"] == told["frames_seen"] == ""
+    head, *values = csv.reader(io.StringIO(made["tables/errors.csv"].decode(), newline=""))
+    j = body.kinds.index("joint")
+    assert head[2:] == list(body.names)
+    assert [float(row[2 + j]) for row in values] == pytest.approx(bars.in_frame[:, j])
+    assert "tables/errors.csv" not in files(body)

@@ -48,7 +48,7 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
         frames=frames, rows=np.zeros((len(tips), count), int), positions=positions, kept=np.ones((1, len(tips)), bool),
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
-    return kinematic_tree(reference, parts, aligned, {}, leaves, KinematicTreeParams(**params))
+    return kinematic_tree(reference, parts, {}, aligned, {}, leaves, KinematicTreeParams(**params))
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
@@ -86,7 +86,7 @@ def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.Mon
     body, asked = chain((0.0,), swings(16, 2)), []
     made = numerics.kinematic_tree
 
-    def listening(*given: Any, settings: Any, takes: Any) -> Any:
+    def listening(*given: Any, settings: Any, takes: Any, further: Any) -> Any:
         asked.append(given[10].settings)
         return made(*given[:10], None, settings=settings)
 

@@ -1,33 +1,15 @@
 """The rigid parts as the task gives them."""
 
 import numpy as np
+from aligned_body import FIRST, given
 from articulated import three_arms
 
-from kinetree.schemas.registration.alignment import Alignment
-from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
-from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.structure.rigid_parts import rigid_parts
-
-FIRST = 10
 
 
 def told(V: np.ndarray, F: np.ndarray, x: np.ndarray, **params: float) -> RigidParts:
-    frames = tuple(range(FIRST, FIRST + len(x)))
-    reference = Reference(
-        frames=frames, frame=FIRST + 2, vertices=V, faces=F, size=1.0, fixed=True, leaves=0, free=True,
-        score=np.zeros(len(x)),
-    )  # fmt: skip
-    zero, one = np.zeros(len(V)), np.ones(len(V))
-    aligned = {
-        f: Alignment(vertices=y, residual=zero, stretch=one, confidence=one, uncovered=0.0)
-        for f, y in zip(frames, x, strict=True)
-    }
-    leaves = Leaves(
-        frames=frames, rows=np.zeros((0, len(x)), int), positions=np.zeros((0, len(x), 3)), kept=np.ones((1, 0), bool),
-        lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
-    )  # fmt: skip
-    return rigid_parts(reference, aligned, leaves, RigidPartsParams(**params))
+    return rigid_parts(*given(V, F, x), RigidPartsParams(**params))
 
 
 def test_arms_that_turn_are_parts_and_carry_their_vertices() -> None:
@@ -64,3 +46,13 @@ def test_a_stiff_sequence_is_one_part() -> None:
 def test_a_bar_out_of_reach_leaves_one_part() -> None:
     body = three_arms()
     assert told(body.V, body.F, body.x, removal_cost=10.0).rotation.shape[1] == 1
+
+
+def test_further_cuts_are_in_other_poses_and_one_cut_has_none() -> None:
+    body = three_arms()
+    found, alone = told(body.V, body.F, body.x, cuts=3), told(body.V, body.F, body.x, cuts=1)
+    assert len(set(found.further) - {FIRST + 2}) == 2
+    assert found.members("cut", ()) == sorted(found.further)
+    assert alone.further == ()
+    for name in RigidParts.array_fields():
+        np.testing.assert_array_equal(getattr(found, name), getattr(alone, name))

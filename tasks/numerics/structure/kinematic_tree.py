@@ -4,54 +4,22 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
-from kinetree.tasks.numerics.structure.centre_lines import towards_centre_lines
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
+from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
-from kinetree.tasks.numerics.structure.pruning import Dropped, Pruned, PruningSettings, pruned
-from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
-from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
-from kinetree.tasks.numerics.structure.skinning import heaviest, skinning
-
-
-class KinematicTreeSettings(NamedTuple):
-    """How parts become joints; lengths are shares of the root of the area where nothing else is said."""
-
-    pruning: PruningSettings
-    """What a joint must show to stay."""
-    noise: float = 0.002
-    """Error of a vertex below which its motion says nothing of its skinning weights. Not recorded. Joints move by 0.3 % of
-    the height at most when it is halved or doubled."""
-    spread: float = 0.35
-    """Standard deviation of a joint about where it is expected, in radii of its border. Not recorded; see DESIGN for what
-    the expected place was chosen on. Joints move by 2 % of the height at most when it is halved
-    or doubled, errors by 0.14 %."""
-    frames_alike: float = 3.0
-    """Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it. Not
-    recorded. Joints move by 1.3 % of the height at most when it is halved or doubled, errors by 0.06 %."""
-    far: float = 0.7
-    """Distance from where it is expected, in radii of its border, at which a joint is held twice as firmly. Chosen on
-    heads, whose joints run away along the axis by two radii. Joints move by 0.4 % of the height at most when it is halved
-    or doubled."""
-    residual_share: float = 0.5
-    """Share of what a part's motion leaves of single vertices that its motion may err by: noise averages out over a part.
-    Not recorded. Joints move by 0.1 % of the height at most when it is halved or doubled."""
-    rigid_weight: float = 0.75
-    """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
-    second_ends: bool = False
-    """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
-    root_amid_limbs: bool = False
-    """Whether the root lies amid the limbs that hang on it, see `root_place`, and not amid its surface."""
+from kinetree.tasks.numerics.structure.skinning import heaviest
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints
 
 
 class KinematicTree(NamedTuple):
@@ -96,6 +64,10 @@ class Derivation(NamedTuple):
     dropped        : parts that pruning dropped, in that order, and why
     free_length    : (joint,) mean length of each joint's bone as the parts alone carry its ends, mesh unit; 0 for the root
     free_deviation : (joint,) standard deviation of it over the frames, mesh unit
+    spread         : (joint,) root mean square distance of several cuts' joints from their mean, mesh unit; NaN where one cut
+                     alone has the joint, and where it is none
+    agreeing       : (joint,) cuts that have it; 0 for the root and ends of bones
+    joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
     """
 
     pair: Ints
@@ -106,6 +78,9 @@ class Derivation(NamedTuple):
     dropped: tuple[Dropped, ...]
     free_length: Floats
     free_deviation: Floats
+    spread: Floats
+    agreeing: Ints
+    joint_residual: Floats
 
 
 def kinematic_tree(
@@ -123,6 +98,7 @@ def kinematic_tree(
     *,
     settings: KinematicTreeSettings,
     takes: Sequence[slice] | None = None,
+    further: Sequence[Cut] = (),
 ) -> tuple[KinematicTree, Derivation]:
     """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
 
@@ -136,21 +112,16 @@ def kinematic_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     takes      : positions of the frames of each take; None takes all as one
+    further    : other cuts of the same body; its joints are then the mean over all cuts that have them
     """
     chosen = settings
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
-    F, label = np.array(F, dtype=np.int64), _filled(V, np.array(label, dtype=np.int64))
+    body = MovingSurface(V, np.array(F, dtype=np.int64), x, area, takes)
     given = R.shape[1]
-    used, label, R, t, residual = _used(label, R, t, residual)
-    seen = None if confidence is None else confident_share(label, area, confidence, len(x), R.shape[1])
-    parts = MovingParts(label, R, t, residual, seen)
-    left = pruned(MovingSurface(V, F, x, area, takes), parts, leaves, evidence, settings=chosen.pruning)
-    tree = left.part_tree.tree
-    label = np.argsort(tree.order)[left.parts.label]
-    tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)
-    R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (left.parts.R, left.parts.t))
-    W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * float(np.sqrt(area.sum())))
-    rest, drift = _joints(V, area, label, W, left, chosen)
+    found = tree_joints(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, settings=chosen)
+    agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, chosen) for cut in further], body.size)
+    F, tree, label, W, R, t = body.F, found.left.part_tree.tree, found.label, found.W, found.R, found.t
+    rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
     share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
@@ -159,8 +130,27 @@ def kinematic_tree(
         leaves = np.concatenate([leaves, second_ends(V, F, label, tree.parents, leaves)])
     ends = end_effectors(V, F, label, tree.parents, leaves)
     spans = score_spans(len(x), takes)
-    body, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, drift, support, spans, chosen)
-    return body, _derivation(left, used, given, body, order, R, t)
+    made, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, off, support, spans, chosen)
+    return made, _derivation(found, agreed, given, made, order)
+
+
+def _trajectories(
+    body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
+) -> Floats:
+    """(frame, joint, xyz) the joints of another cut of the same body, but for its root; the frames need not show them."""
+    found = tree_joints(body._replace(V=cut.V), cut, leaves, confidence, None, settings=chosen)
+    return found.motion.carried(found.rest[1:])
+
+
+def _agreed(found: TreeJoints, further: Sequence[Floats], size: float) -> JointConsensus:
+    """Joints of the first cut as all cuts place them; the root as it is."""
+    count = len(found.rest)
+    if not further:
+        return JointConsensus(found.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))
+    mean = joint_consensus(found.rest[1:], found.motion, further, size)
+    return JointConsensus(
+        np.concatenate([found.rest[:1], mean.rest]), np.append(np.nan, mean.spread), np.append(0, mean.agreeing)
+    )
 
 
 def _assembled(
@@ -207,17 +197,17 @@ def _assembled(
     return body, order
 
 
-def _derivation(left: Pruned, used: Ints, given: int, body: KinematicTree, order: Ints, R: Floats, t: Floats) -> Derivation:
+def _derivation(found: TreeJoints, agreed: JointConsensus, given: int, body: KinematicTree, order: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    used  : (part,) number of each part as it was given, of so many given
+    given : how many parts there were
     order : (joint,) part in the tree's order, or beyond them an end effector
-    R, t  : (frame, part, 3, 3), (frame, part, xyz) in the tree's order
     """
-    parts = R.shape[1]
+    left, used, parts = found.left, found.used, len(found.rest)
     joint_of_part = np.full(given, -1)
     joint_of_part[used[left.origin[left.part_tree.tree.order]]] = np.argsort(order)[:parts]
-    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), R, t)
+    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), found.R, found.t)
+    is_part, part = order < parts, np.minimum(order, parts - 1)
     return Derivation(
         pair=used[left.before.borders.pair],
         centre=left.before.joints.rest,
@@ -227,6 +217,9 @@ def _derivation(left: Pruned, used: Ints, given: int, body: KinematicTree, order
         dropped=tuple(d._replace(part=int(used[d.part])) for d in left.dropped),
         free_length=length.mean(axis=0),
         free_deviation=length.std(axis=0),
+        spread=np.where(is_part, agreed.spread[part], np.nan),
+        agreeing=np.where(is_part, agreed.agreeing[part], 0),
+        joint_residual=np.where(is_part, found.residual[part], 0.0),
     )
 
 
@@ -235,42 +228,3 @@ def _border_degrees(tree: PartTree) -> Floats:
     degrees = np.full(len(tree.borders.pair), np.nan)
     degrees[tree.tree.border[1:]] = tree.degrees[1:]
     return degrees
-
-
-def _joints(
-    V: Floats, area: Floats, label: Ints, W: Floats, left: Pruned, chosen: KinematicTreeSettings
-) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected amid their border or on centre lines, and their drift."""
-    parts, tree, met = left.parts, left.part_tree.tree, left.part_tree.borders
-    rest, drift = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
-    root = label == 0
-    rest[0] = area[root] @ V[root] / area[root].sum()
-    rows = tree.border[1:]
-    expected = towards_centre_lines(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
-    pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
-    residual = chosen.residual_share * parts.residual
-    prior = RotationCentresSettings(chosen.spread, chosen.frames_alike, chosen.far)
-    joints = rotation_centres(parts.R, parts.t, pair, expected, met.radius[rows], residual, parts.confidence, prior)
-    rest[1:], drift[1:] = joints.rest, joints.drift
-    if chosen.root_amid_limbs:
-        rest[0] = root_amid_limbs(rest, tree.parents, rest[0])
-    return rest, drift
-
-
-def _filled(V: Floats, label: Ints) -> Ints:
-    """Vertices without a part have that of the nearest vertex with one."""
-    missing = label < 0
-    if not missing.any():
-        return label
-    if missing.all():
-        return np.zeros_like(label)
-    filled = label.copy()
-    filled[missing] = label[~missing][KDTree(V[~missing]).query(V[missing])[1]]
-    return filled
-
-
-def _used(label: Ints, *of_parts: Floats) -> tuple[Ints, Ints, Floats, Floats, Floats]:
-    """(part,) the parts that some vertex has · labels and arrays of these parts alone."""
-    used, label = np.unique(label, return_inverse=True)
-    R, t, residual = (np.ascontiguousarray(a[:, used], dtype=np.float64) for a in of_parts)
-    return used, label.astype(np.int64), R, t, residual

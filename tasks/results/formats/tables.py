@@ -10,12 +10,18 @@ import numpy as np
 
 from kinetree.errors import ConfigError
 from kinetree.schemas.array import Floats
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.results.derivatives import Derivatives, derivatives
 from kinetree.tasks.results.formats.rig import children, local_rotations, quaternions, rest_frames, seconds
 
 DIGITS = 9
 """Significant digits of every number."""
+ERROR_COLUMNS = {
+    "expected_error": "expected", "error_bound": "bound", "drift": "drift", "spread": "spread", "residual": "residual",
+    "cuts_agreeing": "agreeing", "frames_seen": "support",
+}  # fmt: skip
+"""Columns of the table of joints, and the fields of the error bars that they show."""
 
 
 Column = Sequence[object] | Floats
@@ -27,14 +33,17 @@ class Table(NamedTuple):
     columns: Mapping[str, Column]
 
 
-def tables(skeleton: Skeleton, found: Derivatives | None) -> Mapping[str, Table]:
+def tables(skeleton: Skeleton, found: Derivatives | None, bars: ErrorBars | None = None) -> Mapping[str, Table]:
     """All tables by name.
 
     motion      a row a frame and joint: frame, seconds, joint, position x y z, velocity vx vy vz, acceleration ax ay az,
                 rotation qx qy qz qw against the parent as in skeleton.json, confidence
-    joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths
+    joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths; its
+                expected error, a bound that nine of ten joints keep, and the evidence: drift, spread over so many cuts of which
+                so many have the joint, residual, frames seen; no such columns where no error is known
     positions   a row a frame: frame, seconds, then x, y, z of every joint
     confidence  a row a frame: frame, seconds, then every joint's confidence, 0 to 1
+    errors      a row a frame: frame, seconds, then every joint's expected error; only where errors are known
     angles      a row a frame: frame, seconds, then for every pair of bones with a common joint the angle between them in
                 degrees, 180 where they are in line; columns are named parent/joint/child
     bones       parent, child, length, unit
@@ -56,15 +65,33 @@ def tables(skeleton: Skeleton, found: Derivatives | None) -> Mapping[str, Table]
         "length": skeleton.lengths,
         "range": skeleton.degrees,
         "unit": [skeleton.unit or ""] * len(names),
+        **_error_columns(bars, len(names)),
     }
     return {
         "motion": Table(_motion(skeleton, found)),
         "joints": Table(joints),
         "positions": series(skeleton, [f"{n}.{x}" for n in names for x in "xyz"], X.reshape(len(X), -1)),
         "confidence": series(skeleton, names, skeleton.confidence),
+        **({"errors": series(skeleton, names, _errors_in_frames(skeleton, bars))} if bars is not None and bars.cuts else {}),
         "angles": series(skeleton, ["/".join(names[j] for j in pair) for pair in pairs], angles),
         "bones": Table(bones),
     }
+
+
+def _error_columns(bars: ErrorBars | None, joints: int) -> dict[str, Column]:
+    """Expected error, bound and evidence of every joint, NaN for root and leaves; no column where nothing is known."""
+    if bars is None or not bars.cuts:
+        return {}
+    found = {column: np.asarray(getattr(bars, field), np.float64) for column, field in ERROR_COLUMNS.items()}
+    found["cuts"] = np.full(joints, float(bars.cuts))
+    return {column: np.where(np.isnan(bars.expected), np.nan, values) for column, values in found.items()}
+
+
+def _errors_in_frames(skeleton: Skeleton, bars: ErrorBars) -> Floats:
+    """(frame, joint) expected errors; NaN in frames that were not measured."""
+    row = {frame: t for t, frame in enumerate(bars.frames)}
+    unknown = np.full(len(skeleton.names), np.nan)
+    return np.stack([bars.in_frame[row[frame]] if frame in row else unknown for frame in skeleton.frames])
 
 
 def motion_derivatives(skeleton: Skeleton, window: float, degree: int) -> Derivatives | None:

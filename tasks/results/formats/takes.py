@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.input.frame_numbers import TAKE, take_spans
 
@@ -30,4 +31,16 @@ def of_takes(skeleton: Skeleton) -> dict[str, CompleteSkeleton]:
         frames = tuple(t - k * TAKE for t in skeleton.frames[span])
         told |= {"frames": frames, "interpolated": own, "takes": ()}
         found[f"-{skeleton.takes[k]}"] = CompleteSkeleton(**{**fields, **told})
+    return found
+
+
+def bars_of_takes(bars: ErrorBars, skeleton: Skeleton) -> dict[str, ErrorBars]:
+    """The error bars with the frames of each take, by the same names as `of_takes`."""
+    if not isinstance(skeleton, CompleteSkeleton) or not skeleton.takes or not bars.frames:
+        return {"": bars}
+    found = {}
+    for span in take_spans(bars.frames):
+        k = bars.frames[span.start] // TAKE
+        told = {"frames": tuple(t - k * TAKE for t in bars.frames[span]), "in_frame": np.array(bars.in_frame[span])}
+        found[f"-{skeleton.takes[k]}"] = bars.model_copy(update=told)
     return found

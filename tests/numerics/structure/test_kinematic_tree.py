@@ -10,10 +10,10 @@ from shipped import PARTS, TREE
 from kinetree.tasks.numerics.structure.kinematic_tree import (
     Derivation,
     KinematicTree,
-    KinematicTreeSettings,
     kinematic_tree,
 )
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
 
 
 def both(
@@ -212,8 +212,49 @@ def test_a_last_part_that_forks_has_a_second_end_where_asked_for() -> None:
 def test_root_amid_its_limbs_moves_no_other_joint(monkeypatch: pytest.MonkeyPatch) -> None:
     body = three_arms()
     place = np.array([1.0, -2.0, 0.5])
-    monkeypatch.setattr("kinetree.tasks.numerics.structure.kinematic_tree.root_amid_limbs", lambda *_: place)
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.tree_joints.root_amid_limbs", lambda *_: place)
     before, after = (both(body, (), None, TREE._replace(root_amid_limbs=s))[0] for s in (False, True))
     assert np.linalg.norm(before.rest[0] - place) > 1.0
     np.testing.assert_allclose(after.rest[0], place)
     np.testing.assert_allclose(after.positions[:, 1:], before.positions[:, 1:], atol=1e-6)
+
+
+def in_pose(body: Known, k: int) -> Cut:
+    """The true parts as a cut in the pose of a frame gives them."""
+    R = np.einsum("tpxy,pzy->tpxz", body.R, body.R[k])
+    return Cut(body.x[k], body.label, R, body.t - np.einsum("tpxy,py->tpx", R, body.t[k]), body.residual)
+
+
+def shifted(cut: Cut, part: int, by: np.ndarray) -> Cut:
+    """The cut with a part whose motion is off by a shift that goes with it: its joint lies elsewhere."""
+    t = cut.t.copy()
+    t[:, part] += cut.R[:, part] @ by - by
+    return cut._replace(t=t)
+
+
+def test_cuts_in_other_poses_that_agree_change_nothing_and_have_no_spread() -> None:
+    body = chain((0.0,), swings(16, 2))
+    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
+    alone, lone = kinematic_tree(*known, np.zeros(0, int), settings=TREE)
+    found, told = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[in_pose(body, k) for k in (3, 9)])
+    size = np.sqrt(body.area.sum())
+    assert found.names == alone.names
+    assert found.rest == pytest.approx(alone.rest, abs=0.01 * size)
+    turning = np.array(found.kinds) == "joint"
+    assert told.agreeing[turning].tolist() == [3]
+    assert told.spread[turning].max() < 0.01 * size
+    assert lone.agreeing[turning].tolist() == [1]
+    assert np.isnan(lone.spread).all()
+    assert np.isnan(told.spread[~turning]).all()
+
+
+def test_a_cut_that_places_a_joint_elsewhere_moves_it_half_way_and_is_its_spread() -> None:
+    body = chain((0.0,), swings(16, 2))
+    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
+    size, turning = np.sqrt(body.area.sum()), 1
+    same, _ = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[in_pose(body, 3)])
+    off = shifted(in_pose(body, 3), 1, np.array([0.0, 0.0, 0.02 * size]))
+    found, told = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[off])
+    moved_by = np.linalg.norm(found.rest[turning] - same.rest[turning])
+    assert 0.002 * size < moved_by < 0.02 * size
+    assert told.spread[turning] == pytest.approx(moved_by, rel=0.3)

@@ -1,0 +1,184 @@
+"""Fits the constants of the expected error of joints to generated bodies, and says what they are worth on others.
+
+    export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+    python benchmarks/error_bars.py [--seeds 10] [--frames 14] [--vertices 2000] [--figures human quadruped random]
+                                    [--data FOLDER] [--work FOLDER]
+
+Bodies are those of `benchmarks/accuracy.py`. The constants are fitted to even seeds, of every run with one cut and with
+several, and printed as `ErrorBarsSettings` has them. The tables judge the shipped constants, and the fitted ones, on odd seeds
+and on the recorded sequences of FOLDER (NAME.npz beside NAME.truth.json), to which nothing is fitted. A joint's error is the
+mean distance from its true joint; of a spurious joint, from the nearest. Columns: joints; share that keeps the bound of 90 %,
+and of the errors in single frames; area under the curve of telling joints within 2.5 % of the height by the expected error;
+rank correlation with the error; and, by fifths of the expected error, its median against the median error, % of the height.
+"""
+
+import argparse
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from accuracy import Case, generated, recorded
+from scipy.stats import rankdata, spearmanr
+
+from kinetree.errors import KinetreeError
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.inspection.snapshot import Snapshot
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
+from kinetree.tasks.results.truth import synthetic
+from kinetree.tasks.structure.error_bars import joint_features
+
+CLOSE = 0.025
+"""Error of a joint that is placed well, share of the height."""
+BOUND = 0.9
+"""Share of the joints that keep the bound."""
+
+
+class Joints(NamedTuple):
+    """The joints of one run: what is known of them, (frame, joint) their errors in the mesh unit, cuts and height."""
+
+    features: JointFeatures
+    error: Floats
+    cuts: int
+    height: float
+
+    @property
+    def mean(self) -> Floats:
+        """(joint,) mean error, mesh unit."""
+        return np.asarray(self.error.mean(axis=0))
+
+
+def joints_of(case: Case, work: Path, sets: Sequence[str]) -> Joints | None:
+    """Runs a sequence as far as needed; None where nothing can be said."""
+    told = {**case.blocks, "output": str(work / f"{case.name}-default"), "store": str(work / "store")}
+    pipeline = Pipeline.of(told, sets=sets)
+    try:
+        pipeline.run(until=["evaluation"])
+        there = pipeline.inspect(until=["evaluation"])
+        return judged(there)
+    except KinetreeError as error:
+        print(f"{case.name}: {error}")
+        return None
+
+
+def judged(there: Snapshot) -> Joints:
+    """The joints of a run and their errors."""
+    skeleton, tree, evaluation, truth = (there.artifact(n) for n in ("skeleton", "kinematic_tree", "evaluation", "truth"))
+    if not truth.names:
+        truth = synthetic(there.artifact("source", frame=skeleton.frames[0]).recipe)
+    row = {frame: t for t, frame in enumerate(truth.frames)}
+    at = [row[f] for f in skeleton.frames] if set(skeleton.frames) <= set(row) else list(range(len(skeleton.frames)))
+    is_joint = np.array([kind == "joint" for kind in truth.kinds])
+    Y = np.array(truth.positions)[at][:, is_joint]
+    away = np.linalg.norm(np.array(skeleton.positions)[:, :, None] - Y[:, None], axis=3)
+    nearest = away.mean(axis=0).argmin(axis=1)
+    error = np.take_along_axis(away, nearest[None, :, None], axis=2)[:, :, 0]
+    place = {name: j for j, name in enumerate(skeleton.names)}
+    for k, joint in enumerate(evaluation.joints):
+        if joint.found is not None and joint.kind == "joint":
+            error[:, place[joint.found]] = evaluation.error[:, k]
+    turning = np.array([kind == "joint" for kind in skeleton.kinds])
+    f = joint_features(skeleton, tree)
+    own = JointFeatures(f.drift[turning], f.spread[turning], f.residual[turning], f.confidence[:, turning], f.size)
+    return Joints(own, error[:, turning], tree.cuts, evaluation.height)
+
+
+def fitted_law(runs: Sequence[Joints], uncertain: float) -> PowerLaw:
+    """The constants that fit the errors of these runs, all of one cut or all of several."""
+    widened = [r.features.widening(uncertain).mean(axis=0) for r in runs]
+    error = np.concatenate([r.mean / r.features.size / w for r, w in zip(runs, widened, strict=True)])
+    rows = np.concatenate([r.features.logarithms(r.cuts > 1) for r in runs])
+    law = fitted(rows, error)
+    ratio = error / np.exp(rows @ law)
+    # the mean of a skewed error is larger than the exponential of the mean logarithm: the median of the ratio is 1
+    law[0] += np.log(np.median(ratio))
+    return PowerLaw(*law.tolist(), bound=float(np.quantile(ratio / np.median(ratio), BOUND)))
+
+
+def fitted_widening(runs: Sequence[Joints]) -> float:
+    """By what errors grow where confidence is 0: the value with which errors of a joint's frames vary least about it."""
+
+    def misfit(k: float) -> float:
+        logs = [np.log(np.maximum(r.error, 1e-6 * r.height) / r.features.widening(k)) for r in runs]
+        return float(np.mean([np.square(x - x.mean(axis=0)).mean() for x in logs if x.size]))
+
+    tried = np.arange(0.0, 8.01, 0.25)
+    return float(tried[np.argmin([misfit(k) for k in tried])])
+
+
+def worth(name: str, runs: Sequence[Joints], settings: ErrorBarsSettings) -> str:
+    """A row of the table."""
+    bars = [error_bars(r.features, r.cuts, settings) for r in runs]
+    error = np.concatenate([100 * r.mean / r.height for r in runs])
+    expected = np.concatenate([100 * b.expected / r.height for b, r in zip(bars, runs, strict=True)])
+    keeps = np.concatenate([r.mean <= b.bound for b, r in zip(bars, runs, strict=True)])
+    factors = [(settings.several_cuts if r.cuts > 1 else settings.one_cut).bound for r in runs]
+    in_frame = [(r.error <= k * b.in_frame).ravel() for k, b, r in zip(factors, bars, runs, strict=True)]
+    order = np.array_split(np.argsort(expected), 5)
+    fifths = ", ".join(f"{np.median(expected[k]):.2f}→{np.median(error[k]):.2f}" for k in order if len(k))
+    close = error <= 100 * CLOSE
+    return (
+        f"| {name} | {len(error)} | {100 * keeps.mean():.0f} % | {100 * np.concatenate(in_frame).mean():.0f} % |"
+        f" {area_under_curve(expected, close):.2f} | {(~close).sum()} | {spearmanr(expected, error).statistic:.2f} | {fifths} |"
+    )
+
+
+def area_under_curve(expected: Floats, close: Floats) -> float:
+    """How often a joint placed well has the smaller expected error of a pair with one that is not; NaN where all are alike."""
+    well, badly = int(close.sum()), int((~close).sum())
+    if not well or not badly:
+        return float("nan")
+    return float((rankdata(expected)[~close].sum() - badly * (badly + 1) / 2) / (well * badly))
+
+
+def groups(cases: Iterator[Case], work: Path, sets: Sequence[str]) -> dict[str, list[Joints]]:
+    """Runs that are fitted to, and those held out, by name of the group."""
+    found: dict[str, list[Joints]] = {}
+    for case in cases:
+        run = joints_of(case, work, sets)
+        if run is not None and len(run.mean):
+            seed = case.name.rpartition("-")[2]
+            group = "recorded" if case.group == case.name else f"{case.group}, {'odd' if int(seed) % 2 else 'even'} seeds"
+            found.setdefault(group, []).append(run)
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--frames", type=int, default=14)
+    parser.add_argument("--vertices", type=int, default=2000)
+    parser.add_argument("--figures", nargs="*", default=["human", "quadruped", "random"])
+    parser.add_argument("--data", type=Path)
+    parser.add_argument("--work", type=Path)
+    asked = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        work = asked.work or Path(folder)
+
+        def cases() -> Iterator[Case]:
+            made = generated(asked.seeds, asked.frames, asked.vertices, "new", work / "figures")
+            yield from (case for case in made if case.group in asked.figures)
+            yield from recorded(asked.data) if asked.data else ()
+
+        several, one = (groups(cases(), work, sets) for sets in ((), ("rigid_parts.cuts=1",)))
+    shipped = ErrorBarsSettings()
+    learned = [[run for name, runs in of.items() if "even" in name for run in runs] for of in (several, one)]
+    judged_by = {"shipped": shipped}
+    if learned[0]:
+        uncertain = fitted_widening(learned[0])
+        judged_by["fitted"] = ErrorBarsSettings(fitted_law(learned[0], uncertain), fitted_law(learned[1], uncertain), uncertain)
+        print(judged_by["fitted"])
+    head = "| bodies | joints | bound | bound, in a frame | AUC | not within 2.5 % | rank | expected → error, % of the height |"
+    for title, settings in judged_by.items():
+        for cuts, of in (("several cuts", several), ("one cut", one)):
+            print(f"\n{title} constants, {cuts}\n\n{head}\n|---|---|---|---|---|---|---|---|")
+            odd = [run for name, runs in of.items() if "odd" in name for run in runs]
+            for name, runs in [*of.items(), ("all odd seeds", odd)]:
+                if runs:
+                    print(worth(name, runs, settings))
+
+
+if __name__ == "__main__":
+    main()

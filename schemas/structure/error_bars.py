@@ -1,0 +1,36 @@
+"""How far off every joint is expected to be (ours)."""
+
+from typing import Annotated
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.dims import FRAME, JOINT
+
+
+class ErrorBars(Artifact):
+    """The expected error of every joint, a bound, and the evidence for it; NaN for root and leaves, and where it is not known.
+
+    The constants were fitted to generated bodies, whose truth is known. Methods other than the default have none.
+    """
+
+    joints: tuple[str, ...]
+    """The skeleton's names."""
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    cuts: int
+    """Poses in which the body was cut; 0 where nothing is known."""
+    expected: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Expected distance from the true joint, mean over the frames."""
+    bound: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Distance that nine joints of ten keep, mean over the frames."""
+    in_frame: Annotated[Floats, Array("float64", FRAME, JOINT, unit="length", finite=False)]
+    """Expected distance in every frame: larger where the pose is uncertain."""
+    drift: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance between the joint as one of its parts and as the other carries it."""
+    spread: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance of several cuts' joints from their mean; NaN also where no other cut has the joint."""
+    residual: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square of what the motions of the joint's two parts leave unexplained."""
+    agreeing: Annotated[Ints, Array("int32", JOINT)]
+    """Cuts that have the joint."""
+    support: Annotated[Ints, Array("int32", JOINT)]
+    """Frames in which most of the surface of the joint's parts was seen and certain."""

@@ -1,0 +1,61 @@
+"""How far off every joint is expected to be."""
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
+from kinetree.schemas.structure.error_bars import ErrorBars
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.structure import error_bars as numerics
+
+
+@task()
+def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
+    """Expects an error of every joint, from drift, spread over cuts, residual and confidence (ours)."""
+    features = joint_features(skeleton, kinematic_tree)
+    found = numerics.error_bars(features, kinematic_tree.cuts)
+    turning = np.array([kind == "joint" for kind in skeleton.kinds])
+
+    def of_joints(values: Floats) -> Floats:
+        return np.where(turning, values, np.nan)
+
+    return ErrorBars(
+        joints=skeleton.names,
+        frames=skeleton.frames,
+        cuts=kinematic_tree.cuts,
+        expected=of_joints(found.expected),
+        bound=of_joints(found.bound),
+        in_frame=of_joints(found.in_frame),
+        drift=of_joints(features.drift),
+        spread=of_joints(features.spread),
+        residual=of_joints(features.residual),
+        agreeing=kinematic_tree.agreeing,
+        support=np.where(turning, skeleton.support, 0),
+    )
+
+
+@task()
+def unknown_error_bars(skeleton: Skeleton) -> ErrorBars:
+    """Says that no error is known: the constants of `error_bars` were fitted to another method (ours)."""
+    return nothing_known(skeleton)
+
+
+def nothing_known(skeleton: Skeleton) -> ErrorBars:
+    """Error bars without any."""
+    joints = len(skeleton.names)
+    unknown, none = np.full(joints, np.nan), np.zeros(joints, np.int32)
+    return ErrorBars(
+        joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
+        in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
+        agreeing=none, support=none,
+    )  # fmt: skip
+
+
+def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numerics.JointFeatures:
+    """What is known of all joints, root and leaves among them."""
+    tree = kinematic_tree
+    size = float(np.sqrt(Surface.of(skeleton.vertices, skeleton.faces).area.sum()))
+    drift, spread, residual = (np.array(a) for a in (skeleton.drift, tree.spread, tree.joint_residual))
+    return numerics.JointFeatures(drift, spread, residual, np.array(skeleton.confidence), size)

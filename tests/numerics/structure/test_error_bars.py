@@ -1,0 +1,60 @@
+"""Laws of the expected error: scale, growth with each piece of evidence and with doubt, and its fit."""
+
+import numpy as np
+import pytest
+
+from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
+
+SETTINGS = ErrorBarsSettings(PowerLaw(0.5, 0.4, 0.5, 0.1, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 3.0), 2.0)
+
+
+def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
+    told = {
+        "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
+        "residual": np.array([0.003, 0.003, 0.003]), "confidence": np.ones((5, 3)), "size": 1.0, **changed,
+    }  # fmt: skip
+    lengths = {name: scale * value for name, value in told.items() if name != "confidence"}
+    return JointFeatures(**lengths, confidence=told["confidence"])
+
+
+def test_errors_scale_with_the_body_and_the_bound_with_the_error() -> None:
+    one, large = error_bars(features(), 4, SETTINGS), error_bars(features(scale=1000.0), 4, SETTINGS)
+    assert large.expected == pytest.approx(1000.0 * one.expected)
+    assert one.bound == pytest.approx(2.0 * one.expected)
+    assert one.expected[0] == pytest.approx(np.exp(0.5) * 0.01**0.4 * 0.004**0.5 * 0.003**0.1)
+
+
+def test_more_drift_or_spread_is_more_error_and_one_cut_goes_by_drift() -> None:
+    several, one = error_bars(features(), 4, SETTINGS).expected, error_bars(features(), 1, SETTINGS).expected
+    assert several[0] < several[1] < several[2]
+    assert one[0] == one[2] < one[1]
+
+
+def test_a_joint_that_no_other_cut_has_is_worse_than_one_whose_cuts_are_apart() -> None:
+    spread = np.array([np.nan, 0.02, 0.004])
+    found = error_bars(features(spread=spread, drift=np.full(3, 0.01)), 4, SETTINGS).expected
+    assert found[0] > found[1] > found[2]
+    assert np.isfinite(found).all()
+
+
+def test_the_error_is_larger_in_frames_without_confidence_and_its_mean_is_that_of_the_joint() -> None:
+    confidence = np.ones((5, 3))
+    confidence[1, 0] = 0.0
+    found = error_bars(features(confidence=confidence), 4, SETTINGS)
+    assert found.in_frame[1, 0] == pytest.approx(3.0 * found.in_frame[0, 0])
+    assert found.expected == pytest.approx(found.in_frame.mean(axis=0))
+
+
+def test_evidence_of_nothing_at_all_is_a_small_finite_error() -> None:
+    nothing = np.zeros(3)
+    found = error_bars(features(drift=nothing, spread=nothing, residual=nothing), 4, SETTINGS).expected
+    assert (found > 0).all()
+    assert (found < error_bars(features(), 4, SETTINGS).expected).all()
+
+
+def test_a_power_law_is_found_again_and_no_exponent_is_negative() -> None:
+    rng = np.random.default_rng(0)
+    known = JointFeatures(*np.exp(rng.normal(-5.0, 1.0, (3, 200))), np.ones((1, 200)), 1.0)
+    rows = known.logarithms(True)
+    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, 0.1])) == pytest.approx([0.5, 0.4, 0.5, 0.1])
+    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, -0.3]))[3] == 0.0

@@ -1,0 +1,65 @@
+"""Error bars as the task gives them, and of methods that have none."""
+
+import numpy as np
+import pytest
+from fitting import FIRST, FRAMES, arms, articulation
+
+from kinetree.pipeline import views
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.structure.error_bars import ErrorBars
+from kinetree.schemas.structure.kinematic_tree import KinematicTree
+from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.structure.error_bars import error_bars, unknown_error_bars
+from kinetree.tasks.structure.skeleton import skeleton
+
+SEQUENCE = Sequence(frames=tuple(range(FIRST, FIRST + FRAMES)), fps=25.0, unit="mm")
+ENDS = [0, 2]
+"""Root and leaf."""
+
+
+def both(**evidence: float) -> tuple[Skeleton, KinematicTree]:
+    tree = articulation(arms()[0])
+    told = {name: np.full(5, value) for name, value in evidence.items() if name != "cuts"}
+    tree = tree.model_copy(update={**told, "cuts": int(evidence.get("cuts", 1))})
+    return skeleton(tree, (), (), SEQUENCE), tree
+
+
+def test_joints_have_error_bars_and_root_and_leaves_none() -> None:
+    found = error_bars(*both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4))
+    assert found.joints == ("root", "a", "a_end", "b", "c")
+    assert found.cuts == 4
+    assert np.isnan(found.expected[ENDS]).all()
+    assert np.isnan(found.in_frame[:, ENDS]).all()
+    assert (found.bound[[1, 3, 4]] > found.expected[[1, 3, 4]]).all()
+    assert found.drift[1] == pytest.approx(0.1)
+
+
+def test_frames_in_doubt_have_wider_bars() -> None:
+    found = error_bars(*both(drift=0.1, spread=0.05, cuts=4))
+    doubted, sure = found.in_frame[6, 1], found.in_frame[5, 1]
+    assert doubted > 1.2 * sure
+    assert found.in_frame[6, 3] == pytest.approx(found.in_frame[5, 3])
+
+
+def test_cuts_that_are_farther_apart_are_a_larger_error_and_one_cut_says_nothing_of_them() -> None:
+    near, far = (error_bars(*both(drift=0.1, spread=s, cuts=4)).expected[1] for s in (0.01, 0.2))
+    assert far > near
+    alone = [error_bars(*both(drift=0.1, spread=s)).expected[1] for s in (0.01, np.nan)]
+    assert alone[0] == alone[1]
+
+
+def test_other_methods_say_that_nothing_is_known() -> None:
+    found = unknown_error_bars(both()[0])
+    assert found.cuts == 0
+    assert np.isnan(found.expected).all()
+    assert views.text(found) == ("no errors are known",)
+    assert views.remarks(found) == ()
+
+
+def test_text_says_error_bound_and_evidence_of_every_joint() -> None:
+    found = error_bars(*both(drift=0.1, spread=0.05, joint_residual=0.02, agreeing=3, support=7, cuts=4))
+    lines = views.text(found)
+    assert [line.split()[0] for line in lines] == ["a", "b", "c"]
+    assert f"±{found.expected[1]:.2g}, 90 % below {found.bound[1]:.2g}" in lines[0]
+    assert "spread 0.05 over 3 of 4 cuts" in lines[0]
+    assert type(found) is ErrorBars
