@@ -5,28 +5,30 @@
                                     [--data FOLDER] [--work FOLDER]
 
 Bodies are those of `benchmarks/accuracy.py`. The constants are fitted to even seeds, of every run with one cut and with
-several, and printed as `ErrorBarsSettings` has them. The tables judge the shipped constants, and the fitted ones, on odd seeds
-and on the recorded sequences of FOLDER (NAME.npz beside NAME.truth.json), to which nothing is fitted. A joint's error is the
-mean distance from its true joint; of a spurious joint, from the nearest. Columns: joints; share that keeps the bound of 90 %,
-and of the errors in single frames; area under the curve of telling joints within 2.5 % of the height by the expected error;
-rank correlation with the error; and, by fifths of the expected error, its median against the median error, % of the height.
+several, and printed as `ErrorBarsSettings` has them; the least error and the bound to bodies of fixed connectivity too. The
+tables judge the shipped constants, and the fitted ones, on odd seeds and on the recorded sequences of FOLDER (NAME.npz beside
+NAME.truth.json), to which nothing is fitted. A joint's error is the mean distance from its true joint; of a spurious joint,
+from the nearest. Columns: joints; share that keeps the bound of 90 %, and of the errors in single frames; area under the curve
+of telling joints within 2.5 % of the height by the expected error; rank correlation with the error; and, by fifths of the
+expected error, its median against the median error, % of the height.
 """
 
 import argparse
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from accuracy import Case, generated, recorded
+from accuracy import Bodies, Case, generated, recorded
 from scipy.stats import rankdata, spearmanr
 
 from kinetree.errors import KinetreeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
+from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted, levels
 from kinetree.tasks.results.truth import synthetic
 from kinetree.tasks.structure.error_bars import joint_features
 
@@ -85,16 +87,26 @@ def judged(there: Snapshot) -> Joints:
     return Joints(own, error[:, turning], tree.cuts, evaluation.height)
 
 
-def fitted_law(runs: Sequence[Joints], uncertain: float) -> PowerLaw:
-    """The constants that fit the errors of these runs, all of one cut or all of several."""
-    widened = [r.features.widening(uncertain).mean(axis=0) for r in runs]
-    error = np.concatenate([r.mean / r.features.size / w for r, w in zip(runs, widened, strict=True)])
-    rows = np.concatenate([r.features.logarithms(r.cuts > 1) for r in runs])
-    law = fitted(rows, error)
-    ratio = error / np.exp(rows @ law)
-    # the mean of a skewed error is larger than the exponential of the mean logarithm: the median of the ratio is 1
-    law[0] += np.log(np.median(ratio))
-    return PowerLaw(*law.tolist(), bound=float(np.quantile(ratio / np.median(ratio), BOUND)))
+def fitted_law(anew: Sequence[Joints], fixed: Sequence[Joints], uncertain: float) -> PowerLaw:
+    """The constants that fit the errors of these runs, all of one cut or all of several.
+
+    anew, fixed : bodies surfaced anew in every frame, to which exponents are fitted · of fixed connectivity
+    """
+
+    def table(runs: Sequence[Joints]) -> tuple[Floats, Floats]:
+        widened = [r.features.widening(uncertain).mean(axis=0) for r in runs]
+        error = np.concatenate([r.mean / r.features.size / w for r, w in zip(runs, widened, strict=True)])
+        return np.concatenate([r.features.logarithms(r.cuts > 1) for r in runs]), error
+
+    rows, error = table(anew)
+    law = PowerLaw(*fitted(rows, error).tolist(), least=0.0, bound=1.0)
+    rows, error = table([*anew, *fixed])
+
+    def misfit(least: float) -> float:
+        return float(np.square(np.log(error / levels(rows, law._replace(least=least)))).mean())
+
+    law = law._replace(least=min(np.arange(0.0, 0.01, 0.00025).tolist(), key=misfit))
+    return law._replace(bound=float(np.quantile(error / levels(rows, law), BOUND)))
 
 
 def fitted_widening(runs: Sequence[Joints]) -> float:
@@ -141,8 +153,14 @@ def groups(cases: Iterator[Case], work: Path, sets: Sequence[str]) -> dict[str, 
         if run is not None and len(run.mean):
             seed = case.name.rpartition("-")[2]
             group = "recorded" if case.group == case.name else f"{case.group}, {'odd' if int(seed) % 2 else 'even'} seeds"
+            group = "recorded, fixed" if case.group == case.name and case.name.endswith("-body") else group
             found.setdefault(group, []).append(run)
     return found
+
+
+def named(groups: Mapping[str, Sequence[Joints]], seeds: str, fixed: bool) -> list[Joints]:
+    """The runs of generated bodies of odd or even seeds, of fixed connectivity or surfaced anew."""
+    return [run for name, runs in groups.items() if seeds in name and fixed == ("fixed" in name) for run in runs]
 
 
 def main() -> None:
@@ -158,24 +176,27 @@ def main() -> None:
         work = asked.work or Path(folder)
 
         def cases() -> Iterator[Case]:
-            made = generated(asked.seeds, asked.frames, asked.vertices, "new", work / "figures")
-            yield from (case for case in made if case.group in asked.figures)
+            for kind in ("new", "fixed"):
+                bodies = Bodies(asked.figures, range(asked.seeds), (), (), asked.frames, asked.vertices, kind)
+                for case in generated(bodies, work / "figures"):
+                    yield case if kind == "new" else replace(case, name=f"fixed-{case.name}", group=f"fixed {case.group}")
             yield from recorded(asked.data) if asked.data else ()
 
         several, one = (groups(cases(), work, sets) for sets in ((), ("rigid_parts.cuts=1",)))
     shipped = ErrorBarsSettings()
-    learned = [[run for name, runs in of.items() if "even" in name for run in runs] for of in (several, one)]
     judged_by = {"shipped": shipped}
-    if learned[0]:
-        uncertain = fitted_widening(learned[0])
-        judged_by["fitted"] = ErrorBarsSettings(fitted_law(learned[0], uncertain), fitted_law(learned[1], uncertain), uncertain)
+    if asked.seeds:
+        learned = [[named(of, "even", fixed) for fixed in (False, True)] for of in (several, one)]
+        uncertain = fitted_widening(learned[0][0])
+        laws = [fitted_law(*runs, uncertain) for runs in learned]
+        judged_by["fitted"] = ErrorBarsSettings(*laws, uncertain)
         print(judged_by["fitted"])
     head = "| bodies | joints | bound | bound, in a frame | AUC | not within 2.5 % | rank | expected → error, % of the height |"
     for title, settings in judged_by.items():
         for cuts, of in (("several cuts", several), ("one cut", one)):
             print(f"\n{title} constants, {cuts}\n\n{head}\n|---|---|---|---|---|---|---|---|")
-            odd = [run for name, runs in of.items() if "odd" in name for run in runs]
-            for name, runs in [*of.items(), ("all odd seeds", odd)]:
+            odd, fixed = named(of, "odd", False), named(of, "odd", True)
+            for name, runs in [*of.items(), ("all odd seeds", odd), ("all odd seeds, fixed", fixed)]:
                 if runs:
                     print(worth(name, runs, settings))
 

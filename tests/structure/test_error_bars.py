@@ -63,3 +63,15 @@ def test_text_says_error_bound_and_evidence_of_every_joint() -> None:
     assert f"±{found.expected[1]:.2g}, 90 % below {found.bound[1]:.2g}" in lines[0]
     assert "spread 0.05 over 3 of 4 cuts" in lines[0]
     assert type(found) is ErrorBars
+
+
+def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known() -> None:
+    body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
+    bars = error_bars(body, tree)
+
+    def beside(known: ErrorBars) -> list[str]:
+        lines = views.text(body, lambda cls: known if cls is ErrorBars else None)
+        return [line for line in lines if "turns" in line]
+
+    assert f"±{bars.expected[1]:.2g} mm (90 %: {bars.bound[1]:.2g})" in beside(bars)[0]
+    assert "±0.1 mm," in beside(unknown_error_bars(body))[0]

@@ -1,7 +1,7 @@
 """How far off a joint is expected to be, from what a run knows of it without a truth (ours).
 
-ε_j = size · exp(a) · drift^b · spread^c · residual^d        in the root of the area
-ε_jt = ε_j · (1 + k (1 − confidence_jt))                     in a frame
+ε_j = size · √(least² + (exp(a) · drift^b · spread^c · residual^d)²)      all lengths in the root of the area
+ε_jt = ε_j · (1 + k (1 − confidence_jt))                                  in a frame
 """
 
 from typing import NamedTuple
@@ -16,12 +16,14 @@ LEAST = 1e-4
 
 
 class PowerLaw(NamedTuple):
-    """exp(log_scale) · drift^drift · spread^spread · residual^residual; all lengths in the root of the area."""
+    """√(least² + (exp(log_scale) · drift^drift · spread^spread · residual^residual)²), all in the root of the area."""
 
     log_scale: float
     drift: float
     spread: float
     residual: float
+    least: float
+    """Error that is left where nothing drifts, spreads or remains: skin that blends tells no joint exactly."""
     bound: float
     """By what the expected error is multiplied to be a bound that nine joints of ten keep."""
 
@@ -30,13 +32,13 @@ class ErrorBarsSettings(NamedTuple):
     """Constants of the expected error.
 
     Fitted by `python benchmarks/error_bars.py`, which prints them, to the joints of generated people, four-legged animals and
-    random trees of even seeds, surfaced anew in every frame; what they are worth on other bodies stands in
+    random trees of even seeds, `least` to those of fixed connectivity too; what they are worth on other bodies stands in
     benchmarks/RESULTS.md.
     """
 
-    several_cuts: PowerLaw = PowerLaw(4.568, 0.0, 0.62, 0.86, 2.933)
+    several_cuts: PowerLaw = PowerLaw(4.568, 0.0, 0.62, 0.86, 0.0, 2.933)
     """Where the body was cut in several poses."""
-    one_cut: PowerLaw = PowerLaw(3.932, 0.101, 0.0, 1.191, 3.409)
+    one_cut: PowerLaw = PowerLaw(3.932, 0.101, 0.0, 1.191, 0.0, 3.409)
     """Where it was cut in one, so that the spread is not known."""
     uncertain: float = 0.5
     """k: how much farther off a joint is in a frame where its confidence is 0."""
@@ -93,10 +95,15 @@ def error_bars(features: JointFeatures, cuts: int, settings: ErrorBarsSettings |
     """
     chosen = settings or ErrorBarsSettings()
     law = chosen.several_cuts if cuts > 1 else chosen.one_cut
-    level = features.size * np.exp(features.logarithms(cuts > 1) @ np.array(law[:4]))
+    level = features.size * levels(features.logarithms(cuts > 1), law)
     in_frame = level * features.widening(chosen.uncertain)
     expected = in_frame.mean(axis=0) if len(in_frame) else level
     return ErrorBars(expected, law.bound * expected, in_frame)
+
+
+def levels(rows: Floats, law: PowerLaw) -> Floats:
+    """(joint,) expected error where the pose is certain, root of the area; rows as in `JointFeatures.logarithms`."""
+    return np.asarray(np.hypot(law.least, np.exp(rows @ np.array([law.log_scale, law.drift, law.spread, law.residual]))))
 
 
 def fitted(rows: Floats, error: Floats) -> Floats:

@@ -5,7 +5,7 @@ import pytest
 
 from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
 
-SETTINGS = ErrorBarsSettings(PowerLaw(0.5, 0.4, 0.5, 0.1, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 3.0), 2.0)
+SETTINGS = ErrorBarsSettings(PowerLaw(0.5, 0.4, 0.5, 0.1, 0.0, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 3.0), 2.0)
 
 
 def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
@@ -50,6 +50,16 @@ def test_evidence_of_nothing_at_all_is_a_small_finite_error() -> None:
     found = error_bars(features(drift=nothing, spread=nothing, residual=nothing), 4, SETTINGS).expected
     assert (found > 0).all()
     assert (found < error_bars(features(), 4, SETTINGS).expected).all()
+
+
+def test_no_error_is_below_the_least() -> None:
+    nothing = np.zeros(3)
+    least = SETTINGS._replace(several_cuts=SETTINGS.several_cuts._replace(least=0.004))
+    found = error_bars(features(drift=nothing, spread=nothing, residual=nothing), 4, least).expected
+    assert found == pytest.approx(0.004, rel=0.1)
+    assert error_bars(features(), 4, least).expected == pytest.approx(
+        np.hypot(0.004, error_bars(features(), 4, SETTINGS).expected)
+    )
 
 
 def test_a_power_law_is_found_again_and_no_exponent_is_negative() -> None:
