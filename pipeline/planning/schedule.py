@@ -12,13 +12,13 @@ from types import MappingProxyType
 
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.identity.key import artifact_digest, code_digest, code_parts, node_key
+from kinetree.pipeline.identity.key import artifact_digest
 from kinetree.pipeline.node import Node, label
 from kinetree.pipeline.planning.entry import DONE, Entry, Loss, State
+from kinetree.pipeline.planning.freshness import Freshness
 from kinetree.pipeline.planning.layout import Given, Layout, T
 from kinetree.pipeline.planning.made_with import EVERY_VERSION_TRUSTED, MadeWith
-from kinetree.pipeline.planning.reason import Reason, Recall, Work, differences, never_ran
-from kinetree.pipeline.storage.inventory import Holder, inventory
+from kinetree.pipeline.planning.reason import Reason, Recall
 from kinetree.pipeline.storage.store import Record, Store
 from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Index, Params
@@ -49,16 +49,12 @@ class Schedule:
         links: Links = MappingProxyType({}),
     ) -> None:
         self.graph = graph
-        self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
         self.store = store
         self.given = given
         self.links = links
-        self.force = frozenset(force)
-        self.recall = recall
-        self.distrusted = distrusted
+        self.freshness = Freshness(graph, params, store, frozenset(force), recall, distrusted)
         self.entries: dict[Node, Entry] = {}
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
-        self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
         self._depth = {name: n - len(graph.tasks) * (name in graph.aside) for name, n in self._rank.items()}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
@@ -70,9 +66,8 @@ class Schedule:
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
         self._skipped_late: list[Node] = []
-        self._holder: Holder = inventory(store)
         self.lay_out()
-        self._holder = store  # from now on others write
+        self.freshness.holder = store  # from now on others write
         self._losses.clear()  # nothing was told of these nodes yet
 
     def lay_out(self) -> list[Node]:
@@ -252,36 +247,6 @@ class Schedule:
             self._values[node] = self.store.read(entry.task.returns, entry.artifact)
         return self._values[node]
 
-    def work(self, entry: Entry) -> Work:
-        """All that decides what a node with known inputs computes."""
-        inputs = [
-            {
-                "argument": argument.name,
-                "form": argument.form,
-                "nodes": [self.entries[n].label for n in nodes],
-                "artifacts": [self.entries[n].artifact for n in nodes],
-            }
-            for argument, nodes in entry.inputs or ()
-        ]
-        return Work(
-            self.params.get(entry.node.task, {}),
-            code_parts(entry.task.module, entry.task.name),
-            inputs,
-            self.asked_index(entry),
-        )
-
-    @staticmethod
-    def asked_index(entry: Entry) -> dict[str, int] | None:
-        """A node's index by dimension where its task asks for it, else None."""
-        return dict(zip(entry.task.over, entry.node.at, strict=True)) if entry.task.asks_index else None
-
-    def numbers(self, entry: Entry, argument: Argument, nodes: Sequence[Node]) -> tuple[int, ...] | None:
-        """The member numbers by which a task sees what it gathers, None where it does not see them."""
-        if argument.form != "mapping":
-            return None
-        place = self.graph.numbered(entry.task, argument)
-        return tuple(node.at[place] for node in nodes)
-
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
         return tuple(self._dependents[node])
@@ -381,35 +346,10 @@ class Schedule:
 
     def _settle(self, entry: Entry) -> bool:
         """Computes a node's key and asks the store; True where the node is fresh."""
-        work = self.work(entry)
-        identity = [
-            [a.name, a.form, list(told["artifacts"]), self.numbers(entry, a, nodes)]
-            for (a, nodes), told in zip(entry.inputs or (), work.inputs, strict=True)
-        ]
-        index = entry.node.at if entry.task.asks_index else None
-        entry.key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
-        record = self._holder.record(entry.key)
-        if record is not None and not self._asked_again(entry, record) and self._holder.holds(record):
+        entry.key, record, reasons = self.freshness.judged(entry, self.entries)
+        if record is not None:
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
             return True
-        entry.state, entry.reasons = "stale", self._reasons(entry, work, record)
+        entry.state, entry.reasons = "stale", reasons
         heapq.heappush(self._ready, (-self._depth[entry.node.task], entry.node.at, entry.node))
         return False
-
-    def _asked_again(self, entry: Entry, record: Record) -> bool:
-        """Whether somebody wants this node computed anew though its result is up to date."""
-        return entry.node.task in self.force or self.distrusted(record) is not None
-
-    def _reasons(self, entry: Entry, work: Work, record: Record | None) -> tuple[Reason, ...]:
-        if record is not None and not self._holder.holds(record):
-            return (Reason("artifact", "missing or damaged"),)
-        if entry.node.task in self.force:
-            return (Reason("forced"),)
-        if record is not None and (versions := self.distrusted(record)):
-            return (Reason("made with", versions),)
-        then = self.recall(entry.label)
-        if then == "nothing":
-            return (never_ran(),)
-        if then == "lost":
-            return (Reason("artifact", "its record is missing or damaged"),)
-        return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)

@@ -26,21 +26,21 @@ class Demand:
 
 def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
     """What is to be computed at each node of a parcel, in order."""
-    place = {entry.node: number for number, entry in enumerate(parcel)}
+    place, known = {entry.node: number for number, entry in enumerate(parcel)}, schedule.freshness
     return tuple(
         Step(
             label=entry.label,
             task=f"{entry.task.module}:{entry.task.name}",
             index=dict(zip(entry.task.over, entry.node.at, strict=True)),
-            code=schedule.code[entry.node.task],
-            params=schedule.params.get(entry.node.task, {}),
+            code=known.code[entry.node.task],
+            params=known.params.get(entry.node.task, {}),
             inputs=tuple(
-                Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), schedule.numbers(entry, a, nodes))
+                Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), known.numbers(entry, a, nodes))
                 for a, nodes in entry.inputs or ()
             ),
             key=entry.key if entry is parcel[0] else None,
-            force=entry.node.task in schedule.force or any(r.kind == "artifact" for r in entry.reasons),
-            distrusted=schedule.distrusted,
+            force=entry.node.task in known.force or any(r.kind == "artifact" for r in entry.reasons),
+            distrusted=known.distrusted,
         )
         for entry in parcel
     )
