@@ -12,8 +12,8 @@ from kinetree.schemas.dims import RGB, VERTEX
 class VertexColourParams(Params):
     """Whether colours are looked at."""
 
-    use: Literal["auto", "off"] = "auto"
-    """auto: colours and textures of the frames hold the alignment where they agree between frames; off: they are not read."""
+    use: Literal["auto", "never"] = "auto"
+    """auto: colours and textures of the frames hold the alignment where they agree between frames; never: they are not read."""
 
 
 class VertexColour(Artifact):

@@ -19,7 +19,7 @@ def vertex_colour(source: Source, mesh: Mesh, params: VertexColourParams) -> Ver
     No run fails for a colour: what cannot be read is left out.
     """
     try:
-        colour = None if params.use == "off" else _colours(source, mesh)
+        colour = None if params.use == "never" else _colours(source, mesh)
     except Exception:  # readers of other people's files raise anything
         colour = None
     if colour is None:

@@ -37,7 +37,7 @@ def test_colours_of_a_ply_are_those_of_its_vertices(tmp_path: Path) -> None:
 
 
 def test_colours_are_not_read_where_that_is_not_wanted_and_there_are_none_without(tmp_path: Path) -> None:
-    assert not len(read(ply(tmp_path / "a.ply", COLOURS), use="off").colour)
+    assert not len(read(ply(tmp_path / "a.ply", COLOURS), use="never").colour)
     assert not len(read(ply(tmp_path / "b.ply", None)).colour)
 
 

@@ -89,14 +89,20 @@ def compared(
     A = np.hstack([np.ones((len(v), 1)), now[u], rest[v], colour.body[v]])
     keep = np.ones(len(v), dtype=np.bool_)
     for _ in range(2):
-        x = np.linalg.lstsq(A[keep], seen[keep], rcond=None)[0]
+        x = _least_squares(A[keep], seen[keep])
         square = ((seen - A @ x) ** 2).sum(axis=1)
         keep = square <= 12.0 * max(float(np.median(square)), 1e-9)
-    without = np.linalg.lstsq(A[keep, :7], seen[keep], rcond=None)[0]
+    without = _least_squares(A[keep, :7], seen[keep])
     plain = ((seen[keep] - A[keep, :7] @ without) ** 2).sum()
     share = 1.0 - float(square[keep].sum()) / max(float(plain), 1e-12)
     noise = max(float(np.sqrt(np.median(square) / _MEDIAN)), settings.least_noise)
     return Compared(x[0] + rest @ x[4:7] + colour.body @ x[7:], colour.frame - now @ x[1:4], share, noise)
+
+
+def _least_squares(A: Floats, b: Floats) -> Floats:
+    """Least squares by the normal equations, with so little on their diagonal that columns may be one another's multiples."""
+    M = A.T @ A
+    return np.asarray(np.linalg.solve(M + 1e-10 * np.trace(M) * np.eye(len(M)), A.T @ b))
 
 
 def surface_gradient(V: Floats, N: Floats, colour: Floats, start: Ints, ring: Ints) -> Floats:

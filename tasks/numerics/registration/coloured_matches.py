@@ -10,7 +10,6 @@ from kinetree.tasks.numerics.registration.colour_term import (
     colour_forms,
     compared,
     feature_matches,
-    gradient_of_noise,
     surface_gradient,
 )
 from kinetree.tasks.numerics.registration.correspondence import Target
@@ -87,6 +86,6 @@ def forms_of_matches(
     settings = settings or ColourSettings()
     gradient = surface_gradient(target.V, target.N, colour.frame, target.start, target.ring)
     kappa = (settings.hold * target.size / colour.noise) ** 2
-    chance = settings.chance**2 * gradient_of_noise(target.V, colour.frame, target.start, target.ring)
+    chance = settings.chance**2 * target.colour_noise
     wanted = colour.body[vertex] - colour.frame[other]
     return colour_forms(r, wanted, gradient[other], weight, kappa, colour.noise, settings.outlier, settings.firmest, chance)

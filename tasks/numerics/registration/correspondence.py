@@ -6,6 +6,7 @@ from the last match and search over the mesh, which costs a twentieth.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.geometry.edge_rings import averaged_normals, edge_rings
 from kinetree.tasks.numerics.geometry.morton_curve import spread_along_curve
-from kinetree.tasks.numerics.registration.colour_term import FrameColour
+from kinetree.tasks.numerics.registration.colour_term import FrameColour, gradient_of_noise
 
 _STEPS = 64
 """Safety bound: a match moves over at most so many edges."""
@@ -88,6 +89,11 @@ class Target:
         sample = spread_along_curve(V, samples)
         tree = cKDTree(np.hstack([V[sample], beta * N[sample]]), balanced_tree=False)
         return cls(np.ascontiguousarray(V), faces, N, start, ring, sample, tree, beta, size, colour)
+
+    @cached_property
+    def colour_noise(self) -> float:
+        """What noise of single vertices makes of the frame's colours, see `gradient_of_noise`; 0 without colours."""
+        return 0.0 if self.colour is None else gradient_of_noise(self.V, self.colour.frame, self.start, self.ring)
 
     def nearest(self, x: Floats, n: Floats) -> Ints:
         """The sample of the frame that is nearest to each point in (x, βn).

@@ -31,7 +31,7 @@ def test_exposure_and_light_of_one_side_are_explained() -> None:
     lit = 0.8 * body + 0.05 + now @ np.full((3, 3), 0.07) - rest @ np.full((3, 3), 0.04)
     found = compared(FrameColour(lit, body), rest, now, ALL, ALL)
     assert found.share > 0.999999
-    np.testing.assert_allclose(found.body, found.frame, atol=1e-9)
+    np.testing.assert_allclose(found.body, found.frame, atol=1e-6)
 
 
 def test_a_tenth_of_wrong_matches_changes_little() -> None:
