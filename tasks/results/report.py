@@ -40,7 +40,7 @@ from kinetree.tasks.results.page.surface_colours import surface_colours
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.plots.evaluation import evaluation_figure
 from kinetree.tasks.views.results import evaluation_remarks
-from kinetree.tasks.views.structure import assumed_words
+from kinetree.tasks.views.structure import assumed_words, two_digits
 from kinetree.tasks.views.topology import UNSURE
 from kinetree.tasks.views.verdict import headline
 
@@ -153,7 +153,7 @@ def _joint_table(
 def _error_words(bars: ErrorBars, j: int) -> str:
     """The expected error of a joint and its bound."""
     known = bool(bars.cuts) and np.isfinite(bars.expected[j])
-    return f"{bars.expected[j]:.2g} (90 %: {bars.bound[j]:.2g})" if known else "–"
+    return f"{two_digits(bars.expected[j])} (90 %: {two_digits(bars.bound[j])})" if known else "–"
 
 
 def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> str:

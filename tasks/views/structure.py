@@ -91,8 +91,13 @@ def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
     support = f"supported by {skeleton.support[joint]} of {len(skeleton.frames)} frames"
     off = f"±{skeleton.drift[joint]:.2g}{unit}"
     if bars is not None and bars.cuts:
-        off = f"±{bars.expected[joint]:.2g}{unit} (90 %: {bars.bound[joint]:.2g})"
+        off = f"±{two_digits(bars.expected[joint])}{unit} (90 %: {two_digits(bars.bound[joint])})"
     return f"{length}, turns {skeleton.degrees[joint]:.0f}°, {off}, {support}"
+
+
+def two_digits(length: float) -> str:
+    """A length with two digits and without an exponent where that is short."""
+    return f"{float(f'{length:.2g}'):g}"
 
 
 @remarks_of(ErrorBars)
@@ -102,7 +107,7 @@ def error_bars_remarks(bars: ErrorBars) -> tuple[str, ...]:
     if not len(known):
         return ()
     cuts = f"{bars.cuts} cuts" if bars.cuts > 1 else "one cut"
-    return (f"joints are expected to be off by {np.median(known):.2g}, at most {known.max():.2g} ({cuts})",)
+    return (f"joints are expected to be off by {two_digits(np.median(known))}, at most {two_digits(known.max())} ({cuts})",)
 
 
 @text_of(ErrorBars)
@@ -112,12 +117,14 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
     if not rows:
         return ("no errors are known",)
     wide = max(len(bars.joints[j]) for j in rows)
-    return tuple(
-        f"{bars.joints[j]:{wide}}  ±{bars.expected[j]:.2g}, 90 % below {bars.bound[j]:.2g}; drift {bars.drift[j]:.2g},"
-        f" spread {bars.spread[j]:.2g} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {bars.residual[j]:.2g},"
-        f" seen in {bars.support[j]} frames"
-        for j in rows
-    )
+    lengths = ("expected", "bound", "drift", "spread", "residual")
+    lines = []
+    for j in rows:
+        expected, bound, drift, spread, residual = (two_digits(getattr(bars, name)[j]) for name in lengths)
+        evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
+        seen = f"seen in {bars.support[j]} frames"
+        lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {seen}")
+    return tuple(lines)
 
 
 @remarks_of(JointNames)

@@ -75,3 +75,5 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
 
     assert f"±{bars.expected[1]:.2g} mm (90 %: {bars.bound[1]:.2g})" in beside(bars)[0]
     assert "±0.1 mm," in beside(unknown_error_bars(body))[0]
+    large = bars.model_copy(update={"bound": np.full(5, 123.4)})
+    assert "(90 %: 120)" in beside(large)[0]
