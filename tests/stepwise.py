@@ -103,7 +103,14 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
     made.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
     made.take_entries, made.numbers = (
-        TakeEntries(frames=(), before=(), rotation=np.zeros((0, 3, 3)), shift=np.zeros((0, 3)), distance=np.zeros(0)),
+        TakeEntries(
+            frames=(),
+            before=(),
+            entry=np.zeros(0, np.int32),
+            rotation=np.zeros((0, 3, 3)),
+            shift=np.zeros((0, 3)),
+            distance=np.zeros(0),
+        ),
         {t: (t,) for t in meshes},
     )
     made.tracking_order = tracking_order(made.reference, made.take_entries, made.sequence)

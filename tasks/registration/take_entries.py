@@ -22,7 +22,8 @@ def take_entries(tips: Mapping[int, Extrema], reference: Reference) -> TakeEntri
     return TakeEntries(
         frames=tuple(frames[entry.at] for entry in entries),
         before=tuple(frames[entry.before] for entry in entries),
-        rotation=np.array([entry.rotation for entry in entries]).reshape(-1, 3, 3),
-        shift=np.array([entry.shift for entry in entries]).reshape(-1, 3),
-        distance=np.array([entry.distance for entry in entries]),
+        entry=np.repeat(range(len(entries)), [len(entry.distance) for entry in entries]).astype(np.int32),
+        rotation=np.concatenate([np.zeros((0, 3, 3)), *(entry.rotation for entry in entries)]),
+        shift=np.concatenate([np.zeros((0, 3)), *(entry.shift for entry in entries)]),
+        distance=np.concatenate([np.zeros(0), *(entry.distance for entry in entries)]),
     )

@@ -34,17 +34,19 @@ def tracking(
         return stored_tracking(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
     last = pose(previous)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
+    frame, fitting = target(mesh, deformation_graph, vertex_colour, reference_colour), fit_settings(params)
     is_entry = index[0] in take_entries.frames
     if is_entry:  # another take: the body stands elsewhere, and how it moved before says nothing
-        earlier, last = None, _moved(last, take_entries, take_entries.frames.index(index[0]))
-    frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
-    fitted = numerics.tracking(body, earlier, last, frame, fit_settings(params), usual=previous.usual)
+        fitted = numerics.entered(body, _moved(last, take_entries, index[0]), frame, fitting, usual=previous.usual)
+    else:
+        fitted = numerics.tracking(body, earlier, last, frame, fitting, usual=previous.usual)
     # the reference leaves nothing uncovered, whatever the capture's holes
     usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
     return stored_tracking(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)
 
 
-def _moved(pose: Pose, entries: TakeEntries, row: int) -> Pose:
-    """A pose where the body stands in the take that is entered."""
-    R, shift = np.array(entries.rotation[row]), np.array(entries.shift[row])
-    return Pose(R @ pose.rotation, pose.translation @ R.T + shift)
+def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:
+    """A pose where the body may stand in the take that is entered at a frame."""
+    starts = np.flatnonzero(entries.entry == entries.frames.index(frame))
+    motions = [(np.array(entries.rotation[k]), np.array(entries.shift[k])) for k in starts]
+    return [Pose(R @ pose.rotation, pose.translation @ R.T + shift) for R, shift in motions]

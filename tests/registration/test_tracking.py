@@ -4,14 +4,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from limbs import rotation
 from pydantic import ValidationError
+from shipped import FITTING
 from stepwise import along, walk
 
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.tasks.numerics.registration import recovery as numeric_recovery
 from kinetree.tasks.numerics.registration import tracking as numeric_tracking
-from kinetree.tasks.numerics.registration.deformation import shape
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import Pose, shape
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
+from kinetree.tasks.numerics.registration.tracking import entered
 from kinetree.tasks.registration.pose import graph, pose
 from kinetree.tasks.registration.recovery import recovery
 from kinetree.tasks.registration.tracking import tracking
@@ -113,3 +117,19 @@ def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_
 def test_values_out_of_bounds_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ValidationError):
         TrackingParams(**wrong)
+
+
+def test_a_take_is_entered_facing_the_way_on_which_the_body_bends_least() -> None:
+    made = walk()
+    body, mesh = graph(made.deformation_graph), made.mesh[made.reference.frame + 1]
+    centre = body.V.mean(axis=0)
+    front, back = (
+        Pose(np.tile(R, (len(body.node), 1, 1)), (body.g - centre) @ R.T + centre)
+        for R in (np.eye(3), rotation((0, 0, 1), np.pi))
+    )
+    frame = Target.of(np.array(mesh.vertices), mesh.faces, body.size)
+    right, wrong, both = (entered(body, starts, frame, FITTING) for starts in ([front], [back], [back, front]))
+    apart = np.linalg.norm(shape(body, right.pose)[0] - shape(body, wrong.pose)[0], axis=1).mean()
+    assert apart > 0.1 * body.size, "back to front, the left arm lies on the right one"
+    assert wrong.uncovered < 0.1, "and covers the frame"
+    np.testing.assert_array_equal(both.pose.translation, right.pose.translation)

@@ -16,7 +16,14 @@ def ordered(frames: range, at: int, *, learned: range | None = None, fixed: bool
         size=1.0, score=np.zeros(len(used)),
     )  # fmt: skip
     further = tuple(t for t in frames if t not in used)
-    none = TakeEntries(frames=(), before=(), rotation=np.zeros((0, 3, 3)), shift=np.zeros((0, 3)), distance=np.zeros(0))
+    none = TakeEntries(
+        frames=(),
+        before=(),
+        entry=np.zeros(0, np.int32),
+        rotation=np.zeros((0, 3, 3)),
+        shift=np.zeros((0, 3)),
+        distance=np.zeros(0),
+    )
     return tracking_order(reference, none, Sequence(frames=tuple(frames), fps=None, unit=None, further=further))
 
 

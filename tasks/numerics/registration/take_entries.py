@@ -1,7 +1,8 @@
 """By which frame a take is entered: the one whose limbs lie most as in a frame of a take that is reached already (ours).
 
 Which limb is which is not known from take to take, and the body may stand elsewhere and face another way. So limbs are
-assigned and the body is turned together, from several directions; a first look compares lengths that no turning changes.
+assigned and the body is turned together, from several directions; a first look compares lengths that no turning changes. A body
+is much like itself turned back to front. So an entry has all the motions that bring limbs near, and the surface decides.
 """
 
 from collections.abc import Sequence
@@ -24,8 +25,12 @@ class TakeEntriesSettings(NamedTuple):
     """Rounds of assigning limbs and turning. Not varied."""
     missing: float = 0.5
     """Distance that counts for a limb that only one of the two frames has. Not varied."""
-    turned: float = 0.7
-    """A body is taken to face another way only where that brings its limbs nearer than this share. Not varied."""
+    apart: float = float(np.radians(45.0))
+    """Two motions are told apart from this difference of their rotations, radians. Not varied."""
+    likely: float = 0.15
+    """Motions count that leave at most so much more distance than the best. Not varied."""
+    starts: int = 4
+    """Motions of one entry at most. Not varied."""
 
 
 class Limbs(NamedTuple):
@@ -37,13 +42,19 @@ class Limbs(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """Positions of a take's first frame to be reached and of the frame before it, and the motion from the latter to it."""
+    """How a take is entered.
+
+    at, before : positions of its first frame to be reached and of the frame before it
+    rotation   : (start, 3, 3) R of the likely motions from the latter to it, the likeliest first
+    shift      : (start, xyz) x there = R x + shift, mesh unit
+    distance   : (start,) between points on limbs, share of the size
+    """
 
     at: int
     before: int
     rotation: Floats
     shift: Floats
-    distance: float
+    distance: Floats
 
 
 def take_entries(limbs: Sequence[Limbs], takes: Sequence[slice], reference: int) -> list[Entry]:
@@ -58,7 +69,7 @@ def take_entries(limbs: Sequence[Limbs], takes: Sequence[slice], reference: int)
     entries = []
     while left:
         best = [nearest(limbs, reached, frames) for frames in left]
-        k = int(np.argmin([entry.distance for entry in best]))
+        k = int(np.argmin([entry.distance[0] for entry in best]))
         entries.append(best[k])
         reached += left.pop(k)
     return entries
@@ -73,20 +84,32 @@ def nearest(limbs: Sequence[Limbs], reached: Sequence[int], frames: Sequence[int
     pairs = sorted(product(reached, frames), key=lambda pair: _unlikeness(limbs[pair[0]], limbs[pair[1]], settings))
     found = []
     for a, b in pairs[: settings.looked_at]:
-        R, distance = pose_distance(limbs[a], limbs[b])
+        R, distance = likely_turns(limbs[a], limbs[b])
         found.append(Entry(b, a, R, limbs[b].centre - R @ limbs[a].centre, distance))
-    return min(found, key=lambda entry: entry.distance)
+    return min(found, key=lambda entry: float(entry.distance[0]))
 
 
-def pose_distance(a: Limbs, b: Limbs) -> tuple[Floats, float]:
-    """The rotation from one pose to the other about their centres, and the mean distance that is left, share of the size."""
+def likely_turns(a: Limbs, b: Limbs) -> tuple[Floats, Floats]:
+    """The rotations from one pose to the other about their centres that leave little distance between limbs.
+
+    returns : (start, 3, 3) the likeliest first · (start,) mean distance that is left, share of the size
+    """
     settings = TakeEntriesSettings()
     A, B = ((limbs.stems - limbs.centre) / limbs.size for limbs in (a, b))
     if not len(A) or not len(B):
-        return np.eye(3), settings.missing * max(len(A), len(B))
-    tried = [_turned(A, B, start, settings) for start in _STARTS]
-    best = min(tried, key=lambda one: one[1])
-    return best if best[1] < settings.turned * tried[0][1] else tried[0]
+        return np.eye(3)[None], np.array([settings.missing * max(len(A), len(B))])
+    tried = sorted((_turned(A, B, start, settings) for start in _STARTS), key=lambda one: one[1])
+    kept: list[tuple[Floats, float]] = []
+    for R, distance in tried:
+        is_new = all(_between(R, other) > settings.apart for other, _ in kept)
+        if is_new and len(kept) < settings.starts and distance <= tried[0][1] + settings.likely:
+            kept.append((R, distance))
+    return np.stack([R for R, _ in kept]), np.array([distance for _, distance in kept])
+
+
+def _between(R: Floats, S: Floats) -> float:
+    """Angle between two rotations, radians."""
+    return float(np.arccos(np.clip((np.sum(R * S) - 1.0) / 2.0, -1.0, 1.0)))
 
 
 def _turned(A: Floats, B: Floats, R: Floats, settings: TakeEntriesSettings) -> tuple[Floats, float]:

@@ -4,13 +4,17 @@ A paw that moves farther than the distance to the next paw is matched to the wro
 that. The share of the frame that the body leaves uncovered is then about ten times as large as in a good frame.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
+
+import numpy as np
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, uncovered
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.edges import edge_energy
 
 
 class TrackingSettings(NamedTuple):
@@ -27,6 +31,8 @@ class TrackingSettings(NamedTuple):
     """Reach of matches in the first step of the wide ways, share of √area. Chosen on: not recorded."""
     scale: float = 0.08
     """Distance from the plane at which a match counts a quarter in that step, share of √area. Chosen on: not recorded."""
+    as_well: float = 0.02
+    """Share of a frame by which one place where the body may stand may cover less than another. Not varied."""
     steps: int = 24
     """Gauss–Newton steps of the stiff ways. Chosen on: not recorded."""
     stiffness: float = 1.0
@@ -91,6 +97,29 @@ def tracking(
         start = neighbour if earlier is None or not way.predicted else predicted(earlier, neighbour)
         best = min(best, _attempted(graph, start, target, way.settings, number), key=lambda attempt: attempt.uncovered)
     return best
+
+
+def entered(
+    graph: DeformationGraph,
+    starts: Sequence[Pose],
+    target: Target,
+    fitting: FitSettings,
+    usual: float = 0.0,
+    settings: TrackingSettings | None = None,
+) -> Tracking:
+    """Fit a frame from each place where the body may stand, and take what bends it least of those that cover the frame (ours).
+
+    A body is much like itself turned back to front, and then covers a frame nearly as well; but feet must be turned over.
+
+    starts  : poses to begin with, at least one
+    returns : Tracking; `graph`, `target`, `fitting` and `usual` as in `tracking`
+    """
+    settings = settings or TrackingSettings()
+    found = [tracking(graph, None, start, target, fitting, usual, settings) for start in starts]
+    most = min(one.uncovered for one in found) + settings.as_well
+    rest = np.ones(len(graph.edge))
+    bent = [edge_energy(graph.edge, rest, *one.pose, graph.g) if one.uncovered <= most else np.inf for one in found]
+    return found[int(np.argmin(bent))]
 
 
 def attempts(usual: FitSettings, settings: TrackingSettings | None = None) -> tuple[Attempt, ...]:
