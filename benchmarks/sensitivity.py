@@ -53,7 +53,7 @@ from kinetree.errors import KinetreeError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.identity.key import code_parts, digest
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.planning import freshness
 from kinetree.pipeline.running import execute
 from kinetree.tasks import METHODS
 
@@ -547,13 +547,13 @@ def _attribute(owner: Any, name: str, value: object) -> Iterator[None]:
 @contextmanager
 def _own_code_digests(setting: Setting, value: Value) -> Iterator[None]:
     """While a setting is changed, plans and runs tasks that reach it as if their code had been edited."""
-    original = schedule.code_digest
+    original = freshness.code_digest
 
     def own(module: str, name: str) -> str:
         code = original(module, name)
         return digest(["varied", code, setting.name, value]) if reaches(module, name, setting) else code
 
-    with _attribute(schedule, "code_digest", own), _attribute(execute, "code_digest", own):
+    with _attribute(freshness, "code_digest", own), _attribute(execute, "code_digest", own):
         yield
 
 

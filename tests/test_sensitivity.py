@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.planning import freshness
 from kinetree.pipeline.running import execute
 from kinetree.tasks.numerics.registration.deformation import FitSettings
 from kinetree.tasks.numerics.structure import rotation_centres
@@ -109,15 +109,15 @@ def test_task_that_a_setting_cannot_change_keeps_its_code_digest(bench: ModuleTy
         "rigid_parts": ("kinetree.tasks.structure.rigid_parts", 0),
         "kinematic_tree": ("kinetree.tasks.structure.kinematic_tree", 1),
     }
-    before = {name: schedule.code_digest(module, name) for name, (module, _) in asked.items()}
+    before = {name: freshness.code_digest(module, name) for name, (module, _) in asked.items()}
     with bench.varied(named(bench, "structure/part_tree.PartTreeSettings.noise"), 0.5):
         for name, (module, changes) in asked.items():
-            assert (schedule.code_digest(module, name) != before[name]) == bool(changes)
-            assert execute.code_digest(module, name) == schedule.code_digest(module, name)
-        mine = schedule.code_digest(asked["kinematic_tree"][0], "kinematic_tree")
+            assert (freshness.code_digest(module, name) != before[name]) == bool(changes)
+            assert execute.code_digest(module, name) == freshness.code_digest(module, name)
+        mine = freshness.code_digest(asked["kinematic_tree"][0], "kinematic_tree")
     with bench.varied(named(bench, "structure/part_tree.PartTreeSettings.noise"), 0.25):
-        assert schedule.code_digest(asked["kinematic_tree"][0], "kinematic_tree") != mine
-    assert {name: schedule.code_digest(module, name) for name, (module, _) in asked.items()} == before
+        assert freshness.code_digest(asked["kinematic_tree"][0], "kinematic_tree") != mine
+    assert {name: freshness.code_digest(module, name) for name, (module, _) in asked.items()} == before
 
 
 def test_movement_pairs_joints_whatever_their_order(bench: ModuleType) -> None:

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.planning import freshness
 from kinetree.pipeline.running import execute
 from kinetree.pipeline.storage.gc import collect
 from kinetree.pipeline.storage.heartbeat import LOST_SECONDS, identity
@@ -56,9 +56,9 @@ def test_a_run_with_a_clock_that_was_set_back_finds_everything(toys, monkeypatch
 @contextmanager
 def version(monkeypatch, name):
     """The same tasks, as another version of the code would have them."""
-    original = schedule.code_digest
+    original = freshness.code_digest
     with monkeypatch.context() as patched:
-        for module in (schedule, execute):
+        for module in (freshness, execute):
             patched.setattr(module, "code_digest", lambda *given: f"{name}{original(*given)}"[:40])
         yield
 

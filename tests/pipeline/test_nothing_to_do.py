@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from kinetree.pipeline.identity import key
-from kinetree.pipeline.planning import schedule
+from kinetree.pipeline.planning import freshness
 from kinetree.pipeline.storage import files
 from kinetree.pipeline.storage.place import Folder
 
@@ -33,12 +33,12 @@ def asked(monkeypatch):
 
     for question in QUESTIONS:
         counted(Folder, question)
-    counted(schedule, "node_key")
+    counted(freshness, "node_key")
     return counts
 
 
 def test_reads_and_writes_do_not_grow_with_the_frames_and_a_node_is_asked_for_once(toys, asked, tmp_path):
-    assert schedule.node_key is not key.node_key, "it is counted"
+    assert freshness.node_key is not key.node_key, "it is counted"
     told = []
     for frames in (20, 60):
         toys.write(*(10.0 * (n + 1) for n in range(frames)))

@@ -35,6 +35,7 @@ from kinetree.tasks.results.skeleton_json import skeleton_json
 from kinetree.tasks.results.tables import tables
 from kinetree.tasks.results.trc import trc
 from kinetree.tasks.results.usd import usd
+from kinetree.tasks.structure.error_bars import unknown_error_bars
 from kinetree.tasks.structure.joint_names import joint_names
 
 
@@ -111,6 +112,7 @@ GRAPH = Graph.of(
         complete_skeleton,
         up_direction,
         joint_names,
+        unknown_error_bars,
         assumed_joints,
         appearance,
         glb,

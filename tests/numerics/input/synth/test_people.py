@@ -30,7 +30,7 @@ def bones(figure):
 
 @pytest.mark.parametrize(("seed", "motion"), [(seed, motion) for motion in MOTIONS for seed in (0, 11)])
 def test_every_frame_of_a_person_is_one_closed_sphere(seed, motion):
-    clip = Body.of(drawn(seed, motion), frames=24, fps=12, vertices=3000, seed=seed)
+    clip = Body.of(drawn(seed, motion), frames=24, fps=12, vertices=6000, seed=seed)
     for t in range(0, 24, 5):
         solid = trimesh.Trimesh(*clip.frame(t), process=False)
         assert solid.is_watertight, t
