@@ -215,6 +215,8 @@ def _metrics(given: Any, base: Path, where: str) -> Path | None:
     path = base / Path(given).expanduser()
     if path.is_dir():
         raise ConfigError(f"{where}: metrics: {path} is a folder; name a file in it, e.g. {path / 'metrics.prom'}")
+    if path.exists() and not path.is_file():
+        raise ConfigError(f"{where}: metrics: {path} is no file, and would be replaced by one; name another path")
     return path
 
 

@@ -1,5 +1,6 @@
 """Pictures: drawn whole or not at all."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,13 @@ def test_unknown_picture_and_unknown_ending_are_refused_and_nothing_is_written(f
     with pytest.raises(ConfigError, match="cannot be written"):
         draw("mu", fetch, [0], tmp_path / "missing" / "a.png")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_pipe_is_not_replaced_by_a_picture(fetch: Any, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.png")
+    with pytest.raises(ConfigError, match="no file, and would be replaced by one"):
+        draw("mu", fetch, [0], tmp_path / "a.png")
+    assert (tmp_path / "a.png").is_fifo()
 
 
 def test_errors_without_a_truth_are_refused(tmp_path: Path) -> None:

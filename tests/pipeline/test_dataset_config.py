@@ -120,6 +120,7 @@ def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
         ({"overrides": ["a"]}, "overrides: expected names of sequences with blocks"),
         ({"source": {"input": "takes/a"}}, "source.input: the sequences say what is read; remove it"),
         ({"metrics": "takes"}, r"metrics: .*/takes is a folder; name a file in it, e\.g\. .*/takes/metrics\.prom"),
+        ({"metrics": "/dev/null"}, "metrics: /dev/null is no file, and would be replaced by one"),
         ({"on_failure": "mail me"}, r"on_failure: expected a program and its arguments as a list"),
         ({"retention": {"keep_lst": 1}}, "retention.keep_lst: no such key; did you mean 'keep_last'"),
         ({"retention": {"max_size": "huge"}}, "retention.max_size: expected a size such as 20GB"),

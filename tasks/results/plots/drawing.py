@@ -57,7 +57,9 @@ def verbatim(figure: "Figure") -> "Figure":
 
 
 def write_figure(figure: "Figure", path: Path, style: Style = "screen") -> None:
-    """Writes a picture, complete or not at all; raises ConfigError where it cannot be written."""
+    """Writes a picture, complete or not at all; raises ConfigError where it cannot be written, or would replace a device."""
+    if path.exists() and not path.is_file():
+        raise ConfigError(f"{path}: no file, and would be replaced by one; name another path")
     beside = path.with_name(f".{path.stem}.part{path.suffix}")
     is_svg = path.suffix.lower() == ".svg"
     fitted = for_paper(figure) if style == "paper" else figure
