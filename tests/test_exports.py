@@ -331,6 +331,17 @@ def test_names_that_are_no_style_and_no_file_of_names_are_refused(out, tmp_path)
             export(str(out), "bvh", names=str(tmp_path / "names.yaml"))
 
 
+def test_names_of_joints_that_are_not_there_are_told_and_too_long_ones_refused(out, tmp_path, capsys):
+    (tmp_path / "names.yaml").write_text("arm: jaw\nelbow: x\n")
+    export(str(out), "bvh", tmp_path / "named.bvh", names=str(tmp_path / "names.yaml"))
+    told = capsys.readouterr().err
+    assert "no joint is called elbow" in told
+    assert "arm" not in told
+    (tmp_path / "names.yaml").write_text(f"arm: {'x' * 101}\n")
+    with pytest.raises(ConfigError, match="has 101 letters; 100 are the most"):
+        export(str(out), "bvh", names=str(tmp_path / "names.yaml"))
+
+
 def test_run_and_plan_take_a_style(out, capsys):
     assert not command_line(EXPORTING)(["plan", str(out), "--names", "vrm", "--json"], standalone_mode=False)
     rows = {row["task"]: row for row in json.loads(capsys.readouterr().out)["tasks"]}

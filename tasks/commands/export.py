@@ -34,6 +34,8 @@ LAID_OUT_BY = ("complete_skeleton", "joint_names", "assumed_joints", "appearance
 """Tasks that say how a body looks in files and take no time: they are computed with a file where an option changes them."""
 LARGEST_NAMES = 2**20
 """Bytes of a file of names."""
+LONGEST_NAME = 100
+"""Letters of one name: other programs keep 63 of them."""
 EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
 SCHEMA = "json-schema"
@@ -83,6 +85,7 @@ def export(
         _write_text(_names_text(pipeline), output)
         return
     written, remarks = _written(pipeline, FORMATS[to], output)
+    remarks += _unused_names(names, pipeline_of(run, sets=sets))
     if as_json:
         print_json({"files": [str(path) for path in written], "remarks": remarks})
         return
@@ -126,19 +129,43 @@ def _names_setting(names: str) -> str:
         raise ConfigError(
             f"{names}: expected a line 'joint: name' for each joint; write the file with --to {NAMES}, then edit it"
         )
+    if long := next((name for name in told.values() if len(name) > LONGEST_NAME), None):
+        raise ConfigError(f"{names}: the name {long[:20]}… has {len(long)} letters; {LONGEST_NAME} are the most")
     return f"joint_names.rename={json.dumps(told)}"
+
+
+def _unused_names(names: str | None, pipeline: "Pipeline") -> list[str]:
+    """What is to be said of names in a file whose joints the body does not have.
+
+    pipeline : without that file
+    """
+    from kinetree.pipeline.settings.yaml_text import parsed
+    from kinetree.schemas.structure.joint_names import STYLES
+
+    if names is None or names in STYLES:
+        return []
+    known = _named(pipeline)
+    told = parsed(small_text(Path(names), ConfigError, LARGEST_NAMES), names)
+    missing = [joint for joint in told if joint not in known and joint not in known.values()]
+    return [f"{names}: no joint is called {', '.join(missing[:5])}"] if missing else []
 
 
 def _names_text(pipeline: "Pipeline") -> str:
     """Every joint's own name and the name that files have, as YAML."""
     from kinetree.pipeline.settings.yaml_text import dumped
+
+    return dumped(_named(pipeline), sort_keys=False)
+
+
+def _named(pipeline: "Pipeline") -> dict[str, str]:
+    """Every joint's own name and the name that files have."""
     from kinetree.schemas.structure.joint_names import JointNames
 
     schedule = pipeline.computed("joint_names", LAID_OUT_BY).schedule
     (entry,) = (entry for entry in schedule.entries.values() if entry.node.task == "joint_names")
     found = schedule.value(entry.node)
     assert isinstance(found, JointNames)
-    return dumped(dict(zip(found.given, found.names, strict=True)), sort_keys=False)
+    return dict(zip(found.given, found.names, strict=True))
 
 
 def _write_text(text: str, output: Path | None) -> None:
