@@ -10,6 +10,7 @@ KinetreeError
 │   ├── HullError             silhouettes or a volume of one frame make no body
 │   ├── StoreError            the folder is not a store, or cannot be read or written
 │   │   ├── StoreFullError    no space is left on the device
+│   │   ├── ReadOnlyStoreError      it may be read and not written
 │   │   └── ServiceError      the service that has a bucket does not answer; exit code 3, the same command may succeed later
 │   └── UnknownNodeError      no such task, node, run or artifact
 ├── ClusterError              the scheduler or the workers are not there; exit code 3, the same command may succeed later
@@ -64,6 +65,10 @@ class StoreError(InputError):
 
 class StoreFullError(StoreError):
     """No space is left where the store lies."""
+
+
+class ReadOnlyStoreError(StoreError):
+    """The place of the store may be read and not written."""
 
 
 class ServiceError(StoreError):

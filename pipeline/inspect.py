@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
-from kinetree.errors import NodesFailedError, UnknownNodeError
+from kinetree.errors import NodesFailedError, ReadOnlyStoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline.application import Application, current
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
@@ -32,7 +32,7 @@ from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.events import Account, Listener, Watch
 from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.settings import config as configuration
-from kinetree.pipeline.settings.config import Config
+from kinetree.pipeline.settings.config import Compute, Config
 from kinetree.pipeline.storage.files import Files, Settling
 from kinetree.pipeline.storage.gc import advising
 from kinetree.pipeline.storage.store import Store
@@ -193,9 +193,18 @@ class Pipeline:
     def computed(self, name: str, also: Collection[str] = ()) -> Snapshot:
         """Computes one task from what is there and nothing else; returns the snapshot that has its artifacts.
 
+        Where the store may be read and not written, or is full, what is computed stays in the memory of this process.
+
         also   : tasks before it that are computed where they are out of date
         raises : UnknownNodeError where something it reads is not there; NodesFailedError where it fails itself
         """
+        try:
+            return self._computed(name, also)
+        except (ReadOnlyStoreError, StoreFullError):
+            config = replace(self.config, compute=Compute(executor="sync"))  # no other process sees that memory
+            return replace(self, config=config, store=self.store.unwritten())._computed(name, also)
+
+    def _computed(self, name: str, also: Collection[str]) -> Snapshot:
         there = self.inspect(until=[name])
         self._refuse_missing(there, name, also)
         account = Account()

@@ -16,6 +16,7 @@ from kinetree.errors import (
     KinetreeError,
     LateNodeError,
     LostWorkerError,
+    ReadOnlyStoreError,
     ServiceError,
     StoreError,
     StoreFullError,
@@ -331,5 +332,5 @@ def _twin(result: Result) -> Result:
 
 def _refusal(result: Result) -> KinetreeError:
     """The error with which a worker refused to go on, by its name."""
-    kinds = {kind.__name__: kind for kind in (StoreError, StoreFullError, ServiceError)}
+    kinds = {kind.__name__: kind for kind in (StoreError, StoreFullError, ReadOnlyStoreError, ServiceError)}
     return kinds.get(result.error, ClusterError)(result.message)

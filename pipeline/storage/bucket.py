@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from typing import Any, TypeVar
 
-from kinetree.errors import ServiceError, StoreError
+from kinetree.errors import ReadOnlyStoreError, ServiceError, StoreError
 from kinetree.pipeline.storage.place import Listed
 
 T = TypeVar("T")
@@ -171,7 +171,8 @@ class Bucket:
                     f"{self._name} {self.url}: cannot {verb} {path or 'it'}: its certificate is not trusted on this machine;"
                     " check AWS_ENDPOINT_URL, or trust who signed it"
                 ) from None
-            raise StoreError(
+            is_read_only = verb == "write" and _short(error) == "PermissionDeniedError"
+            raise (ReadOnlyStoreError if is_read_only else StoreError)(
                 f"{self._name} {self.url}: cannot {verb} {path or 'it'}: {_short(error)}; check the address, and"
                 " AWS_ENDPOINT_URL, AWS_REGION and the credentials in the environment"
             ) from None

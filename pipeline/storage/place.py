@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
-from kinetree.errors import StoreError, StoreFullError
+from kinetree.errors import ReadOnlyStoreError, StoreError, StoreFullError
 
 
 @dataclass(frozen=True)
@@ -224,7 +224,8 @@ class Folder:
             why = f"cannot write {path}: {error.strerror}; check its permissions"
             if dangling is not None:
                 why = f"{dangling} is a link to {dangling.readlink()}, which is not there; make that folder"
-            raise StoreError(f"{self._name} {self.url}: {why} or name another folder (--output, --store)") from error
+            kind = ReadOnlyStoreError if error.errno in (errno.EROFS, errno.EACCES, errno.EPERM) else StoreError
+            raise kind(f"{self._name} {self.url}: {why} or name another folder (--output, --store)") from error
 
 
 def _listed(folder: str, prefix: str) -> Iterator[tuple[str, Listed]]:

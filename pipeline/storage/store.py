@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from kinetree.errors import DamagedArtifactError, StoreError, UnknownNodeError
 from kinetree.pipeline.identity.key import array_digest, combined_digest
 from kinetree.pipeline.storage.groups import ForeignArrayError, decoded, group_files
+from kinetree.pipeline.storage.overlay import Overlay, opened
 from kinetree.pipeline.storage.packed import DamagedZipError, Packed, packed
 from kinetree.pipeline.storage.place import Folder, Listed, Place
 from kinetree.pipeline.storage.records import Record, Records
@@ -49,9 +50,17 @@ class Store:
     def at(url: str | Path) -> "Store":
         """The store at a folder's path or at s3://bucket/prefix; raises StoreError where something else lies there."""
         place = _place(str(url))
-        store = Store(place, Records(place), RunRecords(place))
+        store = Store._of(place)
         store._refuse_strangers()
         return store
+
+    @staticmethod
+    def _of(place: Place) -> "Store":
+        return Store(place, Records(place), RunRecords(place))
+
+    def unwritten(self) -> "Store":
+        """The same store with an `Overlay`: what is written stays in the memory of this process, nothing reaches the place."""
+        return Store._of(Overlay(self.place))
 
     @property
     def url(self) -> str:
@@ -193,6 +202,9 @@ class Store:
 
 
 def _place(url: str) -> Place:
+    overlay = opened(url)
+    if overlay is not None:
+        return overlay
     scheme, separator, _ = url.partition("://")
     if not separator:
         return Folder(Path(url).expanduser())
