@@ -9,7 +9,7 @@ from kinetree.errors import ArtifactError
 from kinetree.schemas.array import Artifact, Index, Location, Params, PathLike
 from kinetree.schemas.input.synth import SynthParams
 
-Kind = Literal["file", "npz", "zarr", "animated", "synth", "silhouettes", "volume"]
+Kind = Literal["file", "npz", "zarr", "animated", "segment", "synth", "silhouettes", "volume"]
 
 
 class TakeParams(Params):
@@ -29,7 +29,7 @@ class SourceParams(Params):
     input: Annotated[str, PathLike()] = ""
     """Folder or glob of meshes, silhouettes or volumes, or one file of all frames (npz, zarr, GLB, USD, zip); meshes also at s3://."""
     clip: str = ""
-    """Name of the animation in a GLB that holds several; empty for its first."""
+    """Name of the animation in a GLB (empty: its first), or of the target of a volumetric manifest (empty: its finest)."""
     takes: tuple[TakeParams, ...] = ()
     """Several takes of one body, which have one skeleton; excludes `input` and `synth`."""
     synth: SynthParams | None = None
@@ -71,7 +71,7 @@ class Source(Artifact):
     clip: Annotated[str, Location()] = ""
     """Name of the animation that it is a frame of, where one of several was chosen."""
     kind: Kind = "file"
-    """How to read it: the first five are meshes."""
+    """How to read it: the first six are meshes; segment: each morph target of a GLB is a frame."""
     calibration: Annotated[tuple[str, ...], Location()] = ()
     """The files that calibrate the cameras of silhouettes."""
     masks: Annotated[tuple[str, ...], Location()] = ()

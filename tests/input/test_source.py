@@ -154,26 +154,6 @@ def test_formats_that_are_not_read_end_in_what_to_do(found, tmp_path, suffix, to
 # ── folders and patterns ────────────────────────────────────────────────────────────────────────────────────────────
 
 
-def test_folder_of_universal_volumetric_2_is_its_frames(found, tmp_path):
-    """Its manifest names geometry/[target]/[index].drc; the rate of its frames stands there alone."""
-    draco = pytest.importorskip("DracoPy", reason="pip install 'kinetree[draco]'")
-    folder = tmp_path / "take" / "geometry" / "draco"
-    folder.mkdir(parents=True)
-    (tmp_path / "take" / "manifest.json").write_text('{"version": "v2", "geometry": {"path": "geometry/[target]/[index].drc"}}')
-    V, F = (
-        np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]], np.float32),
-        np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]),
-    )
-    for t in range(3):
-        (folder / f"{t:07d}.drc").write_bytes(draco.encode(V + np.float32(t), F, quantization_bits=16))
-    frames = found("take/geometry/draco")
-    assert list(frames) == [0, 1, 2]
-    X, _ = surface(frames[2])
-    np.testing.assert_allclose(np.sort(X, axis=0), np.sort(V + 2, axis=0), atol=1e-4)
-    with pytest.raises(SourceError, match="no mesh among its files"):
-        found("take")
-
-
 def test_folder_is_frames_in_natural_order_with_the_numbers_of_their_names(found, scans):
     frames = found("scans")
     assert list(frames) == [1, 2, 9, 10]

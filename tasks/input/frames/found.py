@@ -26,12 +26,14 @@ from kinetree.tasks.numerics.input.source import (
     written,
 )
 from kinetree.tasks.numerics.input.volumes import MOST_BYTES as MOST_VOLUME_BYTES
+from kinetree.tasks.numerics.input.volumetric_manifest import SUFFIXES as MANIFESTS
+from kinetree.tasks.numerics.input.volumetric_manifest import manifest_in, read_manifest
 from kinetree.tasks.numerics.input.zipped import Zipped
 
 
 def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
-    if clip and not where.lower().endswith(".glb"):
+    if clip and not where.lower().endswith((".glb", *MANIFESTS)):
         raise SourceError(f"source.clip {clip}: names an animation of one GLB, and {where} is none; leave it out")
     if files.is_remote(where):
         return _in_bucket(where, files, clip)
@@ -40,6 +42,8 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     path = written(Path(where))
     if path.suffix.lower() in ANIMATED and path.is_file():
         return _animated(path, clip, files)
+    if (manifest := _manifest(path)) is not None:
+        return volumetric_frames(manifest, clip, files)
     if _is_zarr(path):
         return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
     kind, found = input_kind(where)
@@ -54,6 +58,32 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     form: Kind = "volume" if kind == "volumes" else "file"
     contents = files.digests(paths, MOST_VOLUME_BYTES if kind == "volumes" else MOST_BYTES)
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
+
+
+def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
+    """Every frame of a Universal Volumetric 2 sequence, numbered as its files are; those of segments one after the other."""
+    manifest = read_manifest(path, clip)
+    number = dict(zip(manifest.files, manifest.numbers, strict=True))
+    paths = _complete([written(p) for p in manifest.files], str(path), files)
+    stated = {"fps": manifest.fps}
+    if manifest.holds == "file":
+        contents = files.digests(paths, MOST_BYTES)
+        made = [Source(content=c, path=str(p), **stated) for c, p in zip(contents, paths, strict=True)]
+        return {number[p]: frame for p, frame in zip(paths, made, strict=True)}
+    return {
+        number[p] * manifest.length + k: frame.model_copy(update=stated)
+        for p in paths
+        for k, frame in enumerate(_packed(p, "segment", files))
+    }
+
+
+def _manifest(path: Path) -> Path | None:
+    """The volumetric manifest that a path is, or that lies in a folder without meshes."""
+    if path.suffix.lower() in MANIFESTS and path.is_file():
+        return path
+    if not path.is_dir() or _is_zarr(path) or any(p.suffix.lower() in mesh_suffixes() for p in path.iterdir()):
+        return None
+    return manifest_in(path)
 
 
 def _animated(path: Path | str, clip: str, files: Files) -> dict[int, Source]:

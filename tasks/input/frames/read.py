@@ -104,8 +104,8 @@ def _refuse_changed(now: str, frame_source: Source) -> None:
 
 def packed_frames(path: Path, kind: str, clip: str = "") -> Animated:
     """The frames of one file that holds all."""
-    if kind == "animated":
-        return read_animated(path, clip)
+    if kind in ("animated", "segment"):
+        return read_animated(path, clip, is_segment=kind == "segment")
     return read_npz(path) if kind == "npz" else _zarr_frames(path, _state(path))
 
 

@@ -31,21 +31,22 @@ class Animated(Protocol):
         """V (vertex, xyz) and F (face, corner) of frame t."""
 
 
-def read_animated(path: Path, clip: str = "") -> Animated:
+def read_animated(path: Path, clip: str = "", *, is_segment: bool = False) -> Animated:
     """The frames of one file; asked again for the same unchanged file, the same value without reading.
 
-    clip   : name of the animation, where the file has several; the first where empty
-    raises : SourceError where it cannot be read, or holds no motion
+    clip       : name of the animation, where the file has several; the first where empty
+    is_segment : each morph target of the GLB is a frame
+    raises     : SourceError where it cannot be read, or holds no motion
     """
     try:
         state = path.stat()
     except OSError as error:
         raise SourceError(f"{path}: cannot be read: {error.strerror}") from None
-    return _read(path, state.st_size, state.st_mtime_ns, clip)
+    return _read(path, state.st_size, state.st_mtime_ns, clip, is_segment)
 
 
 @lru_cache(maxsize=2)
-def _read(path: Path, size: int, mtime_ns: int, clip: str) -> Animated:
+def _read(path: Path, size: int, mtime_ns: int, clip: str, is_segment: bool) -> Animated:
     suffix = path.suffix.lower()
     if clip and suffix != ".glb":
         raise SourceError(f"source.clip {clip}: only a GLB has clips; leave it out for {path.name}")
@@ -53,7 +54,7 @@ def _read(path: Path, size: int, mtime_ns: int, clip: str) -> Animated:
         return Zipped(path)
     if suffix == ".glb":
         try:
-            return AnimatedGlb(_glb_bytes(path), str(path), clip)
+            return AnimatedGlb(_glb_bytes(path), str(path), clip, targets_are_frames=is_segment)
         except (SourceError, MeshError) as error:
             told = str(error)
             raise SourceError(told if told.startswith(str(path)) else f"{path}: {told}") from None

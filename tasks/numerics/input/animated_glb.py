@@ -13,6 +13,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked
 from kinetree.tasks.numerics.input.gltf import Gltf
+from kinetree.tasks.numerics.input.gltf_channel import Channel, rotation_matrix
 
 _DENSE_KEYS = 1 / 12
 """Keys no further apart than this (seconds) …"""
@@ -27,36 +28,6 @@ _MOST_VERTICES = 50_000_000
 _MOST_DEPTH = 1000
 _WIDTH = {"translation": 3, "rotation": 4, "scale": 3}
 _REST: Mapping[str, Sequence[float]] = {"translation": (0, 0, 0), "rotation": (0, 0, 0, 1), "scale": (1, 1, 1)}
-
-
-@dataclass(frozen=True)
-class _Channel:
-    """How one property of one node moves.
-
-    values : (key, width); (key, 3, width) with tangents before and after for cubic splines
-    """
-
-    node: int
-    path: str
-    times: Floats
-    values: Floats
-    way: str
-
-    def at(self, t: float) -> Floats:
-        """The value at a time; before the first key it is the first, after the last the last."""
-        k = int(np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.times) - 1))
-        middle = self.values[:, 1] if self.way == "CUBICSPLINE" else self.values
-        if k == len(self.times) - 1 or t <= self.times[0] or self.way == "STEP":
-            return middle[k]
-        step = self.times[k + 1] - self.times[k]
-        s = float((t - self.times[k]) / step)
-        if self.way == "CUBICSPLINE":
-            a, b = self.values[k], self.values[k + 1]
-            value = (2 * s**3 - 3 * s**2 + 1) * a[1] + (s**3 - 2 * s**2 + s) * step * a[2]
-            value = value + (3 * s**2 - 2 * s**3) * b[1] + (s**3 - s**2) * step * b[0]
-            return value / max(float(np.linalg.norm(value)), 1e-12) if self.path == "rotation" else value
-        a, b = middle[k], middle[k + 1]
-        return _between(a, b, s) if self.path == "rotation" else (1 - s) * a + s * b
 
 
 @dataclass(frozen=True)
@@ -83,21 +54,29 @@ class _Piece:
 class AnimatedGlb:
     """The frames of an animated GLB in metres; every frame has the same faces.
 
-    fps  : frames a second
+    fps  : frames a second; None where morph targets are the frames
     unit : m, as glTF has it
     """
 
     unit = "m"
+    fps: float | None
+    _times: Floats
 
-    def __init__(self, raw: bytes, name: str, clip: str = "") -> None:
-        """From raw : the file's bytes · name : what messages call it · clip : the animation's name; the first where empty."""
+    def __init__(self, raw: bytes, name: str, clip: str = "", *, targets_are_frames: bool = False) -> None:
+        """From the bytes of a file.
+
+        raw, name          : the bytes, and what messages call the file
+        clip               : the animation's name; the first where empty
+        targets_are_frames : each morph target is a frame, and no animation is read (Universal Volumetric 2)
+        """
         self.name = name
         self._gltf = Gltf.of(raw)
         self._nodes = self._gltf.items("nodes")
         self._parents = self._order()
-        self._channels = self._channels_of(self._animation(clip))
+        self._channels = [] if targets_are_frames else self._channels_of(self._animation(clip))
         self._pieces = self._pieces_shown()
-        self.fps, self._times = self._frames()
+        self._targets = self._targets_of_frames() if targets_are_frames else 0
+        self.fps, self._times = self._frames() if self._channels else (None, np.zeros(self._targets))
 
     def __len__(self) -> int:
         return len(self._times)
@@ -110,7 +89,7 @@ class AnimatedGlb:
         V, F, begin = [], [], 0
         for piece in self._pieces:
             X = piece.V
-            w = weights.get(piece.node, piece.weights_at_rest)
+            w = np.eye(self._targets)[t] if self._targets else weights.get(piece.node, piece.weights_at_rest)
             if len(piece.targets):
                 n = min(len(w), len(piece.targets))
                 X = X + np.tensordot(w[:n], piece.targets[:n], 1)
@@ -160,7 +139,7 @@ class AnimatedGlb:
             raise SourceError(f"{self.name}: source.clip {clip}: there is {', '.join(names)[:300]}")
         return there[names.index(clip) if clip else 0]
 
-    def _channels_of(self, animation: Mapping[str, Any]) -> list[_Channel]:
+    def _channels_of(self, animation: Mapping[str, Any]) -> list[Channel]:
         samplers = animation.get("samplers", [])
         made = []
         for channel in animation.get("channels", []):
@@ -177,7 +156,7 @@ class AnimatedGlb:
                 raise SourceError(f"{self.name}: the keys of an animation do not fit its times; the file is damaged")
             if not np.isfinite(times).all():
                 raise SourceError(f"{self.name}: an animation has times without end; the file is damaged")
-            made.append(_Channel(target["node"], target["path"], times, values.reshape(*rows, width), way))
+            made.append(Channel(target["node"], target["path"], times, values.reshape(*rows, width), way))
         if not made:
             raise SourceError(f"{self.name}: its animation moves nothing that is shown")
         return made
@@ -199,6 +178,14 @@ class AnimatedGlb:
         frames = round(float((last - first) * rate)) + 1
         return rate, first + np.arange(frames) / rate
 
+    def _targets_of_frames(self) -> int:
+        """How many morph targets each piece has; raises SourceError where there is none, or they differ."""
+        counts = {len(piece.targets) for piece in self._pieces}
+        if counts == {0} or len(counts) > 1:
+            told = " and ".join(map(str, sorted(counts)))
+            raise SourceError(f"{self.name}: its meshes have {told} morph targets, which are no frames")
+        return counts.pop()
+
     def _posed(self, t: float) -> tuple[dict[int, Floats], dict[int, Floats]]:
         """The matrix of every node in the scene, and weights of morph targets, at a time."""
         now = {(c.node, c.path): c.at(t) for c in self._channels}
@@ -211,7 +198,7 @@ class AnimatedGlb:
             else:
                 own = {p: now.get((i, p), _numbers(node.get(p, _REST[p]), n, self.name)) for p, n in _WIDTH.items()}
                 local = np.eye(4)
-                local[:3, :3] = _rotation(own["rotation"]) * own["scale"]
+                local[:3, :3] = rotation_matrix(own["rotation"]) * own["scale"]
                 local[:3, 3] = own["translation"]
             world[i] = local if parent is None else world[parent] @ local
         return world, {node: value for (node, path), value in now.items() if path == "weights"}
@@ -285,26 +272,3 @@ def _numbers(held: Any, n: int | None, name: str) -> Floats:
     if numbers.ndim != 1 or (n is not None and len(numbers) != n) or not np.isfinite(numbers).all():
         raise SourceError(f"{name}: {str(held)[:40]} is no list of {n or 'some'} numbers; the file is damaged")
     return numbers
-
-
-def _between(a: Floats, b: Floats, s: float) -> Floats:
-    """The rotation (x, y, z, w) a share s of the way from a to b, the shorter way round (Sec. 3.11, appendix C)."""
-    cosine = float(a @ b)
-    b, cosine = (b, cosine) if cosine >= 0 else (-b, -cosine)
-    if cosine > 0.9995:
-        value = (1 - s) * a + s * b
-        return value / max(float(np.linalg.norm(value)), 1e-12)
-    angle = np.arccos(min(cosine, 1.0))
-    return (np.sin((1 - s) * angle) * a + np.sin(s * angle) * b) / np.sin(angle)
-
-
-def _rotation(q: Floats) -> Floats:
-    """(3, 3) of a quaternion (x, y, z, w)."""
-    x, y, z, w = q / max(float(np.linalg.norm(q)), 1e-12)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

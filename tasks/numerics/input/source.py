@@ -24,7 +24,22 @@ from kinetree.tasks.numerics.input.unpacked import npz_bomb
 
 _PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
 """Suffixes of files that must be unpacked before they can be read."""
-_WHOLE = {*suffixes(), ".zip", ".usd", ".usda", ".usdc", ".usdz", ".npz", ".npy", ".nrrd", ".tif", ".tiff", ".yaml", ".json"}
+_WHOLE = {
+    *suffixes(),
+    ".zip",
+    ".usd",
+    ".usda",
+    ".usdc",
+    ".usdz",
+    ".npz",
+    ".npy",
+    ".nrrd",
+    ".tif",
+    ".tiff",
+    ".yaml",
+    ".json",
+    ".manifest",
+}
 """Suffixes that only files have."""
 AnyPath = TypeVar("AnyPath", bound=PurePath)
 ARRAYS = "vertices", "faces", "vertex_offsets", "face_offsets", "fps", "unit"

@@ -1,0 +1,176 @@
+"""The manifest of a Universal Volumetric 2 sequence: which files are its frames, and how many frames a second.
+
+Source: Universal Volumetric, src/Interfaces.ts: GeometryTarget and V2Schema, also as `output` of an encoder's configuration;
+`[target]`, `[index]` or a row of `#`, and `[ext]` stand in its path. A target of the format `uniform-solve` has one GLB for
+every few frames, whose morph targets are the frames.
+"""
+
+import glob
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path, PurePosixPath
+from typing import Any, Literal, NamedTuple
+
+from kinetree.errors import SourceError
+from kinetree.errors.small_text import small_json, small_text
+from kinetree.tasks.numerics.input.foreign import VOLUMETRIC_1
+
+SUFFIXES = (".json", ".manifest")
+LARGEST = 2**26
+"""Bytes of a manifest; version 1 lists every frame in it."""
+_INDEX = re.compile(r"\[index\]|\[#+\]|#+")
+_EXTENSIONS: Mapping[str, tuple[Literal["file", "segment"], str]] = {
+    "draco": ("file", ".drc"), "obj": ("file", ".obj"), "glb": ("file", ".glb"), "gltf": ("file", ".glb"),
+    "uniform-solve": ("segment", ".glb"),
+}  # fmt: skip
+"""Whether a file of each format is a frame or some of them, and how it ends."""
+
+
+class VolumetricManifest(NamedTuple):
+    """The files of one target.
+
+    numbers : of each file, from its name; files lie in their order
+    holds   : file where each is a frame; segment where each is a GLB whose morph targets are frames
+    length  : frames of a segment; 1 where a file is a frame
+    fps     : frames a second; None where the manifest does not say
+    """
+
+    files: tuple[Path, ...]
+    numbers: tuple[int, ...]
+    holds: Literal["file", "segment"]
+    length: int
+    fps: float | None
+
+
+def manifest_in(folder: Path) -> Path | None:
+    """The one manifest of a folder; None where there is none.
+
+    raises : SourceError where there are several
+    """
+    found = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file())
+    found = [path for path in found if _is_manifest(_held_or_none(path))]
+    if len(found) > 1:
+        raise SourceError(f"{folder}: {' and '.join(path.name for path in found[:3])} are manifests; name one of them")
+    return found[0] if found else None
+
+
+def read_manifest(path: Path, target: str = "") -> VolumetricManifest:
+    """The files of a target that a manifest names, all of which lie in its folder.
+
+    target : its name; where empty, that with the most frames a second, of those the most bits of a position
+    raises : SourceError where it is no manifest of version 2, or files are not there
+    """
+    held = _held(path)
+    if not _is_manifest(held):
+        raise SourceError(f"{path}: no manifest of Universal Volumetric 2: it has no geometry; name the folder of the frames")
+    if "frameData" in held or "frameData" in _mapping(held, "geometry"):
+        raise SourceError(f"{path}: {VOLUMETRIC_1}")
+    name, template, chosen = _target(held, target, path)
+    holds, ending = _EXTENSIONS.get(str(chosen.get("format", "draco")).lower(), ("file", ""))
+    if not ending:
+        raise SourceError(f"{path}: {name or 'its geometry'} is {chosen['format']!r}; {', '.join(_EXTENSIONS)} are read")
+    found = _files(path, template.replace("[target]", name).replace("[ext]", ending))
+    length = _count(chosen, "segmentFrameCount", path) if holds == "segment" else 1
+    if length is None:
+        raise SourceError(f"{path}: {name} has no segmentFrameCount, the frames of one file; the manifest is not complete")
+    claimed = _count(chosen, "frameCount", path)
+    if claimed is not None and len(found) * length < claimed:
+        raise SourceError(
+            f"{path}: {name or 'its geometry'} has {claimed} frames, but only {len(found)} files are there; copy the others"
+            f" too, or name their folder {next(iter(found.values())).parent}"
+        )
+    return VolumetricManifest(tuple(found.values()), tuple(found), holds, length, _rate(chosen, path))
+
+
+def _held(path: Path) -> Any:
+    return small_json(small_text(path, SourceError, LARGEST), str(path), SourceError)
+
+
+def _held_or_none(path: Path) -> Any:
+    """What a file beside others holds; None where that cannot be read, since it need not be a manifest."""
+    try:
+        return _held(path)
+    except SourceError:
+        return None
+
+
+def _is_manifest(held: Any) -> bool:
+    """Whether a JSON value has what only manifests have, of either version."""
+    if not isinstance(held, dict):
+        return False
+    geometry = _mapping(held, "geometry") or _mapping(_mapping(held, "output"), "geometry")
+    return bool({"targets", "path", "frameData"} & set(geometry)) or "DRCURLPattern" in held or "frameData" in held
+
+
+def _mapping(held: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """What lies under a key, if it is a mapping."""
+    value = held.get(key)
+    return value if isinstance(value, dict) else {}
+
+
+def _target(held: Mapping[str, Any], wanted: str, path: Path) -> tuple[str, str, Mapping[str, Any]]:
+    """Name, path and description of a target; manifests of the first kind of version 2 have one without a name."""
+    if "DRCURLPattern" in held:
+        early = {"frameRate": held.get("GeometryFrameRate"), "frameCount": held.get("GeometryFrameCount")}
+        return "", str(held["DRCURLPattern"]), {key: value for key, value in early.items() if value is not None}
+    geometry = _mapping(held, "geometry") or _mapping(_mapping(held, "output"), "geometry")
+    targets = {name: value for name, value in _mapping(geometry, "targets").items() if isinstance(value, dict)}
+    template = str(geometry.get("path", ""))
+    if not targets and "[target]" not in template:
+        return "", template, {}
+    if not targets or (wanted and wanted not in targets):
+        there = ", ".join(sorted(targets)) or "none"
+        raise SourceError(f"{path}: source.clip {wanted}: its targets are {there}" if wanted else f"{path}: it has no targets")
+    name = wanted or max(sorted(targets), key=lambda name: _fineness(targets[name], path))
+    return name, template, targets[name]
+
+
+def _fineness(target: Mapping[str, Any], path: Path) -> tuple[float, float]:
+    """What the finest of several targets has most of."""
+    bits = _mapping(target, "settings").get("positionQuantizationBits", 11)
+    return _rate(target, path) or 0.0, float(bits) if isinstance(bits, int | float) else 0.0
+
+
+def _files(path: Path, template: str) -> dict[int, Path]:
+    """The files of a template by number, in the order of numbers."""
+    relative = PurePosixPath(template)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in template or "://" in template:
+        raise SourceError(
+            f"{path}: its frames lie at {template!r}, outside its folder; put them beside it and name their folder"
+        )
+    places = list(_INDEX.finditer(template))
+    if len(places) != 1:
+        raise SourceError(f"{path}: {template!r} is no path of frames; one [index] must stand for their numbers")
+    before, after = template[: places[0].start()], template[places[0].end() :]
+    number = re.compile(re.escape(before) + "([0-9]+)" + re.escape(after))
+    there = path.parent.glob(f"{glob.escape(before)}*{glob.escape(after)}")
+    named = ((number.fullmatch(file.relative_to(path.parent).as_posix()), file) for file in there)
+    found = sorted((int(match[1]), file) for match, file in named if match)
+    if not found:
+        raise SourceError(
+            f"{path}: no file at {before}0000000{after}; copy the frames beside the manifest, or name their folder"
+        )
+    if twice := {file for (n, _), (m, file) in pairwise(found) if n == m}:
+        raise SourceError(f"{path}: {min(twice).name} has the number of another file; take one of them away")
+    return dict(found)
+
+
+def _rate(target: Mapping[str, Any], path: Path) -> float | None:
+    """Frames a second, a positive number."""
+    rate = target.get("frameRate")
+    if rate is None:
+        return None
+    if not isinstance(rate, int | float) or isinstance(rate, bool) or not 0 < rate < float("inf"):
+        raise SourceError(f"{path}: frameRate is {str(rate)[:40]}; a positive number of frames a second is needed")
+    return float(rate)
+
+
+def _count(target: Mapping[str, Any], key: str, path: Path) -> int | None:
+    """A positive whole number."""
+    count = target.get(key)
+    if count is None:
+        return None
+    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+        raise SourceError(f"{path}: {key} is {str(count)[:40]}; a positive whole number is needed")
+    return count

@@ -1,0 +1,72 @@
+"""Contracts of Universal Volumetric 2 as an input: its manifest, or its folder, is a sequence of meshes with a frame rate."""
+
+import json
+
+import numpy as np
+import pytest
+from numerics.input.animated_glbs import Made
+from numerics.input.animated_glbs import V as TETRAHEDRON
+
+from kinetree.errors import SourceError
+from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.store import Store
+from kinetree.schemas.input.source import SourceParams
+from kinetree.tasks.input.frames.read import surface
+from kinetree.tasks.input.source import source
+
+V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]], np.float32)
+F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+
+
+@pytest.fixture
+def found(tmp_path):
+    files = Files.of(Store.at(tmp_path / "store"))
+    return lambda where, **more: source(SourceParams(input=str(tmp_path / where), **more), files)
+
+
+def take(folder, targets, path="geometry/[target]/[index][ext]"):
+    """A folder with a manifest of version 2."""
+    folder.mkdir()
+    held = {"version": "v2", "duration": 1.0, "geometry": {"targets": targets, "path": path}}
+    (folder / "manifest.json").write_text(json.dumps(held))
+    return folder
+
+
+def test_draco_frames_have_the_rate_of_their_manifest(found, tmp_path):
+    draco = pytest.importorskip("DracoPy", reason="pip install 'kinetree[draco]'")
+    coarse = {"format": "draco", "frameRate": 15, "frameCount": 2, "settings": {"positionQuantizationBits": 8}}
+    fine = {"format": "draco", "frameRate": 30, "frameCount": 3, "settings": {"positionQuantizationBits": 14}}
+    folder = take(tmp_path / "take", {"coarse": coarse, "fine": fine})
+    for target, frames in (("coarse", 2), ("fine", 3)):
+        (folder / "geometry" / target).mkdir(parents=True)
+        for t in range(frames):
+            raw = draco.encode(V + np.float32(t), F, quantization_bits=16)
+            (folder / "geometry" / target / f"{t:07d}.drc").write_bytes(raw)
+    for where in ("take", "take/manifest.json"):
+        frames = found(where)
+        assert (list(frames), frames[2].fps) == ([0, 1, 2], 30.0)
+    np.testing.assert_allclose(np.sort(surface(frames[2])[0].sum(axis=1)), [6, 7, 7, 7], atol=1e-3)
+    assert (len(found("take", clip="coarse")), found("take", clip="coarse")[0].fps) == (2, 15.0)
+
+
+def test_morph_targets_of_segments_are_frames_one_after_the_other(found, tmp_path):
+    targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2, "frameCount": 4}}
+    folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
+    for segment in range(2):
+        made = Made()
+        made.document["animations"] = []
+        shifts = (2 * segment, 2 * segment + 1)
+        made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in shifts]
+        (folder / f"glb_{segment:07d}.glb").write_bytes(made.raw())
+    frames = found("take/manifest.json")
+    assert (list(frames), {f.fps for f in frames.values()}, {f.unit for f in frames.values()}) == ([0, 1, 2, 3], {10.0}, {"m"})
+    for t, frame in frames.items():
+        np.testing.assert_allclose(surface(frame)[0], TETRAHEDRON + t, atol=1e-6)
+
+
+def test_glb_without_morph_targets_is_no_segment(found, tmp_path):
+    targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
+    folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
+    (folder / "glb_0.glb").write_bytes(Made().raw())
+    with pytest.raises(SourceError, match="its meshes have 0 morph targets"):
+        found("take/manifest.json")

@@ -1,0 +1,105 @@
+"""Laws of volumetric manifests: every form of version 2 names the same files; what leads elsewhere is refused in words."""
+
+import json
+
+import pytest
+
+from kinetree.errors import SourceError
+from kinetree.tasks.numerics.input.volumetric_manifest import manifest_in, read_manifest
+
+DRACO = {"format": "draco", "frameRate": 25, "frameCount": 3}
+
+
+def target(path="drc/[index][ext]", **changes):
+    return {"version": "v2", "geometry": {"targets": {"drc": {**DRACO, **changes}}, "path": path}}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "drc").mkdir()
+    for t in (2, 10, 1):
+        (tmp_path / "drc" / f"{t:05d}.drc").touch()
+    (tmp_path / "drc" / "cover.drc").touch()
+    return tmp_path
+
+
+def read(folder, held, wanted=""):
+    path = folder / "manifest.json"
+    path.write_text(json.dumps(held))
+    return read_manifest(path, wanted)
+
+
+def refusal(folder, held, wanted=""):
+    with pytest.raises(SourceError) as refused:
+        read(folder, held, wanted)
+    return str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        target(),
+        target("[target]/[index].drc"),
+        target("drc/[#####][ext]"),
+        {"output": {"geometry": target()["geometry"]}, "input": {"geometry": {"path": "scans/frame_[0001-0003].obj"}}},
+        {"Version": "v2", "DRCURLPattern": "drc/#####.drc", "GeometryFrameRate": 25, "GeometryFrameCount": 3},
+    ],
+)
+def test_every_form_of_a_manifest_names_its_frames(folder, held):
+    found = read(folder, held)
+    assert [path.name for path in found.files] == ["00001.drc", "00002.drc", "00010.drc"]
+    assert (found.numbers, found.holds, found.length, found.fps) == ((1, 2, 10), "file", 1, 25.0)
+    assert manifest_in(folder) == folder / "manifest.json"
+
+
+def test_finest_target_is_read_unless_one_is_named(folder):
+    held = target("[target]/[index][ext]")
+    held["geometry"]["targets"]["small"] = {**DRACO, "frameRate": 12, "frameCount": 1}
+    (folder / "small").mkdir()
+    (folder / "small" / "7.drc").touch()
+    assert read(folder, held).fps == 25.0
+    assert (read(folder, held, "small").fps, read(folder, held, "small").numbers) == (12.0, (7,))
+    assert "source.clip big: its targets are drc, small" in refusal(folder, held, "big")
+
+
+@pytest.mark.parametrize(
+    ("held", "told"),
+    [
+        (target("/etc/[index][ext]"), "outside its folder"),
+        (target("../drc/[index][ext]"), "outside its folder"),
+        (target("https://host/[index][ext]"), "outside its folder"),
+        (target("drc/frame[ext]"), "one [index] must stand for their numbers"),
+        (target("elsewhere/[index][ext]"), "no file at elsewhere/0000000.drc"),
+        (target(frameCount=4), "has 4 frames, but only 3 files are there"),
+        (target(frameRate=0), "frameRate is 0; a positive number"),
+        (target(frameRate="fast"), "frameRate is fast; a positive number"),
+        (target(frameCount=-1), "frameCount is -1; a positive whole number"),
+        (target(format="corto"), "'corto'; draco, obj, glb, gltf, uniform-solve are read"),
+        (target(format="uniform-solve"), "no file at drc/0000000.glb"),
+        ({"version": "v2", "geometry": {"targets": {}, "path": "[target]/[index]"}}, "it has no targets"),
+        ({"frameRate": 30, "maxVertices": 9, "frameData": [{"frameNumber": 0}]}, "is Universal Volumetric 1"),
+        ({"version": "v2", "geometry": {"frameData": [0, 9], "compression": "draco"}}, "packed together"),
+        ({"joints": []}, "no manifest of Universal Volumetric 2"),
+        ([1, 2], "no manifest of Universal Volumetric 2"),
+    ],
+)
+def test_what_cannot_be_read_ends_in_what_to_do(folder, held, told):
+    assert told in refusal(folder, held)
+
+
+def test_two_files_of_one_number_are_refused(folder):
+    (folder / "drc" / "1.drc").touch()
+    assert "has the number of another file" in refusal(folder, target())
+
+
+def test_folder_without_a_manifest_has_none(folder):
+    (folder / "truth.json").write_text('{"joints": []}')
+    (folder / "notes.json").write_text("not JSON")
+    assert manifest_in(folder) is None
+
+
+def test_two_manifests_are_not_chosen_from(folder):
+    for name in ("a.json", "b.json"):
+        (folder / name).write_text(json.dumps(target()))
+    with pytest.raises(SourceError, match=r"a\.json and b\.json are manifests; name one of them"):
+        manifest_in(folder)
