@@ -16,7 +16,7 @@ class Segmentation(Artifact):
     """
 
     names: tuple[str, ...]
-    """Name of every part: that of the joint about which it turns."""
+    """Name of every part by its number: that of the joint about which it turns, as other files have it."""
     unit: str | None
     """Unit of the aligned meshes; None where it is not known."""
     error: float

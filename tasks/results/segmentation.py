@@ -9,6 +9,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.segmentation import Segmentation
+from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.formats.colours import part_colours
 from kinetree.tasks.results.formats.labels import input_labels
@@ -16,7 +17,9 @@ from kinetree.tasks.results.formats.rig import skinned
 
 
 @task()
-def segmentation(skeleton: Skeleton, alignment: Mapping[int, Alignment], projection: Mapping[int, Projection]) -> Segmentation:
+def segmentation(
+    skeleton: Skeleton, joint_names: JointNames, alignment: Mapping[int, Alignment], projection: Mapping[int, Projection]
+) -> Segmentation:
     """Gathers the part labels of the input's vertices and the aligned meshes (2014, Sec. 6)."""
     labels = [input_labels(skeleton, projection[frame]) for frame in skeleton.frames]
     end = np.cumsum([len(label) for label in labels])
@@ -25,7 +28,7 @@ def segmentation(skeleton: Skeleton, alignment: Mapping[int, Alignment], project
         np.linalg.norm(skinned(skeleton, t) - alignment[frame].vertices, axis=1) for t, frame in enumerate(skeleton.frames)
     ]
     return Segmentation(
-        names=skeleton.names,
+        names=joint_names.names,
         unit=skeleton.unit,
         error=float(np.sqrt(np.mean(np.square(distance)))),
         error_95=float(np.quantile(distance, 0.95)),

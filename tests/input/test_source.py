@@ -109,7 +109,8 @@ def test_damaged_member_of_a_zip_is_a_bad_frame_and_no_more(found, tmp_path):
 
 def test_clip_of_what_is_no_glb_is_refused(files, scans):
     with pytest.raises(
-        SourceError, match=r"source\.clip wave: names an animation of one GLB, and .*scans is none; leave it out"
+        SourceError,
+        match=r"source\.clip wave: names an animation of one GLB or a target .*, and .*scans is none; leave it out",
     ):
         source(SourceParams(input=str(scans), clip="wave"), files)
     with pytest.raises(SourceError, match=r"and s3://bucket/scans is none"):

@@ -5,6 +5,7 @@ import io
 import numpy as np
 import pytest
 import trimesh
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.errors import MeshError
@@ -14,6 +15,8 @@ from kinetree.schemas.input.source import Source
 from kinetree.schemas.registration.projection import Projection
 from kinetree.tasks.results.formats.labels import input_labels
 from kinetree.tasks.results.ply import ply
+
+NAMED = plain(spider(), names=tuple("Knie\nü 1" if j == 1 else f"bone_{j}" for j in range(len(spider().names))))
 
 
 @pytest.fixture
@@ -33,17 +36,22 @@ def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
     n = len(body.vertices)
     corner = {int(v): (f, c) for f, row in enumerate(body.faces) for c, v in enumerate(row)}
     at = np.array([corner[v] for v in range(n)])
-    files = views.files(ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body), (7,))
+    files = views.files(ply(source, onto(at[:, 0], np.eye(3)[at[:, 1]]), body, NAMED), (7,))
     assert list(files) == ["parts/frame_0007.ply"]
     mesh = trimesh.load(io.BytesIO(files["parts/frame_0007.ply"]), file_type="ply", process=False)
     np.testing.assert_allclose(mesh.vertices, skinned(body)[4], atol=1e-5)
     np.testing.assert_array_equal(mesh.faces, body.faces)
     np.testing.assert_array_equal(mesh.metadata["_ply_raw"]["vertex"]["data"]["part"], body.label)
+    header = files["parts/frame_0007.ply"].partition(b"end_header")[0].decode("ascii").splitlines()
+    told = [line for line in header if line.startswith("comment part ")]
+    parts = sorted(set(body.label.tolist()) - {-1})
+    assert told == [f"comment part {j} " + ("Knie ? 1" if j == 1 else f"bone_{j}") for j in parts]
+    assert 1 in parts
 
 
 def test_frame_that_is_not_the_one_that_was_aligned_is_refused(source):
     with pytest.raises(MeshError, match=r"scan\.ply: the file has \d+ vertices now, but had 2"):
-        ply(source, onto([0, 1], np.eye(3)[:2]), spider())
+        ply(source, onto([0, 1], np.eye(3)[:2]), spider(), NAMED)
 
 
 def test_label_is_that_of_the_part_with_the_largest_share_of_the_point():

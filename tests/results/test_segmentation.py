@@ -1,6 +1,7 @@
 """Labels on the input's own vertices, gathered."""
 
 import numpy as np
+from results.plain_names import plain
 from results.rigged_bodies import skinned, spider
 
 from kinetree.pipeline import views
@@ -22,7 +23,11 @@ def gathered(shift=0.0):
         frame: Projection(face=np.full(k, frame), share=np.eye(3)[np.zeros(k, int)], distance=np.zeros(k))
         for frame, k in counts.items()
     }
-    return body, counts, segmentation(body, aligned, projected)
+    return (
+        body,
+        counts,
+        segmentation(body, plain(body, names=tuple(f"{name}_renamed" for name in body.names)), aligned, projected),
+    )
 
 
 def test_every_frame_has_as_many_labels_as_its_file_has_vertices():
@@ -32,6 +37,7 @@ def test_every_frame_has_as_many_labels_as_its_file_has_vertices():
         labels = segments.label[segments.begin[i] : segments.end[i]]
         assert labels.tolist() == [body.label[body.faces[frame, 0]]] * counts[frame]
     assert segments.end[-1] == len(segments.label)
+    assert segments.names == tuple(f"{name}_renamed" for name in body.names)
 
 
 def test_error_is_the_distance_between_skinned_and_aligned():

@@ -34,9 +34,8 @@ from kinetree.tasks.numerics.input.zipped import Zipped
 def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
     if clip and not where.lower().endswith(".glb") and _manifest(Path(where)) is None:
-        raise SourceError(
-            f"source.clip {clip}: names an animation of one GLB or a target of a volumetric manifest, and {where} is none; leave it out"
-        )
+        told = "names an animation of one GLB or a target of a volumetric manifest"
+        raise SourceError(f"source.clip {clip}: {told}, and {where} is none; leave it out")
     if files.is_remote(where):
         return _in_bucket(where, files, clip)
     if "://" in where:
