@@ -24,7 +24,9 @@ class AssumedJoint(Params):
     child: int = Field(ge=1)
     """The joint of the skeleton at the outer end of the bone."""
     share: float = Field(gt=0, lt=1)
-    """Place on the bone: 0 at the inner end, 1 at the outer."""
+    """Place along the bone: 0 at the inner end, 1 at the outer."""
+    place: tuple[float, float, float]
+    """In the reference pose, mesh unit: the middle of the limb there; on the straight bone where that cannot be told."""
     source: Literal["mirror", "proportions"]
     """mirror: the place is that of the same joint on the other side; proportions: that of published proportions of people."""
 

@@ -81,7 +81,7 @@ def report(
     error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
     share = VerdictSettings().wrong
     trust = Trust(verdict.labels, error, share * size, share, verdict.state)
-    assumed = [(in_words(joint.anatomy), joint.child, joint.share) for joint in assumed_joints.joints]
+    assumed = [(in_words(joint.anatomy), joint.child, joint.place) for joint in assumed_joints.joints]
     colours = surface_colours(appearance, len(skeleton.vertices))
     label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
     if evaluation.summary is not None:

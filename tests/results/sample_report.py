@@ -43,7 +43,9 @@ from kinetree.tasks.results.verdict import verdict
 UP = UpDirection(up="y", confidence=1.0)
 
 
-def trusted(assumed: tuple[tuple[str, int, float], ...] = (), colours: npt.NDArray[np.uint8] | None = None) -> Scene:
+def trusted(
+    assumed: tuple[tuple[str, int, tuple[float, float, float]], ...] = (), colours: npt.NDArray[np.uint8] | None = None
+) -> Scene:
     """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint."""
     joints, vertices = len(spider().names), len(spider().vertices)
     body = spider(confidence=np.tile(np.linspace(0.9, 0.1, joints), (12, 1)))
@@ -59,7 +61,7 @@ def playing(
     limits: Limits | None = None,
     anew: bool = False,
     trust: Trust | None = None,
-    assumed: tuple[tuple[str, int, float], ...] = (),
+    assumed: tuple[tuple[str, int, tuple[float, float, float]], ...] = (),
     colours: npt.NDArray[np.uint8] | None = None,
 ) -> Scene:
     """The spider playing."""

@@ -8,6 +8,7 @@ import pytest
 import yaml
 from results.gltf_reader import Glb as Read
 from results.rigged_bodies import bars_of, skeleton_of, skinned, without_joint
+from scipy.spatial.transform import Rotation
 from walkers import FIGURES
 
 from kinetree.pipeline import views
@@ -35,13 +36,22 @@ Z_UP = UpDirection(up="z", confidence=0.9)
 ADD = AssumedJointsParams(add=True)
 
 
+def stiff_legged(bend=0.0):
+    """The figure of a person whose left knee never turns, and is bent by so many degrees."""
+    described = yaml.safe_load((FIGURES / "human.yaml").read_text("utf-8"))
+    del described["motions"]["walk"]["knee_l"]
+    at = {joint["name"]: np.array(joint["position"], float) for joint in described["joints"]}
+    turn = Rotation.from_euler("x", bend, degrees=True)
+    for joint in described["joints"]:
+        if joint["name"] in ("ankle_l", "heel_l", "toe_l"):
+            joint["position"] = (at["knee_l"] + turn.apply(at[joint["name"]] - at["knee_l"])).tolist()
+    return Figure.of(described)
+
+
 @pytest.fixture(scope="module")
 def true():
     """A person who walks with the left knee straight."""
-    described = yaml.safe_load((FIGURES / "human.yaml").read_text("utf-8"))
-    del described["motions"]["walk"]["knee_l"]
-    figure = Figure.of(described)
-    return skeleton_of(Body.of(figure, frames=12, fps=10.0, vertices=600, connectivity="fixed", motion="walk"))
+    return skeleton_of(Body.of(stiff_legged(), frames=12, fps=10.0, vertices=600, connectivity="fixed", motion="walk"))
 
 
 @pytest.fixture(scope="module")
@@ -105,13 +115,38 @@ def test_the_motion_and_the_surface_stay_as_they_were_found(found, rig):
             expected = s.positions[:, p] + s.rotation[:, p] @ (s.rest[j] - s.rest[p])
             np.testing.assert_allclose(s.positions[:, j], expected, atol=1e-6)
     np.testing.assert_allclose(skinned(s), skinned(found), atol=1e-9)
-    assert not np.isin(s.influence[s.weight > 0], list(rig.assumed)).any()
+    np.testing.assert_allclose(s.weight.sum(axis=1), 1.0)
+    assert (np.diff(s.weight, axis=1) <= 0.0).all()
     assert not np.isin(s.label, list(rig.assumed)).any()
+
+
+def test_whoever_bends_it_moves_the_shank_and_the_foot_and_nothing_else(true, rig):
+    """The vertices that follow the true rig's knee, or what hangs on it, are those that follow the assumed one."""
+    s, (at,) = rig.skeleton, rig.assumed
+    below = [name in ("knee_l", "ankle_l", "heel_l", "toe_l") for name in true.names]
+    moved = [j == at or s.parents[j] == at or s.parents[s.parents[j]] == at for j in range(len(s.names))]
+    expected = np.sum(true.weight * np.array(below)[true.influence], axis=1)
+    share = np.sum(s.weight * np.array(moved)[s.influence], axis=1)
+    assert np.abs(share - expected).mean() < 0.02
+    assert ((share > 0.5) == (expected > 0.5)).mean() > 0.98
+
+
+@pytest.mark.parametrize("bend", [0, 45, 80])
+def test_it_lies_in_the_middle_of_a_limb_that_is_bent(bend):
+    true = skeleton_of(Body.of(stiff_legged(bend), frames=3, fps=10.0, vertices=1500, connectivity="fixed", motion="walk"))
+    skeleton = without_joint(true, "knee_l")
+    body = CompleteSkeleton(**{name: getattr(skeleton, name) for name in Skeleton.model_fields}, interpolated=())
+    (knee,) = assumed_joints(body, joint_names(body, Z_UP, JointNamesParams()), ADD).joints
+    off = np.linalg.norm(np.array(knee.place) - true.rest[true.names.index("knee_l")])
+    assert off < 0.03 * np.ptp(true.vertices[:, 2])
 
 
 def test_several_joints_of_one_bone_follow_each_other(found, names):
     child = names.anatomy.index("ankle_l")
-    pair = [AssumedJoint(name=n, anatomy=n, child=child, share=s, source="mirror") for n, s in (("b", 0.75), ("a", 0.25))]
+    pair = [
+        AssumedJoint(name=n, anatomy=n, child=child, share=s, place=(0, 0, 100 * s), source="mirror")
+        for n, s in (("b", 0.75), ("a", 0.25))
+    ]
     rig = with_assumed(found, names, AssumedJoints(joints=tuple(pair)))
     a, b = (rig.names.names.index(n) for n in "ab")
     ankle = rig.names.anatomy.index("ankle_l")

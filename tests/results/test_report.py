@@ -58,7 +58,7 @@ def test_every_joint_is_in_the_table(plain_page: str) -> None:
 
 
 def test_assumed_joints_are_said_below_the_table_and_counted_nowhere(plain_page: str) -> None:
-    joint = AssumedJoint(name="elbow_l", anatomy="elbow_l", child=2, share=0.4, source="proportions")
+    joint = AssumedJoint(name="elbow_l", anatomy="elbow_l", child=2, share=0.4, place=(8.6, 1.4, 0.0), source="proportions")
     text = page(assumed_joints=AssumedJoints(joints=(joint,)))
     inner, outer = spider().names[spider().parents[2]], spider().names[2]
     said = f"Assumed, not found: left elbow, at 40 % of the bone from {inner} to {outer}, by usual proportions."

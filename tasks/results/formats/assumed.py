@@ -5,10 +5,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinetree.schemas.array import Floats
+from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.structure.joint_names import JointNames
+from kinetree.tasks.numerics.results.limb_sections import share_beyond
 
 NOTHING_ASSUMED = AssumedJoints()
 
@@ -22,10 +23,10 @@ class Rig(NamedTuple):
 
 
 def with_assumed(skeleton: CompleteSkeleton, names: JointNames, assumed: AssumedJoints) -> Rig:
-    """The same motion of the same surface with each assumed joint on its bone, which ends there and goes on.
+    """The same motion of the same surface with each assumed joint in its limb, whose bone ends there and goes on.
 
-    The joint moves as its bone does, so it never turns; its confidence is 0. The surface keeps its weights: no vertex follows
-    an assumed joint.
+    The joint moves as its bone does, so it never turns; its confidence is 0. The surface beyond it follows it in place of the
+    joint before it, smoothly around the joint, and so bends where the joint is bent; parts keep their labels.
     """
     if not assumed.joints:
         return Rig(skeleton, names)
@@ -34,19 +35,20 @@ def with_assumed(skeleton: CompleteSkeleton, names: JointNames, assumed: Assumed
     number = {joint: n for n, joint in enumerate(order) if isinstance(joint, int)}
     parents = [_above(n, order, number, skeleton.parents) for n in range(len(order))]
     new = np.array([number[j] for j in range(len(number))])
+    rest = np.stack([np.array(j.place) if isinstance(j, AssumedJoint) else skeleton.rest[j] for j in order])
     fields = {
         "names": tuple(f"assumed_{j.anatomy}" if isinstance(j, AssumedJoint) else skeleton.names[j] for j in order),
         "parents": tuple(parents),
         "kinds": tuple("joint" if isinstance(j, AssumedJoint) else skeleton.kinds[j] for j in order),
-        "positions": _between(np.asarray(skeleton.positions), order, skeleton.parents),
-        "rest": _between(np.asarray(skeleton.rest), order, skeleton.parents),
+        "positions": _positions(skeleton, order),
+        "rest": rest,
         "rotation": skeleton.rotation[:, [skeleton.parents[j.child] if isinstance(j, AssumedJoint) else j for j in order]],
         "confidence": _or_zero(skeleton.confidence, order),
         "degrees": _or_zero(skeleton.degrees, order),
         "drift": _or_zero(skeleton.drift, order),
         "support": _or_zero(skeleton.support, order),
         "label": np.where(skeleton.label < 0, -1, new[skeleton.label]).astype(skeleton.label.dtype),
-        "influence": new[skeleton.influence].astype(skeleton.influence.dtype),
+        **_weights(skeleton, order, parents, rest, new),
     }
     told = {
         "given": fields["names"],
@@ -73,15 +75,50 @@ def _above(n: int, order: list[int | AssumedJoint], number: dict[int, int], pare
     return number[parents[child]] if parents[child] >= 0 else -1
 
 
-def _between(X: Floats, order: list[int | AssumedJoint], parents: tuple[int, ...]) -> Floats:
-    """(…, joint, xyz) positions of all joints, of assumed ones on the line between the ends of their bones."""
-    rows = []
+def _positions(skeleton: CompleteSkeleton, order: list[int | AssumedJoint]) -> Floats:
+    """(frame, joint, xyz) positions of all joints; assumed ones move with the part of their bone."""
+    columns = []
     for j in order:
         if isinstance(j, AssumedJoint):
-            rows.append((1.0 - j.share) * X[..., parents[j.child], :] + j.share * X[..., j.child, :])
+            p = skeleton.parents[j.child]
+            offset = np.array(j.place) - skeleton.rest[p]
+            columns.append(skeleton.positions[:, p] + skeleton.rotation[:, p] @ offset)
         else:
-            rows.append(X[..., j, :])
-    return np.stack(rows, axis=-2)
+            columns.append(np.asarray(skeleton.positions[:, j]))
+    return np.stack(columns, axis=1)
+
+
+def _weights(
+    skeleton: CompleteSkeleton, order: list[int | AssumedJoint], parents: list[int], rest: Floats, new: Ints
+) -> dict[str, NDArray[Any]]:
+    """Influences and weights in which what lies beyond an assumed joint follows it, in place of the joint before it.
+
+    Both have the same motion, so the surface moves as before. A vertex that follows four joints already follows the heavier of
+    the two.
+    """
+    V, F = np.asarray(skeleton.vertices), np.asarray(skeleton.faces, np.int64)
+    joint, weight = new[np.asarray(skeleton.influence)], np.array(skeleton.weight)
+    vertex = np.arange(len(V))
+    for n, assumed in enumerate(order):
+        if not isinstance(assumed, AssumedJoint):
+            continue
+        after = next(c for c in range(n + 1, len(order)) if parents[c] == n)
+        beyond = share_beyond(V, F, rest[n], rest[parents[n]], rest[after])
+        slot = np.argmax((joint == parents[n]) & (weight > 0.0), axis=1)
+        held = np.where(joint[vertex, slot] == parents[n], weight[vertex, slot], 0.0)
+        free = np.argmin(weight, axis=1)
+        full = weight[vertex, free] > 0.0
+        beyond = np.where(full, np.rint(beyond), beyond)
+        moved = held * beyond
+        whole = (moved > 0.0) & (moved == held)
+        joint[vertex[whole], slot[whole]] = n
+        split = (moved > 0.0) & ~whole
+        weight[vertex[split], slot[split]] -= moved[split]
+        joint[vertex[split], free[split]] = n
+        weight[vertex[split], free[split]] = moved[split]
+    heaviest = np.argsort(-weight, axis=1, kind="stable")
+    joint, weight = np.take_along_axis(joint, heaviest, axis=1), np.take_along_axis(weight, heaviest, axis=1)
+    return {"influence": joint.astype(skeleton.influence.dtype), "weight": weight}
 
 
 def _or_zero(values: NDArray[Any], order: list[int | AssumedJoint]) -> NDArray[Any]:

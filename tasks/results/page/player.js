@@ -169,9 +169,18 @@ class Player {
   }
 
   assumedPoint(k) {
-    const { child, share } = this.assumed[k];
-    const { joints } = this.scene;
-    return this.point("joints", joints.length, joints[child].parent).lerp(this.point("joints", joints.length, child), share);
+    return this.point("assumed", this.assumed.length, k);
+  }
+
+  // A place on a dashed bone, which leads from joint to joint: 0 at its inner end, 1 at its outer.
+  alongDashed(child, from, here, share) {
+    const inner = this.assumed.map((joint, k) => [joint, k]).filter(([joint]) => joint.child === child);
+    const stops = [from, ...inner.map(([, k]) => this.assumedPoint(k)), here];
+    const lengths = stops.slice(1).map((stop, i) => stop.distanceTo(stops[i]));
+    let rest = share * lengths.reduce((a, b) => a + b, 0);
+    let i = 0;
+    while (i < lengths.length - 1 && rest > lengths[i]) rest -= lengths[i++];
+    return stops[i].clone().lerp(stops[i + 1], lengths[i] > 0 ? rest / lengths[i] : 0);
   }
 
   addLeaves() {
@@ -261,8 +270,11 @@ class Player {
       else place.makeScale(0, 0, 0);
       for (const part of [this.edges, this.rods]) part.setMatrixAt(j, place);
       for (let k = 0; dashed >= 0 && k < DASHES; k++) {
-        const begin = from.clone().lerp(here, (k + 0.2) / DASHES);
-        place.compose(begin, turn, new THREE.Vector3(1, Math.max((0.6 * length) / DASHES, 1e-9), 1));
+        const begin = this.alongDashed(j, from, here, (k + 0.2) / DASHES);
+        const dash = this.alongDashed(j, from, here, (k + 0.8) / DASHES).sub(begin);
+        const long = dash.length();
+        const aim = new THREE.Quaternion().setFromUnitVectors(upwards, long > 0 ? dash.divideScalar(long) : upwards);
+        place.compose(begin, aim, new THREE.Vector3(1, Math.max(long, 1e-9), 1));
         for (const part of this.dashes) part.setMatrixAt(dashed * DASHES + k, place);
       }
     });

@@ -72,7 +72,7 @@ def scene(
     up: int = 1,
     axes: Floats | None = None,
     trust: Trust | None = None,
-    assumed: Sequence[tuple[str, int, float]] = (),
+    assumed: Sequence[tuple[str, int, tuple[float, float, float]]] = (),
     colours: NDArray[np.uint8] | None = None,
 ) -> Scene:
     """The moving body, reduced to what a page can hold.
@@ -84,7 +84,7 @@ def scene(
     up         : axis that points up, see `view`
     axes       : directions of the view, as `view` gives them; None for those of these meshes
     trust      : makes the skinned mesh, its error and the confidence of joints part of the scene
-    assumed    : name of each joint that was not found, the joint at the outer end of its bone, and its share of the bone
+    assumed    : name of each joint that was not found, the joint at the outer end of its bone, and its place in the reference
     colours    : (vertex, rgb) of the input at every vertex of the reference mesh
     """
     frames = [frame for frame in skeleton.frames if frame in inputs]
@@ -111,6 +111,8 @@ def scene(
     }
     if len(leaves.positions):
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
+    if assumed:
+        arrays["assumed"] = (_carried_places(skeleton, assumed)[selected_frames] @ axes).astype(np.float32)
     if trust is not None:
         arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
     if colours is not None:
@@ -128,10 +130,18 @@ def scene(
         "low": lattice.low.tolist(),
         "scale": lattice.scale,
         "intervals": _starts(intervals, frames),
-        "assumed": [{"label": label, "child": child, "share": share} for label, child, share in assumed],
+        "assumed": [{"label": label, "child": child} for label, child, _ in assumed],
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
+
+
+def _carried_places(skeleton: Skeleton, assumed: Sequence[tuple[str, int, tuple[float, float, float]]]) -> Floats:
+    """(frame, assumed joint, xyz) where the parts of their bones bring joints that were not found."""
+    bones = [skeleton.parents[child] for _, child, _ in assumed]
+    offsets = np.array([place for _, _, place in assumed]) - np.asarray(skeleton.rest)[bones]
+    R = np.asarray(skeleton.rotation)[:, bones]
+    return np.asarray(np.asarray(skeleton.positions)[:, bones] + np.einsum("tjyx,jx->tjy", R, offsets))
 
 
 def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict[str, NDArray[Any]]:

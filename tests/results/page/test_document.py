@@ -84,7 +84,7 @@ def test_every_joint_kind_has_its_colour_in_the_legend():
 
 def test_legend_has_assumed_joints_where_there_are_some():
     assert "assumed, not found" not in page()
-    assert "assumed, not found, on a dashed bone</span>" in page(scene=trusted(assumed=(("left elbow", 2, 0.4),)))
+    assert "assumed, not found, on a dashed bone</span>" in page(scene=trusted(assumed=(("left elbow", 2, (8.6, 1.4, 0.0)),)))
 
 
 def test_tables_put_numbers_to_the_right_and_escape_cells():

@@ -243,7 +243,7 @@ def test_pictures_turn_dark_with_the_page(browser: Any, tmp_path: Path) -> None:
 
 def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_path: Path) -> None:
     shown, words = [], []
-    for assumed in ((), (("left elbow", 2, 0.4),)):
+    for assumed in ((), (("left elbow", 2, (8.6, 1.4, 0.0)),)):
         path = tmp_path / "report.html"
         report = Report(text=np.frombuffer(page(scene=trusted(assumed)).encode(), np.uint8))
         path.write_bytes(views.page(report, RAN))
