@@ -18,6 +18,7 @@ from kinetree.pipeline import views
 from kinetree.schemas.results.tables import TablesParams
 from kinetree.schemas.structure.joint_names import JointNamesParams
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.axial_rotation import BENT
 from kinetree.tasks.results.formats import tables as format_of_tables
 from kinetree.tasks.results.formats.tables import bone_angles
 from kinetree.tasks.results.tables import tables
@@ -174,6 +175,16 @@ def test_knees_of_a_walker_only_bend_backwards(walker):
         knee = np.array([float(row[f"knee_{side}.flexion"]) for row in table(walker, "joint_angles")])
         assert knee.min() > -2.0
         assert knee.max() > 50.0
+
+
+def test_frames_in_which_a_knee_is_bent_show_how_the_thigh_is_turned(walker):
+    rows = table(walker, "joint_angles")
+    for side in "lr":
+        bent = np.array([float(row[f"knee_{side}.flexion"]) for row in rows]) >= BENT
+        seen = np.array([row[f"hip_{side}.rotation_seen"] for row in rows])
+        assert set(seen) == {"0", "1"}
+        np.testing.assert_array_equal(seen == "1", bent)
+    assert not [name for name in rows[0] if name.startswith("ankle") and name.endswith("rotation_seen")]
 
 
 def test_steps_of_a_walker_alternate_and_last_as_long_as_they_were_made_to(walker):

@@ -1,9 +1,10 @@
 """Signed angles of a person's joints about anatomical axes, as the ISB recommends (Wu 2002, 2005; Grood, Suntay 1983).
 
-Axes of a segment: x ahead, y up along it, z to the right. Joints alone do not show how a thigh or an upper arm is turned about
-its own length; in the reference pose it is taken to be as little rotated from the segment before it as its direction allows.
-From there on, the rotations of the parts count; for the pelvis the places of the hips and of a joint of the spine do, since the
-surface around the hips moves with the thighs. Signs are those of a right limb: left limbs are mirrored.
+Axes of a segment: x ahead, y up along it, z to the right. How a thigh or an upper arm is turned about its own length is told by
+the plane in which the knee or elbow is bent, of a shank by the foot, of a forearm by the hand (`axial_rotation`); where nothing
+tells, a segment is in the reference pose as little rotated from the one before it as its direction allows, and from there on
+the rotations of the parts count. For the pelvis the places of the hips and of a joint of the spine do, since the surface around
+the hips moves with the thighs. Signs are those of a right limb: left limbs are mirrored.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -11,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.results.axial_rotation import AxialTurn, turn_of_bend, turn_of_direction, turn_of_part, turned
 
 MIRROR = np.diag([1.0, 1.0, -1.0])
 """Left to right, in the axes of a segment."""
@@ -43,9 +45,20 @@ JOINTS: Mapping[str, _Joint] = {
 """In the order in which segments follow each other."""
 
 
+class JointAngles(NamedTuple):
+    """Angles of named joints.
+
+    degrees       : (frame,) by "joint.angle", such as knee_l.flexion
+    rotation_seen : (frame,) by joint but the ankles: whether this frame shows its internal rotation or pronation
+    """
+
+    degrees: Mapping[str, Floats]
+    rotation_seen: Mapping[str, Flags]
+
+
 def joint_angles(
     anatomy: Sequence[str], parents: Sequence[int], rest: Floats, X: Floats, R: Floats, front: Floats, up: Floats
-) -> Mapping[str, Floats]:
+) -> JointAngles:
     """Three angles of each named joint: hip, knee, ankle and elbow by Z–X–Y, shoulder by Y–X–Y (thorax to humerus).
 
     anatomy   : (joint,) station and side, such as knee_l
@@ -54,14 +67,16 @@ def joint_angles(
     X         : (frame, joint, xyz) joints in each frame
     R         : (frame, joint, 3, 3) from the reference pose to each frame
     front, up : (xyz,) of the body in the reference pose, unit vectors
-    returns   : (frame,) degrees by "joint.angle", such as knee_l.flexion; flexion, adduction, internal rotation, dorsiflexion,
-                inversion, pronation and elevation are positive; 0° of the plane of elevation is sideways, 90° ahead
+    returns   : flexion, adduction, internal rotation, dorsiflexion, inversion, pronation and elevation are positive; 0° of the
+                plane of elevation is sideways, 90° ahead; pronation is against the reference pose
     """
     at = {name: j for j, name in enumerate(anatomy) if name}
     pelvis = _pelvis(at, rest, X, up)
     trunk = {"hip": _trunk(at, rest, front, up, "hip"), "shoulder": _trunk(at, rest, front, up, "shoulder")}
     frames: dict[int, Floats] = {}
+    moving: dict[int, Floats] = {}
     angles: dict[str, Floats] = {}
+    seen: dict[str, Flags] = {}
     for station, joint in JOINTS.items():
         for side in "lr":
             j = at.get(f"{station}_{side}")
@@ -73,11 +88,38 @@ def joint_angles(
                 p = parents[p]
             before = frames.get(p, trunk["shoulder" if station in ("shoulder", "elbow") else "hip"])
             frames[j] = _least(before, joint.along, rest[end] - rest[j])
-            above = R[:, p] if station != "hip" or pelvis is None else pelvis(R[:, p])
-            turn = (above @ before).transpose(0, 2, 1) @ (R[:, j] @ frames[j])
+            moving[j] = R[:, j] @ frames[j]
+            axial = _axial(station, side, at, X, R, moving[j], frames[j])
+            if axial is not None:
+                moving[j] = turned(moving[j], axial.turn)
+            if station != "ankle":
+                seen[f"{station}_{side}"] = np.zeros(len(X), bool) if axial is None else axial.seen
+            above = moving.get(p, (R[:, p] if station != "hip" or pelvis is None else pelvis(R[:, p])) @ before)
+            turn = above.transpose(0, 2, 1) @ moving[j]
             found = _three(turn if side == "r" else MIRROR @ turn @ MIRROR, station)
             angles |= {f"{station}_{side}.{name}": a for name, a in zip(joint.angles, found, strict=True)}
-    return angles
+    return JointAngles(angles, seen)
+
+
+def _axial(
+    station: str, side: str, at: Mapping[str, int], X: Floats, R: Floats, axes: Floats, rest: Floats
+) -> AxialTurn | None:
+    """How a segment is turned about its length, as what lies beyond it shows; None where nothing beyond it was found."""
+
+    def beyond(*stations: str) -> int | None:
+        return next((at[f"{s}_{side}"] for s in stations if f"{s}_{side}" in at), None)
+
+    if station in ("hip", "shoulder"):
+        bending = beyond("knee" if station == "hip" else "elbow")
+        end = beyond(*JOINTS["knee" if station == "hip" else "elbow"].ends)
+        if bending is None or end is None:
+            return None
+        return turn_of_bend(axes, X[:, end] - X[:, bending], -1.0 if station == "hip" else 1.0)
+    if station == "knee":
+        ankle, toes = beyond("ankle"), beyond("toe", "foot_end")
+        return None if ankle is None or toes is None else turn_of_direction(axes, X[:, toes] - X[:, ankle])
+    wrist = beyond("wrist") if station == "elbow" else None
+    return None if wrist is None else turn_of_part(axes, R[:, wrist], rest)
 
 
 def _three(turn: Floats, station: str) -> tuple[Floats, Floats, Floats]:

@@ -40,15 +40,20 @@ def turn_table(skeleton: Skeleton) -> Table:
 
 
 def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | None:
-    """A row a frame with signed angles of hips, knees, ankles, shoulders and elbows; None where the front is not certain."""
+    """A row a frame with signed angles of hips, knees, ankles, shoulders and elbows; None where the front is not certain.
+
+    Column rotation_seen of a joint is 1 in frames that show its internal rotation or pronation, 0 where it is between those.
+    """
     if names.topology != "human" or names.front_confidence < CERTAIN_FRONT:
         return None
     s = skeleton
     moving = np.array(s.rest), np.array(s.positions), np.array(s.rotation)
     found = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up))
     shown = dict(zip(names.anatomy, s.names, strict=True))
-    titles = [f"{shown[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in found)]
-    return series(s, titles, np.column_stack([np.empty((len(s.frames), 0)), *found.values()]))
+    titles = [f"{shown[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in found.degrees)]
+    titles += [f"{shown[joint]}.rotation_seen" for joint in found.rotation_seen]
+    columns = [*found.degrees.values(), *found.rotation_seen.values()]
+    return series(s, titles, np.column_stack([np.empty((len(s.frames), 0)), *columns]))
 
 
 def gait_files(skeleton: Skeleton, names: JointNames, up: str) -> tuple[Table, bytes] | None:

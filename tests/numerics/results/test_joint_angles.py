@@ -28,7 +28,7 @@ def angles(turns, rest=None, turned=None):
         before = np.eye(3) if p < 0 else R[1, p]
         R[0, j], R[1, j] = np.eye(3), before @ own
     Q = np.eye(3) if turned is None else turned
-    return joint_angles(NAMES, PARENTS, rest @ Q.T, places(PARENTS, rest, R) @ Q.T, Q @ R @ Q.T, Q @ FRONT, Q @ UP)
+    return joint_angles(NAMES, PARENTS, rest @ Q.T, places(PARENTS, rest, R) @ Q.T, Q @ R @ Q.T, Q @ FRONT, Q @ UP).degrees
 
 
 def places(parents, rest, R):
@@ -105,7 +105,7 @@ def test_joint_whose_segment_has_no_end_has_no_angles():
     found = joint_angles(
         ["pelvis", "hip_r"], [-1, 0], np.zeros((2, 3)), np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1)), FRONT, UP
     )
-    assert found == {}
+    assert (found.degrees, found.rotation_seen) == ({}, {})
 
 
 def test_hips_are_measured_from_the_bony_pelvis_and_not_from_a_surface_that_follows_the_thighs():
@@ -117,8 +117,59 @@ def test_hips_are_measured_from_the_bony_pelvis_and_not_from_a_surface_that_foll
         R[1, names.index(name)] = flexed
     X = places(parents, rest, R)
     R[1, 0] = Rotation.from_euler("z", 20, degrees=True).as_matrix()  # a third of the thighs' turning, in place
-    found = joint_angles(names, parents, rest, X, R, FRONT, UP)
+    found = joint_angles(names, parents, rest, X, R, FRONT, UP).degrees
     for side in "lr":
         np.testing.assert_allclose(found[f"hip_{side}.flexion"], [0, 60], atol=1e-9)
-    leaning = joint_angles(NAMES, PARENTS, rest[:-1], X[:, :-1], R[:, :-1], FRONT, UP)  # no spine: the surface is all there is
+    leaning = joint_angles(
+        NAMES, PARENTS, rest[:-1], X[:, :-1], R[:, :-1], FRONT, UP
+    ).degrees  # no spine: the surface is all there is
     np.testing.assert_allclose(leaning["hip_r.flexion"], [0, 40], atol=1e-9)
+
+
+BENT = {"elbow_l": (0, 0, 70), "elbow_r": (0, 0, 70), "knee_l": (0, 0, -60), "knee_r": (0, 0, -60)}
+"""Rotation vectors of joints that are bent, degrees."""
+
+
+@pytest.mark.parametrize("side", ["l", "r"])
+@pytest.mark.parametrize(("joint", "beyond"), [("hip", "knee"), ("shoulder", "elbow")])
+def test_turn_of_a_segment_is_that_of_the_bend_beyond_it_whatever_its_surface_does(joint, beyond, side):
+    """The segment turns inwards by 25°; its surface stays behind by all of that, but the places of joints tell."""
+    mirror = 1 if side == "r" else -1
+    raised = Rotation.from_euler("x", -40 * mirror if joint == "shoulder" else 0, degrees=True).as_matrix()
+    turn = Rotation.from_rotvec(np.radians([[0, 0, 0], [0, 25 * mirror, 0]])).as_matrix()
+    bend = Rotation.from_rotvec(np.radians(BENT[f"{beyond}_{side}"])).as_matrix()
+    at = {name: j for j, name in enumerate(NAMES)}
+    R = np.tile(np.eye(3), (2, len(NAMES), 1, 1))
+    R[:, at[f"{joint}_{side}"]] = raised @ turn
+    for name in ("knee", "ankle", "foot_end") if joint == "hip" else ("elbow", "hand_end"):
+        R[:, at[f"{name}_{side}"]] = raised @ turn @ bend
+    X = places(PARENTS, standing(), R)
+    R[:, at[f"{joint}_{side}"]] = raised
+    found = joint_angles(NAMES, PARENTS, standing(), X, R, FRONT, UP)
+    rotation = found.degrees[f"{joint}_{side}.internal_rotation"]
+    np.testing.assert_allclose((rotation[1] - rotation[0] + 180) % 360 - 180, 25, atol=1e-6)
+    np.testing.assert_allclose(found.degrees[f"{beyond}_{side}.flexion"], abs(BENT[f"{beyond}_{side}"][2]), atol=1e-6)
+    assert found.rotation_seen[f"{joint}_{side}"].all()
+
+
+def test_pronation_is_that_of_the_hand_without_its_flexion():
+    names = [*NAMES, "wrist_r"]
+    parents = [*PARENTS, NAMES.index("elbow_r")]
+    rest = np.vstack([standing(), [0, 8.5, 2]])
+    R = np.tile(np.eye(3), (3, len(names), 1, 1))
+    pronated = Rotation.from_euler("y", 40, degrees=True)
+    R[1, -1] = pronated.as_matrix()  # the hand alone has turned; the surface of the forearm stayed
+    R[2, -1] = (pronated * Rotation.from_euler("z", 50, degrees=True)).as_matrix()
+    found = joint_angles(names, parents, rest, places(parents, rest, R), R, FRONT, UP)
+    np.testing.assert_allclose(found.degrees["elbow_r.pronation"], [0, 40, 40], atol=1e-6)
+    assert found.rotation_seen["elbow_r"].all()
+
+
+def test_straight_limbs_do_not_show_how_they_are_turned():
+    found = joint_angles(
+        NAMES, PARENTS, standing(), np.tile(standing(), (2, 1, 1)), np.tile(np.eye(3), (2, len(NAMES), 1, 1)), FRONT, UP
+    )
+    assert {name: seen.tolist() for name, seen in found.rotation_seen.items()} == {
+        **{f"{j}_{s}": [False, False] for s in "lr" for j in ("hip", "shoulder", "elbow")},
+        **{f"knee_{s}": [True, True] for s in "lr"},  # by the feet
+    }
