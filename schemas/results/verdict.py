@@ -14,6 +14,7 @@ Kind = Literal[
     "outside",
     "uncertain",
     "weak",
+    "imprecise",
     "asymmetric",
     "small",
     "close",
@@ -36,6 +37,7 @@ class Finding(Params):
     outside     : joints lie outside the body
     uncertain   : a joint is hidden in some frames, or its part does not fit there
     weak        : joints that few frames support
+    imprecise   : joints whose expected error, or its bound, is large
     asymmetric  : bones of left and right differ in length
     short       : few frames
     still       : no joint turns enough
@@ -51,7 +53,10 @@ class Finding(Params):
     """The skeleton's names; empty where it is said of the whole body. asymmetric: left and right in turn."""
     amount: float = 0.0
     """How much, at worst. off, outside, unexplained, asymmetric, close: share of the diagonal of the body's box; lost: of the
-    frames; uncertain, weak: least mean confidence; small, still: greatest range in degrees; short: frames."""
+    frames; imprecise: share of the body's longest side; uncertain, weak: least mean confidence; small, still: greatest range
+    in degrees; short: frames."""
+    bounds: tuple[float, ...] = ()
+    """imprecise: of each joint, what its mean error exceeds at one joint of ten, share of the body's longest side."""
 
 
 class Verdict(Artifact):

@@ -6,6 +6,7 @@ from html import escape
 import numpy as np
 
 from kinetree.pipeline.task import task
+from kinetree.schemas.array import Floats
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
@@ -80,7 +81,7 @@ def report(
     size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
     error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
     share = VerdictSettings().wrong
-    trust = Trust(verdict.labels, error, share * size, share, verdict.state)
+    trust = Trust(verdict.labels, error, share * size, share, verdict.state, bounds_in_frames(error_bars))
     assumed = [(in_words(joint.anatomy), joint.child, joint.place) for joint in assumed_joints.joints]
     colours = surface_colours(appearance, len(skeleton.vertices))
     label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
@@ -154,6 +155,11 @@ def _error_words(bars: ErrorBars, j: int) -> str:
     """The expected error of a joint and its bound."""
     known = bool(bars.cuts) and np.isfinite(bars.expected[j])
     return f"{two_digits(bars.expected[j])} (90 %: {two_digits(bars.bound[j])})" if known else "–"
+
+
+def bounds_in_frames(bars: ErrorBars) -> Floats | None:
+    """(frame, joint) bound of every joint, in a frame as much larger as its expected error is; None where nothing is known."""
+    return np.asarray(bars.in_frame * (bars.bound / bars.expected)) if bars.cuts else None
 
 
 def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> str:

@@ -8,9 +8,11 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.verdict import Finding, Verdict
+from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.results import verdict as numerics
+from kinetree.tasks.numerics.results.evaluation.body import longest_side
 from kinetree.tasks.results.formats.names import readable_names
 
 
@@ -20,8 +22,10 @@ def verdict(
     joint_names: JointNames,
     frame_confidence: FrameConfidence,
     surface_error: Mapping[int, SurfaceError],
+    error_bars: ErrorBars,
 ) -> Verdict:
     """Says whether the result is good, good except for some parts and frames, or not to be used (ours)."""
+    side = max(longest_side(skeleton.vertices), 1e-300)
     size = max(float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0))), 1e-300)
     errors = [surface_error[frame] for frame in skeleton.frames]
     inlier = dict(zip(frame_confidence.frames, frame_confidence.inlier.tolist(), strict=True))
@@ -39,6 +43,8 @@ def verdict(
             degrees=np.array(skeleton.degrees),
             turning=np.array([kind == "joint" for kind in skeleton.kinds]),
             length=skeleton.lengths / size,
+            expected=np.array(error_bars.expected) / side,
+            bound=np.array(error_bars.bound) / side,
             pairs=pairs,
             unpaired=unpaired,
         )
@@ -52,6 +58,7 @@ def verdict(
                 frames=tuple(skeleton.frames[t] for t in f.frames),
                 joints=tuple(skeleton.names[j] for j in f.joints),
                 amount=f.amount,
+                bounds=f.bounds,
             )
             for f in found.findings
         ),

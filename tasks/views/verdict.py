@@ -39,6 +39,7 @@ def subject(found: Finding, verdict: Verdict) -> str:
         "outside": f"{joints} in {where}",
         "uncertain": f"{joints} in {where}",
         "weak": joints,
+        "imprecise": joints,
         "asymmetric": f"the lengths at {joints}",
         "short": f"only {found.amount:.0f} frame{'s' * (found.amount != 1)}",
         "still": "hardly any motion",
@@ -71,6 +72,9 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
     "outside": lambda f, joints, frames: f"{joints}: outside the body in {frames}, by up to {_percent(f.amount)}",
     "uncertain": lambda f, joints, frames: f"{joints}: uncertain in {frames}, hidden or not fitting the input",
     "weak": lambda f, joints, frames: f"{joints}: few frames support it (mean confidence {f.amount:.2f})",
+    "imprecise": lambda f, joints, frames: (
+        f"{joints}: not placed well; nine of ten such joints lie within so much of the body's longest side of their true place"
+    ),
     "asymmetric": lambda f, joints, frames: f"{joints}: one is misplaced, as their bones differ by {_percent(f.amount)}",
     "short": lambda f, joints, frames: (
         f"only {f.amount:.0f} frame{'s' * (f.amount != 1)}: joints are found by motion, more frames show more of them"
@@ -139,6 +143,8 @@ def _frames(found: Finding, verdict: Verdict) -> str:
 def _joints(found: Finding, verdict: Verdict) -> str:
     label = dict(zip(verdict.joints, verdict.labels, strict=True))
     names = [label[name] for name in found.joints]
+    if found.bounds:
+        names = [f"{name} (within {100 * bound:.2g} %)" for name, bound in zip(names, found.bounds, strict=True)]
     if found.kind == "asymmetric":
         return " and ".join(names)
     return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")

@@ -44,16 +44,21 @@ UP = UpDirection(up="y", confidence=1.0)
 
 
 def trusted(
-    assumed: tuple[tuple[str, int, tuple[float, float, float]], ...] = (), colours: npt.NDArray[np.uint8] | None = None
+    assumed: tuple[tuple[str, int, tuple[float, float, float]], ...] = (),
+    colours: npt.NDArray[np.uint8] | None = None,
+    bounds: bool = True,
 ) -> Scene:
-    """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint."""
+    """The spider playing, with errors that grow along the body and a confidence that falls from joint to joint.
+
+    bounds : whether the errors of joints have bounds: 1, in the first frame 1.5
+    """
     joints, vertices = len(spider().names), len(spider().vertices)
     body = spider(confidence=np.tile(np.linspace(0.9, 0.1, joints), (12, 1)))
     error = {frame: np.linspace(0, 1, vertices) for frame in body.frames}
     labels = ("trunk", "left shoulder", *body.names[2:])
-    return playing(
-        body, trust=Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64)), assumed=assumed, colours=colours
-    )
+    known = np.where(np.array(body.kinds) == "joint", np.where(np.arange(12) == 0, 1.5, 1.0)[:, None], np.nan)
+    trust = Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64), known if bounds else None)
+    return playing(body, trust=trust, assumed=assumed, colours=colours)
 
 
 def playing(
@@ -136,8 +141,8 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     all_of_it["surface_error"] = {
         frame: surface_error(**some("skeleton"), mesh=mesh, index=(frame,)) for frame, mesh in all_of_it["mesh"].items()
     }
-    all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error"))
     all_of_it.setdefault("error_bars", bars_of(all_of_it["skeleton"]))
+    all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error", "error_bars"))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
     all_of_it["appearance"] = changes.get("appearance", Appearance.none())
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from results.plain_names import plain
-from results.rigged_bodies import spider
+from results.rigged_bodies import bars_of, spider
 from results.sample_report import artifacts, confident
 
 from kinetree.pipeline import views
@@ -16,8 +16,8 @@ from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.views.verdict import headline, runs, sentence
 
 
-def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = ()) -> Verdict:
-    """The verdict on the spider; in some frames the hand of the input is moved away."""
+def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = (), bound: float = 0.1) -> Verdict:
+    """The verdict on the spider; in some frames the hand of the input is moved away; every joint is known to a bound."""
     body = spider()
     anatomy = tuple("hand_end_l" if name == "hand" else "shoulder_l" if name == "arm" else "" for name in body.names)
     content = artifacts()
@@ -32,6 +32,7 @@ def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = ()) -> 
         joint_names=plain(body, anatomy=anatomy),
         frame_confidence=confident(body.frames, failed=failed),
         surface_error=errors,
+        error_bars=bars_of(body).model_copy(update={"bound": np.where(np.array(body.kinds) == "joint", bound, np.nan)}),
     )
 
 
@@ -65,6 +66,16 @@ def test_a_body_that_is_wrong_in_many_frames_is_not_to_be_used() -> None:
     found = of(dict.fromkeys(range(6), 6.0))
     assert found.level == "unusable"
     assert views.remarks(found)[0] == "do not use: wrong in 50% of the frames"
+
+
+def test_joints_with_a_large_bound_are_named_with_it_as_share_of_the_longest_side() -> None:
+    side = float(np.ptp(spider().vertices, axis=0).max())
+    line, reason = views.remarks(of(bound=0.08 * side))
+    assert line.startswith("good except for left shoulder (within 8 %)")
+    assert "left shoulder (within 8 %)" in reason
+    assert "nine of ten such joints" in reason
+    (found,) = [f for f in views.summary(of(bound=0.08 * side))["findings"] if f["kind"] == "imprecise"]
+    assert found["bounds"] == pytest.approx([0.08] * len(found["joints"]))
 
 
 def test_run_json_has_the_verdict_with_joints_as_people_call_them() -> None:

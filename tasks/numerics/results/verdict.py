@@ -33,10 +33,14 @@ class VerdictSettings(NamedTuple):
     frames: int = 5
     """Frames below which a sequence, or the support of a joint, is short."""
     degrees: float = 15.0
-    """Range of the angle below which a joint is doubtful: a third of such joints were where the truth has none, of those that
-    turn more 6 % (33 and 728 joints of three generated bodies, spoilt in many ways)."""
+    """Range of the angle below which a joint is doubtful where its bound is large or not known: a third of such joints were
+    where the truth has none, of those that turn more 6 % (33 and 728 joints of three generated bodies, spoilt in many ways)."""
     length: float = 0.03
     """Length of the bone to its parent below which a joint is doubtful: half of such joints were where the truth has none."""
+    expected: float = 0.025
+    """Expected error above which a joint is imprecise, share of the longest side of the body's box."""
+    bound: float = 0.05
+    """The same of the bound that nine joints of ten keep: the distance within which an evaluation calls a joint found."""
     asymmetry: float = 0.04
     """Difference in length between a bone on the left and on the right. Of 384 pairs of generated bodies, spoilt in
     many ways, two differed by more; neither was where the truth has joints. Sound pairs differ by up to 0.038."""
@@ -53,6 +57,8 @@ class Evidence(NamedTuple):
     degrees    : (joint,) range of its angle
     turning    : (joint,) whether it is a joint: neither root nor end of a bone
     length     : (joint,) of the bone to its parent, share of the diagonal
+    expected   : (joint,) expected error, share of the longest side of the body's box; NaN where it is not known
+    bound      : (joint,) what the error exceeds at one joint of ten, the same share; NaN where it is not known
     pairs      : pairs of joints, left and right, whose bones should be equally long
     unpaired   : joints that have a side, and no partner
     """
@@ -67,6 +73,8 @@ class Evidence(NamedTuple):
     degrees: Floats
     turning: Flags
     length: Floats
+    expected: Floats
+    bound: Floats
     pairs: Sequence[tuple[int, int]]
     unpaired: Sequence[int]
 
@@ -79,6 +87,7 @@ class Finding(NamedTuple):
     frames: tuple[int, ...] = ()
     joints: tuple[int, ...] = ()
     amount: float = 0.0
+    bounds: tuple[float, ...] = ()
 
 
 class Verdict(NamedTuple):
@@ -179,11 +188,19 @@ def _of_joints(e: Evidence, state: Ints, s: VerdictSettings) -> Iterator[Finding
         groups.setdefault(_at(unsure[:, j]), []).append(int(j))
     for frames, joints in sorted(groups.items(), key=lambda item: -len(item[0])):
         yield Finding("uncertain", "fault", frames, tuple(joints), float(e.confidence[np.ix_(frames, joints)].mean()))
+    imprecise = e.turning & ((e.expected > s.expected) | (e.bound > s.bound))
+    if imprecise.any():
+        worst = np.flatnonzero(imprecise)[np.argsort(-e.bound[imprecise], kind="stable")]
+        bounds = tuple(e.bound[worst].tolist())
+        yield Finding("imprecise", "fault", (), tuple(worst.tolist()), bounds[0], bounds)
     small = e.turning & (e.degrees < s.degrees)
     close = e.turning & (e.length < s.length) & ~small
     yield from _asymmetric(e, weak | small | close, s)
-    if small.any() and not small[e.turning].all():
-        yield Finding("small", "fault", (), _at(small), float(e.degrees[small].max()))
+    if not small[e.turning].all():
+        known = e.bound <= s.bound
+        for severity, here in (("fault", small & ~known), ("note", small & known)):
+            if here.any():
+                yield Finding("small", severity, (), _at(here), float(e.degrees[here].max()))
     if close.any():
         yield Finding("close", "fault", (), _at(close), float(e.length[close].min()))
     if e.unpaired:

@@ -86,6 +86,7 @@ def document(page: Page) -> str:
             f'<option value="{i["at"]}">{n}: frames {i["begin"]}–{i["end"]}</option>'
             for n, i in enumerate(page.scene.description["intervals"])
         ),
+        **_bounds("bound" in page.scene.description["arrays"]),
         "colours": '<option value="input">the input’s own</option>' if "colours" in page.scene.description["arrays"] else "",
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
         "sections": _chapters(first) + _folded("Method details", details) + _folded("What ran", sections[-1:]),
@@ -98,6 +99,13 @@ def document(page: Page) -> str:
         + (ASSUMED_ENTRY if page.scene.description.get("assumed") else ""),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match.group(1)], page_file("page.html"))
+
+
+def _bounds(known: bool) -> dict[str, str]:
+    """The switch for error bounds, its key and its legend, where a page has bounds."""
+    box = '<label><input id="see-bounds" type="checkbox"> Error bounds (90 %)</label>\n'
+    key = " <kbd>B</kbd> shows within which distance nine of ten joints lie,"
+    return {"bounds": box if known else "", "bounds_key": key if known else ""}
 
 
 def as_script(value: Any) -> str:

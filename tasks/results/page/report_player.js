@@ -4,6 +4,23 @@
 const NEAR = 16; // pixels within which a pointer is at a joint
 const RAMP = ["#2166ac", "#92c5de", "#f7f7f7", "#f4a582", "#b2182b"]; // from nothing to the most
 const FADED = "#d8dce1";
+const CORNERS = 48; // of a circle
+const BOUND = "#e8b4ff"; // of no part, paler than all of them
+
+// The flat region between two circles about the origin.
+function annulus(inner, outer) {
+  const [corners, faces] = [[], []];
+  for (let k = 0; k < CORNERS; k++) {
+    const turn = (2 * Math.PI * k) / CORNERS;
+    for (const radius of [inner, outer]) corners.push(radius * Math.cos(turn), radius * Math.sin(turn), 0);
+    const [a, b] = [2 * k, 2 * ((k + 1) % CORNERS)];
+    faces.push(a, a + 1, b + 1, a, b + 1, b);
+  }
+  const flat = new THREE.BufferGeometry();
+  flat.setAttribute("position", new THREE.BufferAttribute(new Float32Array(corners), 3));
+  flat.setIndex(new THREE.BufferAttribute(new Uint16Array(faces), 1));
+  return flat;
+}
 
 class ReportPlayer extends Player {
   constructor(scene, arrays, canvas, changed) {
@@ -17,6 +34,7 @@ class ReportPlayer extends Player {
     this.ramp = RAMP.map((c) => new THREE.Color(c));
     this.addRig();
     this.addMarks();
+    this.addBounds();
   }
 
   addRig() {
@@ -41,6 +59,34 @@ class ReportPlayer extends Player {
     };
     this.marks = [ring(0.026, 0x000000), ring(0.021, 0xffe14d)];
     this.marks.forEach((mark, k) => { mark.renderOrder = 1 + k / 4; });
+  }
+
+  // About every joint a sphere that nine joints of ten lie in: a disc that faces the viewer, with a white and a black edge.
+  addBounds() {
+    const count = this.arrays.bound ? this.scene.joints.length : 0;
+    const rings = [["#ffffff", 1, 0.94, 1], ["#000000", 1, 0.97, 1], [BOUND, 0.3, 0, 0.94]];
+    this.bounds = new THREE.Group();
+    this.bounds.visible = false;
+    rings.forEach(([color, opacity, inner, outer], k) => {
+      const discs = new THREE.InstancedMesh(annulus(inner, outer), new THREE.MeshBasicMaterial({ color, opacity, transparent: true, depthTest: false, side: THREE.DoubleSide }), Math.max(count, 1));
+      discs.count = count;
+      discs.frustumCulled = false;
+      discs.renderOrder = 1.5 + k / 10;
+      this.bounds.add(discs);
+    });
+    this.world.add(this.bounds);
+  }
+
+  faceBounds() {
+    if (!this.bounds.visible) return;
+    const joints = this.scene.joints.length;
+    const place = new THREE.Matrix4();
+    for (let j = 0; j < joints; j++) {
+      const radius = this.arrays.bound[this.at * joints + j];
+      place.compose(this.point("joints", joints, j), this.camera.quaternion, new THREE.Vector3(radius, radius, radius));
+      for (const discs of this.bounds.children) discs.setMatrixAt(j, place);
+    }
+    for (const discs of this.bounds.children) discs.instanceMatrix.needsUpdate = true;
   }
 
   // x(v) = Σ w [R (v − rest) + x], as skeleton.glb has it.
@@ -159,6 +205,7 @@ class ReportPlayer extends Player {
       this.painted = `${this.at} ${this.mode} ${this.colour} ${this.selected} ${this.isolated}`;
       this.repaint();
     }
+    this.faceBounds();
     const { renderer, camera } = this;
     const [width, height] = [renderer.domElement.clientWidth, renderer.domElement.clientHeight];
     if (this.mode !== "sides") {

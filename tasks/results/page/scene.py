@@ -45,6 +45,8 @@ class Trust(NamedTuple):
     most   : the distance that has the last colour, mesh unit
     share  : the same, share of the diagonal of the body's box
     state  : (frame, joint) 0 trusted, 1 uncertain, 2 wrong
+    bound  : (frame, joint) distance from the true joint that nine joints of ten keep, mesh unit, NaN where it is not known;
+             None where no error is known
     """
 
     labels: tuple[str, ...]
@@ -52,6 +54,7 @@ class Trust(NamedTuple):
     most: float
     share: float
     state: NDArray[np.integer]
+    bound: Floats | None = None
 
 
 class Scene(NamedTuple):
@@ -158,12 +161,14 @@ def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict
 
 
 def _trusted(skeleton: Skeleton, selected: Ints, frames: Ints, trust: Trust) -> dict[str, NDArray[Any]]:
-    """Error, confidence and state as bytes."""
+    """Error, confidence and state as bytes; bounds where errors are known, 0 for joints without one."""
     error = np.stack([trust.error[skeleton.frames[t]][selected] for t in frames]) / max(trust.most, 1e-300)
+    bound = {} if trust.bound is None else {"bound": np.nan_to_num(trust.bound[frames], nan=0.0).astype(np.float32)}
     return {
         "error": np.rint(255 * np.clip(error, 0.0, 1.0)).astype(np.uint8),
         "confidence": np.rint(255 * np.clip(np.asarray(skeleton.confidence)[frames], 0.0, 1.0)).astype(np.uint8),
         "state": np.asarray(trust.state)[frames].astype(np.uint8),
+        **bound,
     }
 
 

@@ -10,6 +10,7 @@ function wire(player) {
     "see-leaves": (on) => { player.leaves.visible = on; },
     isolate: (on) => { player.isolated = on; },
     follow: (on) => { player.following = on; if (on) player.followed = player.centre(); },
+    ...(player.arrays.bound ? { "see-bounds": (on) => { player.bounds.visible = on; } } : {}),
   });
   byId("mode").addEventListener("change", (e) => setMode(player, e.target.value));
   byId("colour").addEventListener("change", (e) => setColour(player, e.target.value));
@@ -18,6 +19,7 @@ function wire(player) {
   document.addEventListener("keydown", (e) => { if (e.key === "Escape") player.select(null); });
   byId("stage").addEventListener("keydown", (e) => {
     if (/^[1-5]$/.test(e.key)) { byId("mode").value = MODES[e.key - 1]; setMode(player, MODES[e.key - 1]); }
+    if (e.key.toLowerCase() === "b" && !e.ctrlKey && !e.metaKey && !e.altKey) byId("see-bounds")?.click();
   });
   new ResizeObserver(() => { player.resize(); drawBands(player); }).observe(byId("stage"));
 }
@@ -71,8 +73,15 @@ function describe(player) {
   const words = [`The body at ${frameCaption(scene, at)}, one of ${scene.frames.length} frames: ${mode === "sides" ? "" : "the "}${modeWords}, ${colourWords}${skeleton}.`];
   for (const [state, word] of [[2, "Wrong"], [1, "Uncertain"]]) if (named(state)) words.push(`${word}: ${named(state)}.`);
   if (player.assumed.length) words.push(`Assumed, not found: ${player.assumed.map((joint) => joint.label).join(", ")}.`);
-  if (selected !== null) words.push(`Selected: ${joints[selected].label}, ${joints[selected].kind}.`);
+  if (selected !== null) words.push(`Selected: ${joints[selected].label}, ${joints[selected].kind}${boundWords(player, selected)}.`);
   byId("stage").setAttribute("aria-label", words.join(" "));
+}
+
+// The bound of a joint in this frame, in words; empty where it is not known.
+function boundWords(player, j) {
+  const { scene, arrays, at } = player;
+  const bound = arrays.bound ? arrays.bound[at * scene.joints.length + j] : 0;
+  return bound ? `, 90 % bound ${Number(bound.toPrecision(2))}${scene.unit ? ` ${scene.unit}` : ""}` : "";
 }
 
 function wirePicking(player) {

@@ -8,6 +8,7 @@ import pytest
 from kinetree.tasks.numerics.results.verdict import TRUSTED, UNCERTAIN, WRONG, Evidence, VerdictSettings, sided, verdict
 
 FRAMES, JOINTS = 12, 5
+UNKNOWN = np.full(JOINTS, np.nan)
 
 
 def evidence(**changes: Any) -> Evidence:
@@ -17,6 +18,7 @@ def evidence(**changes: Any) -> Evidence:
         "skin": none, "surface": none, "outside": 0 * none, "distance": none[:, 0], "inlier": np.ones(FRAMES, bool),
         "confidence": np.full((FRAMES, JOINTS), 0.9), "support": np.full(JOINTS, FRAMES), "degrees": np.full(JOINTS, 40.0),
         "turning": np.array([False, True, True, True, False]), "length": np.full(JOINTS, 0.2), "pairs": [(1, 2)],
+        "expected": np.array([np.nan, 0.006, 0.006, 0.006, np.nan]), "bound": np.array([np.nan, 0.02, 0.02, 0.02, np.nan]),
         "unpaired": [], **changes,
     })  # fmt: skip
 
@@ -86,6 +88,16 @@ def test_a_weak_joint_is_found_by_support_and_by_confidence() -> None:
     assert kinds(changed("confidence", (slice(None), 3), 0.3)) == ["weak"]
 
 
+def test_joints_whose_error_bar_is_large_are_named_with_their_bounds_the_worst_first() -> None:
+    bound = np.array([np.nan, 0.06, 0.02, 0.09, 0.5])
+    found = verdict(evidence(bound=bound))
+    assert found.level == "except"
+    assert [(f.kind, f.joints, f.amount, f.bounds) for f in found.findings] == [("imprecise", (3, 1), 0.09, (0.09, 0.06))]
+    assert kinds(changed("expected", 2, 0.03)) == ["imprecise"]
+    assert kinds(changed("expected", 4, 0.03)) == [], "ends of bones have no error bars"
+    assert verdict(evidence(expected=UNKNOWN, bound=UNKNOWN)).level == "good"
+
+
 def test_bones_of_unlike_length_on_both_sides_are_found() -> None:
     found = verdict(changed("length", 2, 0.26)).findings
     assert [(f.kind, f.joints) for f in found] == [("asymmetric", (1, 2))]
@@ -97,7 +109,7 @@ def test_bones_of_unlike_length_are_a_note_where_one_of_the_joints_is_doubtful_a
     both = changed("length", 2, 0.26)
     degrees = np.array(both.degrees)
     degrees[2] = 9.0
-    found = verdict(both._replace(degrees=degrees)).findings
+    found = verdict(both._replace(degrees=degrees, bound=UNKNOWN)).findings
     assert [(f.kind, f.severity) for f in found] == [("small", "fault"), ("asymmetric", "note")]
 
 
@@ -108,10 +120,18 @@ def test_notes_leave_a_result_good() -> None:
 
 def test_a_joint_that_hardly_turns_or_is_very_near_another_is_doubtful() -> None:
     for name, value, kind in (("degrees", 9.0, "small"), ("length", 0.02, "close")):
-        found = verdict(changed(name, 3, value))
+        found = verdict(changed(name, 3, value)._replace(bound=UNKNOWN))
         assert (found.level, [(f.kind, f.joints, f.amount) for f in found.findings]) == ("except", [(kind, (3,), value)])
-    both = evidence(degrees=np.array([0, 9, 40, 40, 0.0]), length=np.array([0, 0.02, 0.02, 0.2, 0.2]), pairs=[])
+    both = evidence(degrees=np.array([0, 9, 40, 40, 0.0]), length=np.array([0, 0.02, 0.02, 0.2, 0.2]), pairs=[], bound=UNKNOWN)
     assert [(f.kind, f.joints) for f in verdict(both).findings] == [("small", (1,)), ("close", (2,))]
+
+
+def test_a_joint_that_hardly_turns_is_a_note_where_its_error_bar_is_small() -> None:
+    found = verdict(changed("degrees", 3, 9.0))
+    assert (found.level, [(f.kind, f.severity, f.joints) for f in found.findings]) == ("good", [("small", "note", (3,))])
+    both = evidence(degrees=np.array([0, 9, 40, 11, 0.0]), bound=np.array([np.nan, 0.08, 0.02, 0.02, np.nan]))
+    small = [(f.severity, f.joints, f.amount) for f in verdict(both).findings if f.kind == "small"]
+    assert small == [("fault", (1,), 9.0), ("note", (3,), 11.0)]
 
 
 def test_a_body_that_hardly_moves_is_no_good_and_one_that_never_turns_is_unusable() -> None:

@@ -98,13 +98,56 @@ def test_scrubbing_shows_another_picture_and_names_the_frame(opened: Any) -> Non
     assert drawn(opened) != before
 
 
-@pytest.mark.parametrize("toggle", ["see-skeleton", "see-leaves"])
+@pytest.mark.parametrize("toggle", ["see-skeleton", "see-leaves", "see-bounds"])
 def test_every_toggle_changes_the_picture_and_changes_it_back(opened: Any, toggle: str) -> None:
     before = drawn(opened)
     opened.locator(f"#{toggle}").click()
     assert drawn(opened) != before
     opened.locator(f"#{toggle}").click()
     assert drawn(opened) == before
+
+
+def test_bounds_are_not_shown_at_first_and_a_key_shows_them_as_large_as_they_are_in_this_frame(opened: Any) -> None:
+    assert not opened.is_checked("#see-bounds")
+    before = drawn(opened)
+    opened.locator("#stage").focus()
+    opened.keyboard.press("b")
+    assert opened.is_checked("#see-bounds")
+    assert drawn(opened) != before
+    joints = [j for j, kind in enumerate(spider().kinds) if kind == "joint"]
+    for frame, radius in ((0, 1.5), (1, 1.0)):
+        opened.evaluate(f"kinetree.show({frame})")
+        sizes = opened.evaluate("""kinetree.bounds.children.map((discs) => kinetree.scene.joints.map((_, j) => {
+            const place = new THREE.Matrix4();
+            discs.getMatrixAt(j, place);
+            return place.getMaxScaleOnAxis();
+        }))""")
+        for size in np.array(sizes):
+            assert size[joints] == pytest.approx(radius, rel=1e-6)
+            assert np.delete(size, joints) == pytest.approx(0.0)
+    opened.keyboard.press("B")
+    assert not opened.is_checked("#see-bounds")
+
+
+def test_the_bound_of_the_selected_joint_is_told_in_words(opened: Any) -> None:
+    opened.evaluate("kinetree.select(1)")
+    assert "Selected: left shoulder, joint, 90 % bound 1.5" in opened.get_attribute("#stage", "aria-label")
+    opened.evaluate("kinetree.select(null)")
+
+
+def test_a_page_without_bounds_has_no_switch_for_them(browser: Any, tmp_path: Path) -> None:
+    (tmp_path / "report.html").write_bytes(page("a walk", scene=trusted(bounds=False)).encode())
+    tab = browser.new_page()
+    complaints: list[str] = []
+    tab.on("pageerror", lambda e: complaints.append(str(e)))
+    tab.goto((tmp_path / "report.html").as_uri())
+    tab.wait_for_selector("body[data-ready=yes]")
+    assert tab.query_selector("#see-bounds") is None
+    assert "within which distance" not in tab.inner_text("#keys")
+    tab.locator("#stage").focus()
+    tab.keyboard.press("b")
+    assert complaints == []
+    tab.close()
 
 
 def test_every_mode_and_every_colour_is_another_picture(opened: Any) -> None:
