@@ -335,8 +335,10 @@ def test_names_of_joints_that_are_not_there_are_told_and_too_long_ones_refused(o
     (tmp_path / "names.yaml").write_text("arm: jaw\nelbow: x\n")
     export(str(out), "bvh", tmp_path / "named.bvh", names=str(tmp_path / "names.yaml"))
     told = capsys.readouterr().err
-    assert "no joint is called elbow" in told
+    assert f"{tmp_path}/names.yaml: no joint that was found is called elbow\n" in told
     assert "arm" not in told
+    export(str(out), "bvh", tmp_path / "again.bvh", ["joint_names.rename={arm: jaw, elbow: x}"])
+    assert "joint_names.rename: no joint that was found is called elbow\n" in capsys.readouterr().err
     (tmp_path / "names.yaml").write_text(f"arm: {'x' * 101}\n")
     with pytest.raises(ConfigError, match="has 101 letters; 100 are the most"):
         export(str(out), "bvh", names=str(tmp_path / "names.yaml"))

@@ -3,7 +3,7 @@
 import json
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -15,6 +15,8 @@ from kinetree.pipeline.suggest import nearest
 
 if TYPE_CHECKING:
     from kinetree.pipeline.inspect import Pipeline
+    from kinetree.pipeline.planning.schedule import Schedule
+    from kinetree.schemas.structure.joint_names import JointNames
 
 FORMATS = {
     "glb": "glb",
@@ -84,8 +86,7 @@ def export(
     if to == NAMES:
         _write_text(_names_text(pipeline), output)
         return
-    written, remarks = _written(pipeline, FORMATS[to], output)
-    remarks += _unused_names(names, pipeline_of(run, sets=sets))
+    written, remarks = _written(pipeline, FORMATS[to], output, names)
     if as_json:
         print_json({"files": [str(path) for path in written], "remarks": remarks})
         return
@@ -98,15 +99,19 @@ def export(
         typer.echo(f"… and {len(written) - len(named)} more files beside it")
 
 
-def _written(pipeline: "Pipeline", task: str, output: Path | None) -> tuple[list[Path], list[str]]:
-    """Where the files are, and the remarks on them."""
+def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | None) -> tuple[list[Path], list[str]]:
+    """Where the files are, and the remarks on them and on what --names names."""
     from kinetree.pipeline import views
     from kinetree.pipeline.output.output import write_elsewhere, write_result
     from kinetree.pipeline.output.ownership import Owned
+    from kinetree.schemas.structure.joint_names import STYLES
+    from kinetree.tasks.views.structure import unknown_joints
 
     schedule = pipeline.computed(task, LAID_OUT_BY).schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
     remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
+    if (named := _joint_names(schedule)) is not None:
+        remarks += unknown_joints("joint_names.rename" if names is None or names in STYLES else names, named)
     if output is not None:
         return write_elsewhere(output, schedule, task, MESH_FILES), remarks
     owned = Owned.of(pipeline.config.output)
@@ -134,38 +139,19 @@ def _names_setting(names: str) -> str:
     return f"joint_names.rename={json.dumps(told)}"
 
 
-def _unused_names(names: str | None, pipeline: "Pipeline") -> list[str]:
-    """What is to be said of names in a file whose joints the body does not have.
-
-    pipeline : without that file
-    """
-    from kinetree.pipeline.settings.yaml_text import parsed
-    from kinetree.schemas.structure.joint_names import STYLES
-
-    if names is None or names in STYLES:
-        return []
-    known = _named(pipeline)
-    told = parsed(small_text(Path(names), ConfigError, LARGEST_NAMES), names)
-    missing = [joint for joint in told if joint not in known and joint not in known.values()]
-    return [f"{names}: no joint is called {', '.join(missing[:5])}"] if missing else []
-
-
 def _names_text(pipeline: "Pipeline") -> str:
     """Every joint's own name and the name that files have, as YAML."""
     from kinetree.pipeline.settings.yaml_text import dumped
 
-    return dumped(_named(pipeline), sort_keys=False)
+    found = _joint_names(pipeline.computed("joint_names", LAID_OUT_BY).schedule)
+    assert found is not None
+    return dumped(dict(zip(found.given, found.names, strict=True)), sort_keys=False)
 
 
-def _named(pipeline: "Pipeline") -> dict[str, str]:
-    """Every joint's own name and the name that files have."""
-    from kinetree.schemas.structure.joint_names import JointNames
-
-    schedule = pipeline.computed("joint_names", LAID_OUT_BY).schedule
-    (entry,) = (entry for entry in schedule.entries.values() if entry.node.task == "joint_names")
-    found = schedule.value(entry.node)
-    assert isinstance(found, JointNames)
-    return dict(zip(found.given, found.names, strict=True))
+def _joint_names(schedule: "Schedule") -> "JointNames | None":
+    """The names of all joints; None where the schedule has none."""
+    found = (e.node for e in schedule.entries.values() if e.node.task == "joint_names" and e.artifact is not None)
+    return next((cast("JointNames", schedule.value(node)) for node in found), None)
 
 
 def _write_text(text: str, output: Path | None) -> None:

@@ -1,6 +1,7 @@
 """Views of the artifacts of the shelf `structure`."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,13 @@ from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.views.verdict import headline
+
+if TYPE_CHECKING:
+    from kinetree.tasks.numerics.structure.anatomical_names import Named
+
+
+UNKNOWN_NAMED = 5
+"""Joints to rename that are not there and are named one by one."""
 
 
 @remarks_of(KinematicTree)
@@ -129,7 +137,36 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
 
 @remarks_of(JointNames)
 def joint_names_remarks(names: JointNames) -> tuple[str, ...]:
-    """What the body was recognised as, and whether left and right may be exchanged."""
+    """What the body was recognised as, whether left and right may be exchanged, and which joints to rename are not there."""
+    return (*_recognised(names), *unknown_joints("joint_names.rename", names))
+
+
+def unknown_joints(where: str, names: JointNames) -> tuple[str, ...]:
+    """One sentence on the joints to rename that were not found under any of their names; nothing where all were.
+
+    where : what says that they are renamed
+    """
+    from kinetree.tasks.numerics.structure.name_styles import styled_names
+
+    if not names.spelling.rename:
+        return ()
+    known, style, sides = set(names.given), names.spelling.style, names.spelling.side_suffixes
+    for given, anatomy in zip(names.given, names.anatomy, strict=True):
+        known |= {*styled_names([_station(anatomy)], [given], style, sides, {})}
+    unknown = [joint for joint in names.spelling.rename if joint not in known]
+    more = f" and {len(unknown) - UNKNOWN_NAMED} more" if len(unknown) > UNKNOWN_NAMED else ""
+    return (f"{where}: no joint that was found is called {', '.join(unknown[:UNKNOWN_NAMED])}{more}",) if unknown else ()
+
+
+def _station(anatomy: str) -> "Named | None":
+    """What a joint is, from its text; None where that is empty."""
+    from kinetree.tasks.numerics.structure.anatomical_names import Named
+
+    station, _, side = anatomy.rpartition("_")
+    return (Named(station, side) if station and side in ("l", "r") else Named(anatomy)) if anatomy else None
+
+
+def _recognised(names: JointNames) -> tuple[str, ...]:
     if names.topology == "unknown":
         return ()
     what = "a person" if names.topology == "human" else "a four-legged animal"

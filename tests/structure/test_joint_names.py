@@ -42,6 +42,19 @@ def test_style_sides_and_single_names_are_as_they_are_set(human):
     assert "elbow_l" in found.anatomy
 
 
+def test_names_of_joints_that_are_not_there_are_told(human):
+    renamed = {human.names[0]: "a", "elbow.L": "b", "mixamorig:LeftForeArm": "c"}
+    (_, told) = views.remarks(named(human, style="mixamo", rename=renamed))
+    assert told == "joint_names.rename: no joint that was found is called elbow.L"  # it is LeftForeArm in this style
+    (_, told) = views.remarks(named(human, side_suffixes=(".L", ".R"), rename=renamed))
+    assert told == "joint_names.rename: no joint that was found is called mixamorig:LeftForeArm"
+    assert len(views.remarks(named(human, rename={human.names[1]: "a"}))) == 1
+    (_, told) = views.remarks(named(human, rename={f"x{n}": "y" for n in range(9)}))
+    assert told.endswith("is called x0, x1, x2, x3, x4 and 4 more")
+    (told,) = views.remarks(named(human, style="none", rename={"elbow.L": "b"}))
+    assert told.endswith("is called elbow.L")
+
+
 def test_no_style_leaves_the_names_of_the_skeleton(human):
     found = named(human, style="none")
     assert (found.names, found.topology) == (human.names, "unknown")

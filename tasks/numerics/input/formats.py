@@ -7,7 +7,6 @@ is opened, and whatever cannot be a mesh is refused with its name and the reason
 import json
 import re
 from collections.abc import Callable
-from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import numpy as np
 
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
+from kinetree.tasks.numerics.input import draco
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
 from kinetree.tasks.numerics.input.unpacked import too_large
 
@@ -248,20 +248,11 @@ def _glb(raw: bytes) -> tuple[Any, Any]:
     return np.concatenate(V), np.concatenate(F)
 
 
-def _drc(raw: bytes) -> tuple[Any, Any]:
-    try:
-        draco = import_module("DracoPy")
-    except ImportError:
-        raise MeshError("Draco is read by DracoPy; pip install 'kinetree[draco]'") from None
-    mesh = draco.decode(raw)
-    return mesh.points, getattr(mesh, "faces", ())
-
-
 _READERS: dict[str, Callable[[bytes], tuple[Any, Any]]] = {
     ".ply": _ply,
     ".obj": _obj,
     ".off": _off,
     ".stl": _stl,
     ".glb": _glb,
-    ".drc": _drc,
+    ".drc": draco.unpacked,
 }

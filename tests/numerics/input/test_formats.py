@@ -3,7 +3,6 @@
 import json
 import os
 import struct
-import sys
 
 import numpy as np
 import pytest
@@ -339,8 +338,3 @@ def test_draco_is_read(tmp_path):
     np.testing.assert_allclose(X, V, atol=1e-3)
     assert sorted(map(sorted, G.tolist())) == sorted(map(sorted, F.tolist()))
     assert "cannot be read as DRC" in refusal(written(tmp_path, "g.drc", b"DRACO" + b"\xff" * 40))
-
-
-def test_draco_without_its_reader_says_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "DracoPy", None)
-    assert "pip install 'kinetree[draco]'" in refusal(written(tmp_path, "f.drc", b"DRACO"))
