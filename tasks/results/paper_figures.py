@@ -47,7 +47,7 @@ def paper_figures(
     annulus_figures = [
         CaptionedFigure(
             cones(fetch, frames, up),
-            "The annuli of every cone, black beyond it; last, the areas they become: white is not rigid.",
+            "The annuli of every cone, grey beyond it; last, the areas they become: white is not rigid.",
             f"{len(cone_consistency.annulus)} cones on the body; {int(cylinders.rigid.sum())} rigid areas and"
             f" {int((~cylinders.rigid).sum())} that are not.",
         )

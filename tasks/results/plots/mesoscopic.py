@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.colors import to_rgba
 
 from kinetree.schemas.array import Floats, Ints
+from kinetree.tasks.results.formats.colours import GREY
 from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view
 from kinetree.tasks.results.plots.structure import bones, part_colours
 from kinetree.tasks.results.plots.style import heading
@@ -14,11 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ANNULUS_COLOURS = COLOURS[:6]
-BLACK, WHITE = to_rgba("0.12"), to_rgba("white")
+BEYOND, WHITE = to_rgba(GREY), to_rgba("white")
+"""Of surface beyond a cone, seen on a light and on a dark page; and of surface that is not rigid."""
 
 
 def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
-    """The annuli of every cone on the reference of the interval of the first frame, black where a cone does not reach.
+    """The annuli of every cone on the reference of the interval of the first frame, grey where a cone does not reach.
 
     White circles are leaves (2014, Fig. 7). The last picture is of the areas that they become: white is not rigid (Fig. 13).
     """
@@ -34,7 +36,7 @@ def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         axes.remove()
     axis = view([here.vertices], up)
     for cone, axes in enumerate(every[: count - 1]):
-        surface(axes, here.vertices @ axis, here.faces, _shades(annulus[cone], here.faces, BLACK))
+        surface(axes, here.vertices @ axis, here.faces, _shades(annulus[cone], here.faces, BEYOND))
         leaf = consistent.leaf[interval, cone]
         if leaf >= 0 and here.leaf_vertex[leaf] >= 0:
             axes.plot(*(here.vertices[here.leaf_vertex[leaf]] @ axis)[:2], "o", ms=6, color="white", mec="black", mew=0.8)
