@@ -6,6 +6,10 @@ import numpy as np
 import numpy.typing as npt
 from limbs import LENGTH, rotation, tube
 from shapes import y_pipe
+from shipped import TREE
+
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -75,6 +79,19 @@ def chain(
     turn = turn.copy()
     turn[:, 0] = np.eye(3)
     return moved(V, F, above - below, joints, np.arange(parts) - 1, turn)
+
+
+def neck(half: float = 0.9, blend: float = 2.4) -> Known:
+    """A chain of three parts whose middle one, short and under soft skin, moves hardly a vertex alone."""
+    return chain((-half, half), swings(24, 3, seed=3), blend=blend, along=60)
+
+
+def neck_ends(body: Known) -> TreeJoints:
+    """The first and the last part of a chain as the only ones, as of a cut that missed those between."""
+    ends, tips = [0, body.R.shape[1] - 1], np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    label = (body.V[:, 2] > 0.0).astype(np.int64)
+    cut = Cut(body.V, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends])
+    return tree_joints(MovingSurface(body.V, body.F, body.x, body.area), cut, tips, settings=TREE)
 
 
 def three_arms(turn: Floats | None = None, reach: float = 12.0) -> Known:

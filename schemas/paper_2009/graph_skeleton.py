@@ -4,10 +4,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import JointParams
 
 
-class GraphSkeletonParams(KinematicTreeParams):
+class GraphSkeletonParams(JointParams):
     """Where joints are, and what counts as one where they are rotation centres."""
 
     joints: Literal["centres", "edges"] = "centres"

@@ -15,7 +15,7 @@ MOST_TOGETHER = 6
 """Uncertain frames that are refined by one task, at most."""
 
 
-class KinematicTreeParams(Params):
+class JointParams(Params):
     """What counts as a joint."""
 
     degrees: float = Field(default=6.0, ge=0, le=180)
@@ -28,6 +28,13 @@ class KinematicTreeParams(Params):
     """A tested joint stays if its two parts as one piece lie this many times farther off the frames' surfaces than as two."""
     misfit_ratio_if_moving: float = Field(default=1.1, ge=0)
     """The same where some other joint of the body moves clearly."""
+
+
+class KinematicTreeParams(JointParams):
+    """What counts as a joint, and where joints are looked for."""
+
+    hidden_bones: bool = True
+    """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
 
 
 class KinematicTree(ArticulatedBody):

@@ -10,7 +10,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import JointParams, KinematicTree, KinematicTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.surface import Surface
@@ -56,7 +56,7 @@ def kinematic_tree(
         leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         limited_confidence(evidence.confidence),
         None if given else evidence,
-        settings=tree_settings(params),
+        settings=tree_settings(params)._replace(hidden_bones=params.hidden_bones),
         takes=take_spans(frames),
         further=[_cut(cut, alignment[frame]) for frame, cut in further_cut.items()],
     )
@@ -77,11 +77,11 @@ def _cut(further: FurtherCut, pose: Alignment) -> Cut:
     return Cut(V, label, np.array(further.rotation), np.array(further.translation), np.array(further.residual))
 
 
-def evidence_settings(params: KinematicTreeParams) -> JointEvidenceSettings:
+def evidence_settings(params: JointParams) -> JointEvidenceSettings:
     """What makes a joint evident in the frames."""
     return JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving)
 
 
-def tree_settings(params: KinematicTreeParams) -> KinematicTreeSettings:
+def tree_settings(params: JointParams) -> KinematicTreeSettings:
     """How parts become joints."""
     return KinematicTreeSettings(PruningSettings(params.degrees, params.ratio))

@@ -10,6 +10,7 @@ from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
+from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_names import joint_names
@@ -118,7 +119,7 @@ def kinematic_tree(
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
     body = MovingSurface(V, np.array(F, dtype=np.int64), x, area, takes)
     given = R.shape[1]
-    found = tree_joints(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, settings=chosen)
+    found = _with_hidden_bones(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
     agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, chosen) for cut in further], body.size)
     F, tree, label, W, R, t = body.F, found.left.part_tree.tree, found.label, found.W, found.R, found.t
     rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
@@ -134,11 +135,22 @@ def kinematic_tree(
     return made, _derivation(found, agreed, given, made, order)
 
 
+def _with_hidden_bones(
+    body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, evidence: FrameEvidence | None,
+    chosen: KinematicTreeSettings,
+) -> TreeJoints:  # fmt: skip
+    """The tree of a cut; where every vertex was followed with the bones that no cut can find."""
+    found = tree_joints(body, cut, leaves, confidence, evidence, settings=chosen)
+    if confidence is not None or not chosen.hidden_bones:
+        return found
+    return inserted_bones(body, found, chosen.noise * body.size)
+
+
 def _trajectories(
     body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
 ) -> Floats:
     """(frame, joint, xyz) the joints of another cut of the same body, but for its root; the frames need not show them."""
-    found = tree_joints(body._replace(V=cut.V), cut, leaves, confidence, None, settings=chosen)
+    found = _with_hidden_bones(body._replace(V=cut.V), cut, leaves, confidence, None, chosen)
     return found.motion.carried(found.rest[1:])
 
 
@@ -205,7 +217,8 @@ def _derivation(found: TreeJoints, agreed: JointConsensus, given: int, body: Kin
     """
     left, used, parts = found.left, found.used, len(found.rest)
     joint_of_part = np.full(given, -1)
-    joint_of_part[used[left.origin[left.part_tree.tree.order]]] = np.argsort(order)[:parts]
+    origin = left.origin[left.part_tree.tree.order]
+    joint_of_part[used[origin[origin != NO_PART]]] = np.argsort(order)[:parts][origin != NO_PART]
     length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), found.R, found.t)
     is_part, part = order < parts, np.minimum(order, parts - 1)
     return Derivation(

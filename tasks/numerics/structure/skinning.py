@@ -55,14 +55,14 @@ def skinning(
     """
     chosen = settings or SkinningSettings()
     near = candidates(label, parents)
-    H, g = _grams(V, x, R, t, label, near, tau)
+    H, g = grams(V, x, R, t, label, near, tau)
     start, ring = rings(F, len(V))
     W = np.zeros((len(V), near.shape[1]))
     W[:, 0] = 1.0
     hold = np.full(len(V), noise**2)
     for _ in range(chosen.rounds):
         around = _smoothed(W, label, near, start, ring)
-        W = _on_simplex(H, g, hold, around)
+        W = on_simplex(H, g, hold, around)
     dense = np.zeros((len(V), len(parents)))
     slots = near[label]
     for k in range(near.shape[1]):
@@ -91,8 +91,16 @@ def heaviest(W: Floats) -> tuple[Ints, Floats]:
 
 
 @compiled
-def _grams(V: Floats, x: Floats, R: Floats, t: Floats, label: Ints, near: Ints, tau: Floats) -> tuple[Floats, Floats]:
-    """Per vertex the mean over frames of (y_k − y_0)·(y_l − y_0) and (x − y_0)·(y_k − y_0), y_k as the k-th candidate goes."""
+def grams(V: Floats, x: Floats, R: Floats, t: Floats, label: Ints, near: Ints, tau: Floats) -> tuple[Floats, Floats]:
+    """Per vertex the mean over frames of (y_k − y_0)·(y_l − y_0) and (x − y_0)·(y_k − y_0), y_k as the k-th candidate goes.
+
+    V, x    : (vertex, xyz), (frame, vertex, xyz) mesh unit
+    R, t    : (frame, part, 3, 3), (frame, part, xyz) from the reference to each frame
+    label   : (vertex,) row of `near` in which its candidates stand
+    near    : (label, slot) parts, −1 where there are no more
+    tau     : (frame, vertex) weight of what was seen
+    returns : (vertex, slot, slot) · (vertex, slot) mesh unit²
+    """
     slots = near.shape[1]
     H, g = np.zeros((len(V), slots, slots)), np.zeros((len(V), slots))
     d = np.zeros((slots, 3))
@@ -148,8 +156,14 @@ def _smoothed(W: Floats, label: Ints, near: Ints, start: Ints, ring: Ints) -> Fl
 
 
 @compiled
-def _on_simplex(H: Floats, g: Floats, hold: Floats, around: Floats) -> Floats:
-    """The least of wᵀHw − 2gᵀw + hold |w − around|² over w ≥ 0, Σ w = 1: weight handed from one candidate to another."""
+def on_simplex(H: Floats, g: Floats, hold: Floats, around: Floats) -> Floats:
+    """The least of wᵀHw − 2gᵀw + hold |w − around|² over w ≥ 0, Σ w = 1: weight handed from one candidate to another.
+
+    H, g    : see `grams`
+    hold    : (vertex,) mesh unit²
+    around  : (vertex, slot) weights to begin from, not negative, summing to 1
+    returns : (vertex, slot)
+    """
     slots = H.shape[1]
     out = around.copy()
     for v in range(len(H)):

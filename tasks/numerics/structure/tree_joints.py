@@ -41,6 +41,8 @@ class KinematicTreeSettings(NamedTuple):
     Not recorded. Joints move by 0.1 % of the height at most when it is halved or doubled."""
     rigid_weight: float = 0.75
     """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
+    hidden_bones: bool = False
+    """Whether bones under skin that is nowhere rigid are looked for where every vertex was followed, see `hidden_bones`."""
     second_ends: bool = False
     """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
     root_amid_limbs: bool = False
@@ -130,9 +132,18 @@ def tree_joints(
     R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (left.parts.R, left.parts.t))
     W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * body.size)
     rest, off = _joints(V, area, label, W, left, chosen)
-    square = (left.parts.residual[:, tree.order] ** 2).mean(axis=0)
-    both = np.sqrt((square + square[np.maximum(tree.parents, 0)]) / 2)
-    return TreeJoints(left, used, label, W, R, t, rest, off, np.where(tree.parents < 0, 0.0, both))
+    both = both_residuals(left.parts.residual[:, tree.order], tree.parents)
+    return TreeJoints(left, used, label, W, R, t, rest, off, both)
+
+
+def both_residuals(residual: Floats, parents: Ints) -> Floats:
+    """(part,) root mean square of what the motions of a part and its parent leave unexplained; 0 for the root.
+
+    residual : (frame, part) mesh unit
+    parents  : (part,) −1 for the root
+    """
+    square = (residual**2).mean(axis=0)
+    return np.where(parents < 0, 0.0, np.sqrt((square + square[np.maximum(parents, 0)]) / 2))
 
 
 def _joints(

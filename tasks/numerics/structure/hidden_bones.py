@@ -1,0 +1,274 @@
+"""Bones under skin that is nowhere rigid: proposed between two parts that one joint does not join well (ours).
+
+A short neck or a collar moves no vertex by itself: every vertex near it blends it with the parts on both sides, so no cut into
+rigid parts can find it. Between two parts of the tree a bone is fitted whose motion is nowhere seen alone: by turns the weights
+of the skin and the motion of the bone, each of which is in closed form while the other is known. It is one where one joint
+left the two parts drifting, and where it turns about two points, one on either side, that lie well apart.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
+from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
+from kinetree.tasks.numerics.structure.rotation_centres import Joints, RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.skinning import grams, on_simplex
+
+
+class HiddenBonesSettings(NamedTuple):
+    """What makes a bone; lengths are shares of the root of the area where nothing else is said, areas shares of it."""
+
+    drift: float = 0.0015
+    """Drift of the one joint from which on two are tried."""
+    less_drift: float = 0.5
+    """Drift of both new joints, share of that of the one, at which a smaller one, down to half of `drift`, does too."""
+    more_drift: float = 2.5
+    """Drift of either new joint in drifts of the one, at most."""
+    steady: float = 0.006
+    """Drift of either new joint, at most."""
+    apart: float = 0.9
+    """Distance between the new joints in radii of the border, at least: a ring of flesh turns about one point."""
+    area: float = 0.006
+    """Skin that follows the bone, its weights summed, at least."""
+    degrees: float = 12.0
+    """Range by which the bone turns against each side, at least."""
+    ratio: float = 2.0
+    """Displacement of one new joint that turning about the other gives, in drifts of the latter, at least."""
+    reach: float = 2.0
+    """Distance from the joint, in radii of its border, within which skin is looked at."""
+    narrow: float = 0.04
+    """Radius of a border below which skin is looked at as about one of this radius."""
+    skin: float = 0.5
+    """Weight that the two parts have together at skin that is looked at, at least."""
+    least_vertices: int = 20
+    """Vertices of that skin, at least."""
+    most_vertices: int = 300
+    """Vertices that the bone is fitted to, at most; for time."""
+    others: int = 2
+    """Further parts that the skin may follow, at most."""
+    follower: float = 0.8
+    """Share of the largest weight of the bone from which on a vertex counts as its own, if not already as most its own."""
+    rounds: int = 25
+    """Rounds of weights and motion."""
+    noise: float = 1e-4
+    """Error of a vertex below which its motion says nothing of its weights."""
+    prior: RotationCentresSettings = RotationCentresSettings(spread=1.0, frames_alike=3.0, far=2.0)
+    """How firmly the new joints are held amid the skin that blends: a collar turns about a point far inside the body."""
+
+
+class MovingSkin(NamedTuple):
+    """Skin in motion, and the parts that it follows.
+
+    V, x : (vertex, xyz), (frame, vertex, xyz) mesh unit
+    area : (vertex,) mesh unit²
+    W    : (vertex, part) skinning weights
+    R, t : (frame, part, 3, 3) · (frame, part, xyz) from the reference
+    """
+
+    V: Floats
+    x: Floats
+    area: Floats
+    W: Floats
+    R: Floats
+    t: Floats
+
+
+class Border(NamedTuple):
+    """The joint between two parts, and where their skin meets.
+
+    part, above : the two parts
+    joint       : (xyz,) in the reference, mesh unit
+    radius      : of the border, mesh unit
+    drift       : of the joint, mesh unit
+    """
+
+    part: int
+    above: int
+    joint: Floats
+    radius: float
+    drift: float
+
+
+class HiddenBone(NamedTuple):
+    """A bone between two parts, as it moves, and its two joints.
+
+    R, t     : (frame, 3, 3) · (frame, xyz) from the reference
+    joint    : (side, xyz) about which it turns against the part above and the part below, in the reference, mesh unit
+    drift    : (side,) of these joints, mesh unit
+    degrees  : (side,) range by which it turns against either side
+    skin     : (follower,) vertices that follow it most, or nearly as much as any does
+    area     : of the skin, each vertex by its weight, mesh unit²
+    residual : (frame,) root mean square of what is left unexplained where the skin follows it, mesh unit
+    """
+
+    R: Floats
+    t: Floats
+    joint: Floats
+    drift: Floats
+    degrees: Floats
+    skin: Ints
+    area: float
+    residual: Floats
+
+    @property
+    def ratio(self) -> Floats:
+        """(side,) displacement of the other joint that turning about each gives, in drifts of this one."""
+        length = np.linalg.norm(self.joint[1] - self.joint[0])
+        moved: Floats = 2.0 * length * np.sin(np.radians(self.degrees) / 2.0)
+        return moved / np.maximum(self.drift, 1e-6 * length + np.finfo(float).tiny)
+
+
+def hidden_bone(skin: MovingSkin, between: Border, settings: HiddenBonesSettings | None = None) -> HiddenBone | None:
+    """The bone between two parts, if there is one; None where one joint does.
+
+    skin    : every vertex of it was followed
+    between : the parts and the joint that they have without it
+    """
+    chosen, size = settings or HiddenBonesSettings(), float(np.sqrt(skin.area.sum()))
+    if between.drift < 0.5 * chosen.drift * size:
+        return None
+    near = _skin_around(skin, between, chosen.narrow * size, chosen)
+    if len(near) < chosen.least_vertices:
+        return None
+    bone = _fitted(skin, between, near, size, chosen)
+    return bone if is_bone(bone, between, size, chosen) else None
+
+
+def is_bone(bone: HiddenBone, between: Border, size: float, settings: HiddenBonesSettings) -> bool:
+    """Whether two joints are needed, and the bone between them is one.
+
+    size : root of the body's area, mesh unit
+    """
+    chosen, worst = settings, float(bone.drift.max())
+    needed = between.drift > chosen.drift * size or worst < chosen.less_drift * between.drift
+    length = float(np.linalg.norm(bone.joint[1] - bone.joint[0]))
+    return bool(
+        needed
+        and worst < min(chosen.steady * size, chosen.more_drift * between.drift)
+        and length > chosen.apart * between.radius
+        and bone.area > chosen.area * size**2
+        and bone.degrees.min() > chosen.degrees
+        and bone.ratio.min() > chosen.ratio
+    )
+
+
+def _skin_around(skin: MovingSkin, between: Border, narrow: float, chosen: HiddenBonesSettings) -> Ints:
+    """(near,) vertices near the joint that follow mostly the two parts."""
+    away = np.linalg.norm(skin.V - between.joint, axis=1)
+    both = skin.W[:, [between.above, between.part]].sum(axis=1)
+    return np.flatnonzero((away < chosen.reach * max(between.radius, narrow)) & (both > chosen.skin))
+
+
+def _fitted(skin: MovingSkin, between: Border, near: Ints, size: float, chosen: HiddenBonesSettings) -> HiddenBone:
+    """The bone that explains the skin best, from two starts: half-way between the parts, and where they explain least."""
+    others = [p for p in np.argsort(-skin.W[near].sum(axis=0), kind="stable") if p not in (between.above, between.part)]
+    used = [p for p in others[: chosen.others] if skin.W[near, p].any()]
+    parts, hold = np.array([between.above, between.part, *used]), (chosen.noise * size) ** 2
+    sample = near[np.linspace(0, len(near) - 1, min(chosen.most_vertices, len(near))).astype(np.int64)]
+    some = _SkinFit.of(skin, sample, parts, hold)
+    without, _ = some.weights(some.around)
+    starts = [_half_way(skin, between), some.least_explained(without, 0.4 * between.radius)]
+    R, t, _, _ = min((some.alternated(without, *start, chosen.rounds) for start in starts), key=lambda f: f[3].mean())
+    whole = _SkinFit.of(skin, near, parts, hold)
+    W, square = whole.weights(np.pad(whole.around, ((0, 0), (0, 1))), (R, t))
+    own = W[:, -1]
+    mass = whole.area * own
+    residual = np.sqrt(square @ mass / max(mass.sum(), 1e-300))
+    joints = _joints(skin, between, whole, W, (R, t), residual, chosen)
+    span = np.array([[0, len(R)]])
+    degrees = np.array([widest_turning_range(skin.R[:, p].transpose(0, 2, 1) @ R, span) for p in parts[:2]])
+    follows = (own > 0.0) & (own >= np.minimum(W[:, :-1].max(axis=1), chosen.follower * own.max()))
+    return HiddenBone(R, t, joints.rest, joints.drift, degrees, near[follows], float(mass.sum()), residual)
+
+
+def _joints(
+    skin: MovingSkin, between: Border, fit: "_SkinFit", W: Floats, bone: tuple[Floats, Floats], residual: Floats,
+    chosen: HiddenBonesSettings,
+) -> Joints:  # fmt: skip
+    """About which points the bone turns against either part: held amid the skin that follows both, by how well it fits."""
+    sides = [between.above, between.part]
+    R = np.concatenate([skin.R[:, sides], bone[0][:, None]], axis=1)
+    t = np.concatenate([skin.t[:, sides], bone[1][:, None]], axis=1)
+    both = fit.area[:, None] * (W[:, :2] * W[:, -1:]) ** 2 + 1e-12 * fit.area[:, None]
+    centre = both.T @ fit.V / both.sum(axis=0)[:, None]
+    level = np.full((len(R), 3), (residual**4).mean() ** 0.25)  # what few frames show counts
+    return rotation_centres(R, t, np.array([[0, 2], [1, 2]]), centre, np.full(2, between.radius), level, None, chosen.prior)
+
+
+def _half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:
+    """(frame, 3, 3) · (frame, xyz) the motion half-way between the two parts, about their joint."""
+    a, b = between.above, between.part
+    turn = Rotation.from_matrix(skin.R[:, a].transpose(0, 2, 1) @ skin.R[:, b]).as_rotvec()
+    R = skin.R[:, a] @ Rotation.from_rotvec(0.5 * turn).as_matrix()
+    place = 0.5 * ((skin.R[:, a] + skin.R[:, b]) @ between.joint + skin.t[:, a] + skin.t[:, b])
+    return R, place - R @ between.joint
+
+
+class _SkinFit(NamedTuple):
+    """Skin, and where the parts that are known carry it.
+
+    V, x   : (sample, xyz), (frame, sample, xyz)
+    area   : (sample,)
+    R, t   : (frame, part, 3, 3) · (frame, part, xyz) of the known parts
+    Y      : (part, frame, sample, xyz) the skin as each of them carries it
+    around : (sample, part) weights to begin from
+    hold   : mesh unit², how firmly weights stay
+    """
+
+    V: Floats
+    x: Floats
+    area: Floats
+    R: Floats
+    t: Floats
+    Y: Floats
+    around: Floats
+    hold: float
+
+    @classmethod
+    def of(cls, skin: MovingSkin, near: Ints, parts: Ints, hold: float) -> "_SkinFit":
+        V, R, t = skin.V[near], np.ascontiguousarray(skin.R[:, parts]), np.ascontiguousarray(skin.t[:, parts])
+        Y = np.einsum("tpxy,ny->ptnx", R, V) + t.transpose(1, 0, 2)[:, :, None]
+        around = skin.W[near][:, parts]
+        around = around / around.sum(axis=1, keepdims=True)
+        return cls(V, np.ascontiguousarray(skin.x[:, near]), skin.area[near], R, t, Y, around, hold)
+
+    def weights(self, around: Floats, bone: tuple[Floats, Floats] | None = None) -> tuple[Floats, Floats]:
+        """(sample, part) best weights, those of the bone last if there is one · (frame, sample) squared distance left."""
+        R, t, Y = self.R, self.t, self.Y
+        if bone is not None:
+            R = np.concatenate([R, bone[0][:, None]], axis=1)
+            t = np.concatenate([t, bone[1][:, None]], axis=1)
+            Y = np.concatenate([Y, (np.einsum("txy,ny->tnx", bone[0], self.V) + bone[1][:, None])[None]])
+        near = np.arange(R.shape[1])[None]
+        H, g = grams(self.V, self.x, R, t, np.zeros(len(self.V), np.int64), near, np.ones(self.x.shape[:2]))
+        W = on_simplex(H, g, np.full(len(self.V), self.hold), around)
+        return W, ((np.einsum("nk,ktnx->tnx", W, Y) - self.x) ** 2).sum(axis=2)
+
+    def least_explained(self, W: Floats, width: float) -> tuple[Floats, Floats]:
+        """The rigid motion of the skin around the vertex that the known parts explain least."""
+        square = ((np.einsum("nk,ktnx->tnx", W, self.Y) - self.x) ** 2).sum(axis=(0, 2))
+        away = np.linalg.norm(self.V - self.V[square.argmax()], axis=1)
+        weight = self.area * np.exp(-((away / width) ** 2)) + 1e-15
+        return rigid_motion(np.broadcast_to(self.V, self.x.shape), self.x, np.tile(weight, (len(self.x), 1)))
+
+    def alternated(self, without: Floats, R: Floats, t: Floats, rounds: int) -> tuple[Floats, Floats, Floats, Floats]:
+        """Motion of the bone · weights · squared distance left, after rounds of weights and motion.
+
+        without : (sample, part) weights without the bone, of which it gets half at first
+        """
+        W = np.concatenate([0.5 * without, np.full((len(without), 1), 0.5)], axis=1)
+        for _ in range(rounds):
+            W, _ = self.weights(W, (R, t))
+            own = W[:, -1]
+            if self.area @ own**2 < 1e-6 * self.area.sum():
+                break
+            left = self.x - np.einsum("nk,ktnx->tnx", W[:, :-1], self.Y)
+            carried = np.einsum("txy,ny->tnx", R, self.V) + t[:, None]
+            wanted = np.where(own[:, None] > 1e-3, left / np.maximum(own, 1e-3)[:, None], carried)
+            mass = np.tile(self.area * own**2 + 1e-12 * self.area.sum(), (len(self.x), 1))
+            R, t = rigid_motion(np.broadcast_to(self.V, self.x.shape), wanted, mass)
+        W, square = self.weights(W, (R, t))
+        return R, t, W, square

@@ -1,0 +1,71 @@
+"""Hidden bones become parts of the tree."""
+
+import numpy as np
+from articulated import Known, chain, neck, neck_ends, swings
+from shipped import TREE
+
+from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+
+
+def with_bones(body: Known) -> tuple[TreeJoints, TreeJoints]:
+    found = neck_ends(body)
+    return found, inserted_bones(MovingSurface(body.V, body.F, body.x, body.area), found, 0.002)
+
+
+def whole(body: Known, hidden_bones: bool = True, confidence: np.ndarray | None = None) -> tuple[KinematicTree, Derivation]:
+    ends = [0, body.R.shape[1] - 1]
+    label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    known = body.V, body.F, body.x, body.area, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends]
+    return kinematic_tree(*known, tips, confidence, settings=TREE._replace(hidden_bones=hidden_bones))
+
+
+def test_the_bone_stands_between_its_two_parts() -> None:
+    before, after = with_bones(neck())
+    tree = after.left.part_tree.tree
+    assert tree.parents.tolist() == [-1, 0, 1]
+    assert tree.order.tolist() == [int(before.left.part_tree.tree.order[0]), 2, int(before.left.part_tree.tree.order[1])]
+    assert after.left.origin.tolist() == [*before.left.origin.tolist(), NO_PART]
+    assert after.left.part_tree.borders.pair[tree.border[1:]].tolist() == [[tree.order[0], 2], [tree.order[2], 2]]
+    np.testing.assert_allclose(after.rest[1:], neck().joints[1:], atol=0.03)
+
+
+def test_parts_are_the_same_by_number_and_by_place() -> None:
+    _, after = with_bones(neck())
+    order = after.left.part_tree.tree.order
+    np.testing.assert_array_equal(after.left.parts.R[:, order], after.R)
+    np.testing.assert_array_equal(after.left.parts.t[:, order], after.t)
+    np.testing.assert_array_equal(order[after.label], after.left.parts.label)
+    assert set(after.label) == {0, 1, 2}
+
+
+def test_weights_of_the_skin_are_shared_with_the_bone() -> None:
+    body = neck()
+    _, after = with_bones(body)
+    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
+    assert np.abs(after.W - body.W).mean() < 0.02
+
+
+def test_a_tree_without_hidden_bones_is_given_back() -> None:
+    body = chain((0.0,), swings(24, 2, seed=3), blend=1.0)
+    before, after = with_bones(body)
+    assert after is before
+
+
+def test_the_finished_body_has_both_joints_where_they_are_in_every_frame() -> None:
+    body = neck()
+    found, derived = whole(body)
+    assert found.kinds.count("joint") == 2
+    turning = [j for j, kind in enumerate(found.kinds) if kind == "joint"]
+    true = np.einsum("tpxy,py->tpx", body.R[:, [0, 1]], body.joints[1:]) + body.t[:, [0, 1]]
+    apart = np.linalg.norm(found.positions[:, turning][:, :, None] - true[:, None], axis=3).mean(axis=0).min(axis=1)
+    assert apart.max() < 0.05
+    assert sorted(derived.joint_of_part.tolist()) == [0, 2]
+
+
+def test_no_bone_is_looked_for_where_not_every_vertex_was_followed_or_none_is_wanted() -> None:
+    body = neck()
+    for found, _ in (whole(body, False), whole(body, confidence=np.full(body.x.shape[:2], 0.99))):
+        assert found.kinds.count("joint") == 1
