@@ -12,6 +12,8 @@ NAMED = 6
 """Most joints that a sentence names one by one."""
 SHORTLY_NAMED = 3
 """The same in the headline."""
+SHORTLY_SPANNED = 2
+"""Most stretches of frames that the headline names one by one; of more it counts the frames."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -29,6 +31,8 @@ def headline(verdict: Verdict) -> str:
 def subject(found: Finding, verdict: Verdict) -> str:
     """What a finding is about, in a few words."""
     where = _frames(found, verdict)
+    if len(_spans(found.frames, verdict.frames)) > SHORTLY_SPANNED:
+        where = f"{len(found.frames)} of {len(verdict.frames)} frames"
     few = len(found.joints) <= SHORTLY_NAMED
     joints = _joints(found, verdict) if few else f"{len(found.joints)} joints"
     words: dict[str, str] = {
@@ -96,6 +100,14 @@ def runs(frames: Sequence[int], among: Sequence[int]) -> str:
     frames : source frame numbers, ascending
     among  : all frames of the sequence, by which frames are neighbours
     """
+    spans = _spans(frames, among)
+    shown = ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in spans[:NAMED])
+    more = f" and {len(spans) - NAMED} more intervals" if len(spans) > NAMED else ""
+    return f"frame{'s' * (len(frames) > 1)} {shown}{more}"
+
+
+def _spans(frames: Sequence[int], among: Sequence[int]) -> list[list[int]]:
+    """First and last frame of every stretch of neighbouring frames."""
     place = {frame: t for t, frame in enumerate(among)}
     spans: list[list[int]] = []
     for frame in frames:
@@ -103,9 +115,7 @@ def runs(frames: Sequence[int], among: Sequence[int]) -> str:
             spans[-1][1] = frame
         else:
             spans.append([frame, frame])
-    shown = ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in spans[:NAMED])
-    more = f" and {len(spans) - NAMED} more intervals" if len(spans) > NAMED else ""
-    return f"frame{'s' * (len(frames) > 1)} {shown}{more}"
+    return spans
 
 
 @remarks_of(Verdict)

@@ -55,6 +55,13 @@ def test_one_spoilt_frame_is_found_with_its_part_and_named() -> None:
     assert "wrong in frame 7" in reason
 
 
+def test_headline_counts_frames_that_lie_apart_and_the_reason_names_them() -> None:
+    headline, *reasons = views.remarks(of(failed=(1, 4, 9)))
+    assert headline == "good except for 3 of 12 frames"
+    assert reasons[0].startswith("alignment failed in frames 1, 4, 9: ")
+    assert views.remarks(of(failed=(1, 3)))[0] == "good except for frames 1, 3"
+
+
 def test_a_failed_alignment_is_found() -> None:
     assert views.remarks(of(failed=(3, 4))) == (
         "good except for frames 3–4",
