@@ -1,6 +1,7 @@
 """Where the frames are: meshes, silhouettes or volumes, a file each or in one file that holds all, or a synthetic body."""
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from kinetree.errors import SourceError
 from kinetree.pipeline.identity.key import digest
@@ -38,17 +39,22 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
 def _several(params: SourceParams, files: Files) -> dict[int, Source]:
     """The frames of several takes, numbered one take after the other; bad frames are looked for in each take by itself.
 
-    raises : SourceError where a take shows another body
+    raises : SourceError where a take shows another body, or the same frames as one before it
     """
     if params.input or params.synth is not None:
         raise SourceError("source.takes excludes source.input and source.synth; name each take's input in source.takes")
     names = [take.name for take in params.takes]
-    if len(set(names)) < len(names) or not all(take.input for take in params.takes):
-        raise SourceError(f"source.takes: {', '.join(names)}: each take needs a name of its own and an input")
+    if len({name.casefold() for name in names}) < len(names) or not all(take.input for take in params.takes):
+        raise SourceError(
+            f"source.takes: {', '.join(names)}: each take needs an input and a name of its own, other than in its capitals"
+        )
     found: dict[int, Source] = {}
     measured: dict[str, list[FrameMeasures]] = {}
+    known: dict[tuple[Path, str], str] = {}
     for k, take in enumerate(params.takes):
         own = _usable(_chosen(frames_at(take.input, files, take.clip), params.frames, take.input), params, files)
+        if (other := known.setdefault((Path(take.input).resolve(), take.clip), take.name)) != take.name:
+            raise SourceError(f"source.takes: {other} and {take.name} are the same ({take.input}); leave one of them out")
         measured[take.name] = [m for m in measures_of_frames(own, files).values() if not isinstance(m, str)]
         for t, frame in own.items():
             dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)

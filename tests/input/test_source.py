@@ -382,9 +382,20 @@ def test_takes_are_numbered_one_after_the_other(files, scans, tmp_path):
     assert [found[TAKE + t].content for t in own] == [own[t].content for t in own]
 
 
+def test_the_same_input_as_two_takes_is_refused(files, scans, tmp_path):
+    (tmp_path / "link").symlink_to(scans)
+    for same in (scans, tmp_path / "link", scans / ".." / scans.name):
+        takes = [{"name": "a", "input": str(scans)}, {"name": "b", "input": str(same)}]
+        with pytest.raises(SourceError, match=rf"source\.takes: a and b are the same \({same}\); leave one"):
+            source(SourceParams(takes=takes), files)
+
+
 def test_takes_without_names_of_their_own_and_beside_an_input_are_refused(files, scans):
     one = {"name": "a", "input": str(scans)}
-    with pytest.raises(SourceError, match="a, a: each take needs a name of its own and an input"):
+    with pytest.raises(SourceError, match="a, a: each take needs an input and a name of its own"):
         source(SourceParams(takes=[one, one]), files)
+    other = {"name": one["name"].upper(), "input": str(scans)}
+    with pytest.raises(SourceError, match="a name of its own, other than in its capitals"):
+        source(SourceParams(takes=[one, other]), files)
     with pytest.raises(SourceError, match="takes excludes source.input"):
         source(SourceParams(takes=[one], input=str(scans)), files)
