@@ -1,6 +1,6 @@
 """`kinetree convert`: a file that only Blender opens as a sequence that a run reads."""
 
-import json
+import math
 import os
 import shutil
 import signal
@@ -14,11 +14,14 @@ from typing import Annotated, Any
 import typer
 
 from kinetree.errors import ConfigError, InputError
+from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.command_line.printable import printable
 from kinetree.tasks.commands.blender_frames import SAMPLED, SCRIPT, SUFFIXES
 
 MOST_FRAMES = 100_000
 DEFAULT_FPS = 24.0
+MOST_TOLD = 2**24
+"""Bytes of what the script says of the frames: of as many as there may be, some two million."""
 SAFELY = ("--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3")
 """No settings, add-ons or start-up files of the user's, and no scripts or drivers of the file; the module bpy begins so."""
 
@@ -52,12 +55,13 @@ def convert(
     if fps is not None and file.suffix.lower() not in SAMPLED:
         raise ConfigError(f"--fps {fps:g}: {file.suffix} has frames of its own; only {' '.join(SAMPLED)} is sampled")
     if not file.is_file():
-        raise InputError(f"{file}: there is no such file")
+        raise InputError(f"{file}: {'not a file' if file.exists() else 'there is no such file'}")
     target = output or file.with_suffix(".npz")
-    if target.suffix != ".npz" or target.exists():
-        raise ConfigError(
-            f"{target}: {'already there' if target.exists() else 'write a name that ends in .npz'}; name a new file"
-        )
+    if target.suffix != ".npz":
+        raise ConfigError(f"{target}: write a name that ends in .npz; name a new file")
+    _refuse_taken(target)
+    if not target.parent.is_dir():
+        raise ConfigError(f"{target}: there is no folder {target.parent}; make it, or name another file")
     starter = _starter(blender, file.suffix)
     with tempfile.TemporaryDirectory() as folder:
         _run(starter, [str(file.absolute()), folder, str(MOST_FRAMES), str(fps or DEFAULT_FPS)], Path(folder), seconds)
@@ -67,6 +71,12 @@ def convert(
     typer.echo(
         printable(f"{target}: {frames} frames; kinetree run --input {target} --output {target.with_suffix('')}-kinetree")
     )
+
+
+def _refuse_taken(target: Path) -> None:
+    """Nothing that is there is written over, a link to nothing neither."""
+    if target.exists() or target.is_symlink():
+        raise ConfigError(f"{target}: already there; name a new file")
 
 
 def _starter(blender: str | None, suffix: str) -> tuple[str, ...]:
@@ -112,22 +122,27 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
     """Writes what Blender left as .npz, all or nothing, and returns the number of frames."""
     import numpy as np
 
-    told = json.loads((folder / "told.json").read_text())
-    counts = np.array(told["counts"], dtype=np.int64).reshape(-1, 2)
+    told = small_json(small_text(folder / "told.json", InputError, MOST_TOLD), f"{file}: what Blender says", InputError)
+    counts, fps, scale = np.array(told["counts"], dtype=np.int64).reshape(-1, 2), float(told["fps"]), float(told["scale"])
+    if not (0 < fps < math.inf and 0 < scale < math.inf):
+        raise InputError(f"{file}: its scene has {fps:g} frames a second and a unit of {scale:g} m; set both in Blender")
     if not len(counts) or (counts == 0).any():
         raise InputError(
             f"{file}: no surface in {'any frame' if not counts.any() else 'some frames'}; a mesh that is rendered is needed"
         )
     if len(counts) == 1:
         raise InputError(f"{file}: a single frame; kinematics are seen in motion, and nothing in the file moves")
-    V = np.fromfile(folder / "vertices", np.float32).reshape(-1, 3).astype(np.float64) * told["scale"]
+    V = np.fromfile(folder / "vertices", np.float32).reshape(-1, 3).astype(np.float64) * scale
     F = np.fromfile(folder / "faces", np.int32).reshape(-1, 3)
     ends = np.vstack([[0, 0], np.cumsum(counts, axis=0)])
+    if tuple(ends[-1]) != (len(V), len(F)):
+        raise InputError(f"{file}: Blender left {len(V)} of {ends[-1, 0]} vertices; is the disk of {folder.parent} full?")
     arrays: dict[str, Any] = {"vertices": V, "faces": F, "vertex_offsets": ends[:, 0], "face_offsets": ends[:, 1]}
-    arrays |= {"fps": told["fps"], "unit": "m"}
+    arrays |= {"fps": fps, "unit": "m"}
     beside = target.with_name(f".{target.stem}.{os.getpid()}.npz")
     try:
         np.savez_compressed(beside, **arrays)
+        _refuse_taken(target)
         beside.rename(target)
     except OSError as error:
         raise ConfigError(f"{target}: cannot be written: {error.strerror}; name another file") from None

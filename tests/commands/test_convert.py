@@ -1,6 +1,7 @@
 """Files that Blender opens become sequences that a run reads; Blender is told to run nothing of them, and is ended in time."""
 
 import importlib.util
+import shutil
 import stat
 import subprocess
 import time
@@ -195,3 +196,42 @@ def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):
         convert(tmp_path / "run.fbx")
     with pytest.raises(ConfigError, match="ends in"):
         convert(file, tmp_path / "walk.zip")
+
+
+def leaving(folder, told, vertices=18):
+    """A stand-in for Blender that leaves two frames of a triangle."""
+    numbers = r'while [ "$1" != -- ]; do shift; done; cd "$3"; head -c 24 /dev/zero > faces'
+    return program(folder, f"{numbers}; head -c {4 * vertices} /dev/zero > vertices; printf '%s' '{told}' > told.json")
+
+
+def test_what_is_left_by_blender_is_checked(file, tmp_path):
+    counts = '"counts": [[3, 1], [3, 1]]'
+    for told, vertices, words in (
+        ("nonsense", 18, "what Blender says: not JSON"),
+        (f'{{{counts}, "scale": NaN, "fps": 24}}', 18, "a unit of nan m; set both in Blender"),
+        (f'{{{counts}, "scale": 1, "fps": 0}}', 18, "its scene has 0 frames a second"),
+        (f'{{{counts}, "scale": 1, "fps": 24}}', 15, "left 5 of 6 vertices"),
+    ):
+        with pytest.raises(InputError, match=words):
+            convert(file, None, leaving(tmp_path, told, vertices))
+    convert(file, None, leaving(tmp_path, f'{{{counts}, "scale": 1, "fps": 24}}'))
+    assert len(read_npz(file.with_suffix(".npz"))) == 2
+
+
+def test_nothing_is_written_over_or_begun_in_vain(file, tmp_path):
+    never = program(tmp_path, f"touch {tmp_path}/began")
+    (tmp_path / "link.npz").symlink_to("nowhere")
+    for target, words in (
+        (tmp_path / "link.npz", "already there"),
+        (tmp_path / "no" / "x.npz", "there is no folder .*/no; make"),
+    ):
+        with pytest.raises(ConfigError, match=words):
+            convert(file, tmp_path / target, never)
+    with pytest.raises(InputError, match="not a file"):
+        convert(Path(shutil.copytree(tmp_path, tmp_path.with_name("folder.fbx"), symlinks=True)), tmp_path / "x.npz", never)
+    assert not (tmp_path / "began").exists()
+    meanwhile = leaving(tmp_path, '{"counts": [[3, 1], [3, 1]], "scale": 1, "fps": 24}')
+    Path(meanwhile).write_text(Path(meanwhile).read_text() + f"\necho mine > {file.with_suffix('.npz')}\n")
+    with pytest.raises(ConfigError, match="already there"):
+        convert(file, None, meanwhile)
+    assert file.with_suffix(".npz").read_text() == "mine\n"
