@@ -11,13 +11,23 @@ from kinetree.errors import ConfigError
 from kinetree.pipeline.application import current
 from kinetree.pipeline.command_line.options import (
     AsJson,
+    Executor,
+    Follow,
+    FollowIdle,
     Force,
+    LogJson,
     MadeWithOption,
     Output,
+    PerformanceReport,
+    Quiet,
+    Scheduler,
+    SchedulerFile,
     Set,
     StoreAt,
     Target,
     Until,
+    WaitWorkers,
+    Workers,
     err,
     out,
     pipeline_of,
@@ -45,42 +55,16 @@ def run(
     until: Until = None,
     force: Force = None,
     made_with: MadeWithOption = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", help="How many nodes to compute at the same time; default: one per core.")
-    ] = None,
-    executor: Annotated[str | None, typer.Option("--executor", help="sync, threads or processes.")] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a dask scheduler that runs at this address."),
-    ] = None,
-    scheduler_file: Annotated[
-        Path | None,
-        typer.Option("--scheduler-file", metavar="FILE", help="The same, for a scheduler that wrote its address to this file."),
-    ] = None,
-    wait_workers: Annotated[
-        str | None,
-        typer.Option(
-            "--wait-workers",
-            metavar="N[,SECONDS]",
-            help="Begin when N workers are there; give up after SECONDS without them, or without any (300).",
-        ),
-    ] = None,
-    performance_report: Annotated[
-        Path | None,
-        typer.Option("--performance-report", metavar="FILE", help="Write dask's report on the run, a page of HTML."),
-    ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")] = False,
-    log_json: Annotated[
-        Path | None,
-        typer.Option("--log-json", metavar="FILE", help="Append every event of the run to this file, one JSON a line."),
-    ] = None,
-    follow: Annotated[
-        bool, typer.Option("--follow", help="Go on as the input grows: compute each file as soon as it is complete.")
-    ] = False,
-    follow_idle: Annotated[
-        float | None,
-        typer.Option("--follow-idle", min=0, metavar="SECONDS", help="Follow until nothing new came for so long."),
-    ] = None,
+    workers: Workers = None,
+    executor: Executor = None,
+    scheduler: Scheduler = None,
+    scheduler_file: SchedulerFile = None,
+    wait_workers: WaitWorkers = None,
+    performance_report: PerformanceReport = None,
+    quiet: Quiet = False,
+    log_json: LogJson = None,
+    follow: Follow = False,
+    follow_idle: FollowIdle = None,
     as_json: AsJson = False,
 ) -> None:
     """Run the steps that are out of date and say where the results are.

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from kinetree.errors import ConfigError, KinetreeError
 from kinetree.pipeline.application import current
-from kinetree.pipeline.command_line.options import AsJson, Set, err, out, print_json
+from kinetree.pipeline.command_line.options import AsJson, Executor, Quiet, Scheduler, Set, Workers, err, out, print_json
 from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
@@ -52,14 +52,10 @@ def dataset(
         float | None, typer.Option("--max-hours", min=0, help="Send nothing more after this time; the next run goes on.")
     ] = None,
     sets: Set = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", help="How many nodes to compute at the same time; default: one per core.")
-    ] = None,
-    executor: Annotated[str | None, typer.Option("--executor", help="sync, threads or processes.")] = None,
-    scheduler: Annotated[
-        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a dask scheduler at this address.")
-    ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")] = False,
+    workers: Workers = None,
+    executor: Executor = None,
+    scheduler: Scheduler = None,
+    quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
     """Run, plan or look at many sequences with one configuration.

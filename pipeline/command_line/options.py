@@ -44,6 +44,42 @@ MadeWithOption = Annotated[
         help="Count results computed with this library version as out of date, e.g. 'scipy<1.17'; may be repeated.",
     ),
 ]
+Workers = Annotated[
+    int | None, typer.Option("--workers", help="How many nodes to compute at the same time; default: one per core.")
+]
+Executor = Annotated[str | None, typer.Option("--executor", help="sync, threads or processes.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a dask scheduler that runs at this address."),
+]
+SchedulerFile = Annotated[
+    Path | None,
+    typer.Option("--scheduler-file", metavar="FILE", help="The same, for a scheduler that wrote its address to this file."),
+]
+WaitWorkers = Annotated[
+    str | None,
+    typer.Option(
+        "--wait-workers",
+        metavar="N[,SECONDS]",
+        help="Begin when N workers are there; give up after SECONDS without them, or without any (300).",
+    ),
+]
+PerformanceReport = Annotated[
+    Path | None,
+    typer.Option("--performance-report", metavar="FILE", help="Write dask's report on the run, a page of HTML."),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")]
+LogJson = Annotated[
+    Path | None,
+    typer.Option("--log-json", metavar="FILE", help="Append every event of the run to this file, one JSON a line."),
+]
+Follow = Annotated[
+    bool, typer.Option("--follow", help="Go on as the input grows: compute each file as soon as it is complete.")
+]
+FollowIdle = Annotated[
+    float | None,
+    typer.Option("--follow-idle", min=0, metavar="SECONDS", help="Follow until nothing new came for so long."),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
 err = Console(stderr=True, soft_wrap=True, highlight=False)

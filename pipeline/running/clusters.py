@@ -19,6 +19,7 @@ from distributed import Client, KilledWorker, LocalCluster, Security, WorkerPlug
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.running.execute import Result, execute
+from kinetree.pipeline.running.following import MEMORY, begun_topic
 from kinetree.pipeline.running.living_workers import FOLLOW_SECONDS, LivingWorkers
 from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.settings.config import Compute
@@ -31,8 +32,6 @@ REPLACE_SECONDS = 30.0
 """Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
 _FILES = ("_file", "_cert", "_key")
 """How the arguments of distributed.Security end that name files."""
-MEMORY = "memory"
-"""The resource of dask that says how many bytes a worker has for nodes."""
 
 
 @contextlib.contextmanager
@@ -192,46 +191,6 @@ def cluster_of(compute: Compute) -> Any:
         raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
 
 
-@contextlib.contextmanager
-def followed(client: Client, compute: Compute, *, is_ours: bool = False) -> Iterator[LivingWorkers]:
-    """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not.
-
-    is_ours : whether they are started with the memory that the configuration names
-    """
-    wanted, seconds = compute.wanted_workers
-    workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0)
-    client.subscribe_topic(_topic(client), workers.hear_begun)
-    following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
-    try:
-        until = time.monotonic() + seconds
-        while workers.count < wanted or not workers.is_known:
-            if time.monotonic() > until and workers.is_known:
-                raise ClusterError(
-                    f"--wait-workers {wanted}: {workers.count} workers are there after {seconds:g} s; start more, or wait"
-                    " longer (--wait-workers N,SECONDS)"
-                )
-            if not workers.is_known:
-                workers.check()
-            time.sleep(0.02)
-        yield workers
-    finally:
-        following.cancel()
-
-
-async def _follow(client: Client, workers: LivingWorkers) -> None:
-    memory: dict[str, int] = {}
-    known: set[str] = set()
-    while True:
-        with contextlib.suppress(OSError, TimeoutError):  # a scheduler that does not answer is the client's to notice
-            threads = await client.scheduler.ncores()
-            if set(threads) != known:  # all that is known of many workers is much to send four times a second
-                told = (await client.scheduler.identity(n_workers=-1))["workers"]
-                memory = {a: int(w["resources"][MEMORY]) for a, w in told.items() if MEMORY in w["resources"]}
-                known = set(threads)
-            workers.hear(threads, memory)
-        await asyncio.sleep(FOLLOW_SECONDS)
-
-
 def dashboard(client: Client) -> str:
     """Address of the dashboard; empty where its scheduler has none."""
     return str(client.dashboard_link or "") if find_spec("bokeh") is not None else ""
@@ -239,7 +198,7 @@ def dashboard(client: Client) -> str:
 
 def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work: tuple[Any, ...]) -> "Remote":
     """Sends a parcel; raises ClusterError where the client has lost its scheduler for good."""
-    topic = "" if demand.seconds is None else _topic(client)
+    topic = "" if demand.seconds is None else begun_topic(client)
     memory = workers.ask(key, demand.memory)
     options: dict[str, Any] = {"resources": {MEMORY: memory}} if memory else {}
     try:
@@ -256,10 +215,6 @@ def computed(topic: str, *work: Any) -> list[Result]:
         told = {"key": worker.get_current_task(), "worker": worker.address}
         asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=told), worker.loop.asyncio_loop).result()
     return execute(*work)
-
-
-def _topic(client: Client) -> str:
-    return f"begun-{client.id}"
 
 
 @dataclass(frozen=True)

@@ -72,13 +72,14 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
     """The launcher that a configuration asks for, or one on a `distributed.Client` handed in."""
     if client is not None or compute.is_cluster:
         from kinetree.pipeline.running import clusters
+        from kinetree.pipeline.running.following import followed
 
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
         with contextlib.ExitStack() as stack:
             if is_ours and not compute.cluster and compute.performance_report is None:
                 stack.enter_context(dask.config.set(UNWATCHED))
             found = stack.enter_context(clusters.connected(compute, client))
-            yield _on_client(found, stack.enter_context(clusters.followed(found, compute, is_ours=is_ours)), compute)
+            yield _on_client(found, stack.enter_context(followed(found, compute, is_ours=is_ours)), compute)
         return
     if compute.performance_report is not None:
         raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")

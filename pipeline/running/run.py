@@ -12,14 +12,8 @@ from functools import partial
 
 from kinetree.errors import (
     ClusterError,
-    GraphError,
-    KinetreeError,
     LateNodeError,
     LostWorkerError,
-    ReadOnlyStoreError,
-    ServiceError,
-    StoreError,
-    StoreFullError,
 )
 from kinetree.pipeline.graph_cache import import_functions
 from kinetree.pipeline.node import Node
@@ -28,6 +22,7 @@ from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running import sight as seeing
 from kinetree.pipeline.running.events import Watch
 from kinetree.pipeline.running.execute import Result, forget_reads
+from kinetree.pipeline.running.fates import beyond_repair, refusal, refuse_rings, refuse_to_wait_for, tell_losses, twin
 from kinetree.pipeline.running.interrupts import interruptible
 from kinetree.pipeline.running.jobs import OPEN_AT_LEAST, Job, Jobs, Single, fairest
 from kinetree.pipeline.running.launch import Future, Launcher
@@ -74,7 +69,7 @@ def take_back_lost(job: Job, store: Store) -> bool:
     for entry in done:
         if (entry.key, entry.artifact) in lost:
             job.schedule.lose(entry, "it is missing")
-    _tell_losses(job)
+    tell_losses(job)
     return bool(lost)
 
 
@@ -128,7 +123,7 @@ class _Loop:
                 pass  # what was lost too often has failed by now
             if job.is_over:
                 self._open.remove(job)
-                _refuse_rings(job.schedule)
+                refuse_rings(job.schedule)
                 self.jobs.end(job)
 
     def _begin_jobs(self) -> None:
@@ -183,7 +178,7 @@ class _Loop:
         for number, limit in late:
             future = self.out[number]
             job, parcel = self._parcels[number]
-            _refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
+            refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
             what = future.give_up()
             self._forget(number)
             tries = self._lost[job, parcel[0].node] + 1
@@ -210,7 +205,7 @@ class _Loop:
             self._tell(job, entry, result)
         for other, node in twins:
             other.out -= 1
-            self._tell(other, other.schedule.entries[node], _twin(results[0]))
+            self._tell(other, other.schedule.entries[node], twin(results[0]))
 
     def _all_seen(self, number: int, parcel: list[Entry], results: list[Result], future: Future) -> bool:
         """Whether what a worker says it stored is there for this process too; where not, it is looked for again soon.
@@ -271,7 +266,7 @@ class _Loop:
             job.watch.finish(entry, result)
             job.watch.fresh(fresh)
             job.watch.skip(schedule.skipped_late())
-            _tell_losses(job)
+            tell_losses(job)
         elif result.status == "failed":
             skipped = schedule.fail(entry.node, result.message)
             job.watch.fail(entry, result, [schedule.entries[n] for n in skipped])
@@ -280,57 +275,13 @@ class _Loop:
         elif result.status == "undone":
             schedule.put_back(entry.node)
         else:
-            raise _refusal(result)
+            raise refusal(result)
 
     def _mend(self, job: Job, entry: Entry, result: Result) -> None:
         """An input could not be read: whoever made it makes it again, then this node runs."""
         redone = job.schedule.mend(entry.node, result.artifact, result.message)
         if redone is None:
-            self._tell(job, entry, _beyond_repair(result.artifact, result.message))
+            self._tell(job, entry, beyond_repair(result.artifact, result.message))
             return
         for maker, was in redone:
             job.watch.damaged(maker, was, result.message)
-
-
-def _tell_losses(job: Job) -> None:
-    """What could not be read while more of the graph was laid out, or was not there in the end."""
-    for loss in job.schedule.losses():
-        job.watch.damaged(loss.entry, loss.was, loss.what)
-        if loss.skipped is not None:
-            failed = _beyond_repair(loss.entry.artifact or "", loss.what)
-            job.watch.fail(loss.entry, failed, [job.schedule.entries[n] for n in loss.skipped])
-
-
-def _refuse_to_wait_for(entry: Entry, limit: float, *, is_elsewhere: bool) -> None:
-    """A node that has this process to itself and does not come back would keep all others waiting."""
-    if entry.task.threads > 1 and not is_elsewhere:
-        raise ClusterError(
-            f"{entry.label} takes longer than the {limit:g} s that its task allows, and has this process to itself (@task("
-            f"threads={entry.task.threads})), where it cannot be ended; run again on workers (--executor processes)"
-        )
-
-
-def _refuse_rings(schedule: Schedule) -> None:
-    """A traversal that some artifact orders in a ring leaves nodes that wait for themselves."""
-    left = [entry for entry in schedule.entries.values() if entry.state == "waits"]
-    if left:
-        raise GraphError(
-            f"{len(left)} nodes wait for each other, {left[0].label} ({left[0].task.where}) among them: the traversal that"
-            f" {left[0].task.along.__name__ if left[0].task.along else 'an artifact above'} orders goes in a ring"
-        )
-
-
-def _beyond_repair(artifact: str, what: str) -> Result:
-    told = f"artifact {artifact[:12]} {what}, again after it was computed again; check the disk"
-    return Result("failed", error="DamagedArtifactError", message=told)
-
-
-def _twin(result: Result) -> Result:
-    """What became of a node whose twin was computed: the same, without having run."""
-    return Result("fresh", result.key, result.artifact, 0.0, result.record) if result.status == "ran" else result
-
-
-def _refusal(result: Result) -> KinetreeError:
-    """The error with which a worker refused to go on, by its name."""
-    kinds = {kind.__name__: kind for kind in (StoreError, StoreFullError, ReadOnlyStoreError, ServiceError)}
-    return kinds.get(result.error, ClusterError)(result.message)
