@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure import error_bars as numerics
 
 @task()
 def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
-    """Expects an error of every joint, from drift, spread over cuts, residual and confidence (ours)."""
+    """Expects an error of every joint, from drift, spread over cuts, residual, turning, bone and confidence (ours)."""
     features = joint_features(skeleton, kinematic_tree)
     found = numerics.error_bars(features, kinematic_tree.cuts)
     turning = np.array([kind == "joint" for kind in skeleton.kinds])
@@ -57,5 +57,6 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     """What is known of all joints, root and leaves among them."""
     tree = kinematic_tree
     size = float(np.sqrt(Surface.of(skeleton.vertices, skeleton.faces).area.sum()))
-    drift, spread, residual = (np.array(a) for a in (skeleton.drift, tree.spread, tree.joint_residual))
-    return numerics.JointFeatures(drift, spread, residual, np.array(skeleton.confidence), size)
+    of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths)
+    drift, spread, residual, degrees, length = (np.array(a) for a in of_joints)
+    return numerics.JointFeatures(drift, spread, residual, degrees, length, np.array(skeleton.confidence), size)

@@ -1,6 +1,6 @@
 """How far off a joint is expected to be, from what a run knows of it without a truth (ours).
 
-ε_j = size · √(least² + (exp(a) · drift^b · spread^c · residual^d)²)      all lengths in the root of the area
+ε_j = size · √(least² + (exp(a) · drift^b · spread^c · residual^d · turning^e · length^f)²)      lengths in the root of the area
 ε_jt = ε_j · (1 + k (1 − confidence_jt))                                  in a frame
 """
 
@@ -12,33 +12,44 @@ from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.joint_consensus import GATE
 
 LEAST = 1e-4
-"""Least drift, spread and residual that is told from none, share of the root of the area."""
+"""Least length of any kind that is told from none, share of the root of the area."""
+DIRECTIONS = (1, 1, 1, -1, -1)
+"""Whether the error may only grow, or only fall, with drift, spread, residual, degrees and length."""
+LEAST_DEGREES = 1.0
+"""Least range of turning that is told from none."""
 
 
 class PowerLaw(NamedTuple):
-    """√(least² + (exp(log_scale) · drift^drift · spread^spread · residual^residual)²), all in the root of the area."""
+    """√(least² + (exp(log_scale) · drift^drift · …)²), lengths in the root of the area; the fields are the exponents."""
 
     log_scale: float
     drift: float
     spread: float
     residual: float
+    degrees: float
+    length: float
     least: float
     """Error that is left where nothing drifts, spreads or remains: skin that blends tells no joint exactly."""
     bound: float
     """By what the expected error is multiplied to be a bound that nine joints of ten keep."""
+
+    @property
+    def coefficients(self) -> Floats:
+        """Of the columns of `JointFeatures.logarithms`."""
+        return np.array(self[: len(DIRECTIONS) + 1])
 
 
 class ErrorBarsSettings(NamedTuple):
     """Constants of the expected error.
 
     Fitted by `python benchmarks/error_bars.py`, which prints them, to the joints of generated people, four-legged animals and
-    random trees of even seeds, `least` to those of fixed connectivity too; what they are worth on other bodies stands in
+    random trees of even seeds; those for several cuts also to spoilt ones. What they are worth on other bodies stands in
     benchmarks/RESULTS.md.
     """
 
-    several_cuts: PowerLaw = PowerLaw(4.638, 0.0, 0.62, 0.86, 0.00125, 2.751)
+    several_cuts: PowerLaw = PowerLaw(0.925, 0.229, 0.31, 0.3, -0.436, -0.57, 0.00125, 2.52)
     """Where the body was cut in several poses."""
-    one_cut: PowerLaw = PowerLaw(4.055, 0.101, 0.0, 1.191, 0.0, 2.903)
+    one_cut: PowerLaw = PowerLaw(4.055, 0.101, 0.0, 1.191, 0.0, 0.0, 0.0, 2.903)
     """Where it was cut in one, so that the spread is not known."""
     uncertain: float = 0.5
     """k: how much farther off a joint is in a frame where its confidence is 0."""
@@ -50,6 +61,8 @@ class JointFeatures(NamedTuple):
     drift      : (joint,) distance between the joint as its two parts carry it
     spread     : (joint,) of its places over several cuts; NaN where no other cut has it
     residual   : (joint,) what the motions of its two parts leave unexplained
+    degrees    : (joint,) range of turning
+    length     : (joint,) of the bone to its parent
     confidence : (frame, joint) 0 to 1
     size       : root of the area
     """
@@ -57,18 +70,22 @@ class JointFeatures(NamedTuple):
     drift: Floats
     spread: Floats
     residual: Floats
+    degrees: Floats
+    length: Floats
     confidence: Floats
     size: float
 
     def logarithms(self, with_spread: bool) -> Floats:
-        """(joint, 4) 1, and the logarithms of drift, spread and residual, root of the area.
+        """(joint, 6) 1, and the logarithms of drift, spread, residual, degrees and length, lengths in the root of the area.
 
         A joint that no other cut has is as far from all others as joints of two cuts may be.
         """
         no_spread = GATE if with_spread else 1.0
         spread = np.where(np.isnan(self.spread) | (not with_spread), no_spread * self.size, self.spread)
-        rows = [np.log(np.maximum(np.array(a) / self.size, LEAST)) for a in (self.drift, spread, self.residual)]
-        return np.stack([np.ones_like(rows[0]), *rows], axis=1)
+        lengths = (self.drift, spread, self.residual, self.length)
+        *evidence, length = (np.log(np.maximum(np.array(a) / self.size, LEAST)) for a in lengths)
+        degrees = np.log(np.maximum(self.degrees, LEAST_DEGREES))
+        return np.stack([np.ones_like(degrees), *evidence, degrees, length], axis=1)
 
     def widening(self, uncertain: float) -> Floats:
         """(frame, joint) by what the error grows where the pose is uncertain."""
@@ -103,11 +120,11 @@ def error_bars(features: JointFeatures, cuts: int, settings: ErrorBarsSettings |
 
 def levels(rows: Floats, law: PowerLaw) -> Floats:
     """(joint,) expected error where the pose is certain, root of the area; rows as in `JointFeatures.logarithms`."""
-    return np.asarray(np.hypot(law.least, np.exp(rows @ np.array([law.log_scale, law.drift, law.spread, law.residual]))))
+    return np.asarray(np.hypot(law.least, np.exp(rows @ law.coefficients)))
 
 
 def fitted(rows: Floats, error: Floats) -> Floats:
-    """Coefficients of the least squares of log error on logarithms; none of an exponent is negative.
+    """Coefficients of the least squares of log error on logarithms; no exponent goes against `DIRECTIONS`.
 
     rows    : (joint, n) see `JointFeatures.logarithms`
     error   : (joint,) root of the area
@@ -118,7 +135,7 @@ def fitted(rows: Floats, error: Floats) -> Floats:
     while True:
         coefficients = np.zeros(rows.shape[1])
         coefficients[used] = np.linalg.lstsq(rows[:, used], goal, rcond=None)[0]
-        below = np.flatnonzero(coefficients[1:] < 0.0) + 1
-        if not len(below):
+        signed = coefficients[1:] * np.array(DIRECTIONS[: len(used) - 1])
+        if not (signed < 0.0).any():
             return coefficients
-        used[below[np.argmin(coefficients[below])]] = False
+        used[1 + np.argmin(signed)] = False

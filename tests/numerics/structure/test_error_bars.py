@@ -5,29 +5,40 @@ import pytest
 
 from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
 
-SETTINGS = ErrorBarsSettings(PowerLaw(0.5, 0.4, 0.5, 0.1, 0.0, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 3.0), 2.0)
+SETTINGS = ErrorBarsSettings(
+    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 3.0), 2.0
+)
 
 
 def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
     told = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
-        "residual": np.array([0.003, 0.003, 0.003]), "confidence": np.ones((5, 3)), "size": 1.0, **changed,
+        "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0,
+        "degrees": np.full(3, 40.0), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
-    lengths = {name: scale * value for name, value in told.items() if name != "confidence"}
-    return JointFeatures(**lengths, confidence=told["confidence"])
+    return JointFeatures(**{n: value if n in ("degrees", "confidence") else scale * value for n, value in told.items()})
 
 
 def test_errors_scale_with_the_body_and_the_bound_with_the_error() -> None:
     one, large = error_bars(features(), 4, SETTINGS), error_bars(features(scale=1000.0), 4, SETTINGS)
     assert large.expected == pytest.approx(1000.0 * one.expected)
     assert one.bound == pytest.approx(2.0 * one.expected)
-    assert one.expected[0] == pytest.approx(np.exp(0.5) * 0.01**0.4 * 0.004**0.5 * 0.003**0.1)
+    assert one.expected[0] == pytest.approx(np.exp(0.5) * 0.01**0.4 * 0.004**0.5 * 0.003**0.1 / 40**0.5 / 0.2**0.3)
 
 
 def test_more_drift_or_spread_is_more_error_and_one_cut_goes_by_drift() -> None:
     several, one = error_bars(features(), 4, SETTINGS).expected, error_bars(features(), 1, SETTINGS).expected
     assert several[0] < several[1] < several[2]
     assert one[0] == one[2] < one[1]
+
+
+def test_a_joint_that_turns_more_or_has_a_longer_bone_is_known_better() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01)}
+    turns = error_bars(features(degrees=np.array([0.0, 10.0, 90.0]), **same), 4, SETTINGS).expected
+    assert turns[0] > turns[1] > turns[2]
+    assert np.isfinite(turns).all()
+    long = error_bars(features(length=np.array([0.05, 0.1, 0.4]), **same), 4, SETTINGS)
+    assert long.expected[0] > long.expected[1] > long.expected[2]
 
 
 def test_a_joint_that_no_other_cut_has_is_worse_than_one_whose_cuts_are_apart() -> None:
@@ -62,9 +73,11 @@ def test_no_error_is_below_the_least() -> None:
     )
 
 
-def test_a_power_law_is_found_again_and_no_exponent_is_negative() -> None:
+def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
-    known = JointFeatures(*np.exp(rng.normal(-5.0, 1.0, (3, 200))), np.ones((1, 200)), 1.0)
-    rows = known.logarithms(True)
-    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, 0.1])) == pytest.approx([0.5, 0.4, 0.5, 0.1])
-    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, -0.3]))[3] == 0.0
+    drift, spread, residual, length = np.exp(rng.normal(-5.0, 1.0, (4, 200)))
+    rows = JointFeatures(drift, spread, residual, rng.uniform(5, 120, 200), length, np.ones((1, 200)), 1.0).logarithms(True)
+    law = [0.5, 0.4, 0.5, 0.1, -0.6, -0.2]
+    assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
+    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, -0.3, -0.6, -0.2]))[3] == 0.0
+    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, 0.1, 0.6, -0.2]))[4] == 0.0
