@@ -3,6 +3,7 @@
 Source: UsdGeom and UsdSkel of OpenUSD (the extra `usd`), which read the stage and bake its skins.
 """
 
+import math
 import zipfile
 from importlib import import_module
 from pathlib import Path
@@ -49,6 +50,10 @@ class AnimatedUsd:
         self._first, self._frames = first, int(last - first) + 1
         self.fps = float(stage.GetTimeCodesPerSecond())
         metres = float(self._geom.GetStageMetersPerUnit(stage))
+        if not (0 < self.fps < math.inf and 0 < metres < math.inf):
+            raise SourceError(
+                f"{path}: its stage has {self.fps:g} time codes a second and units of {metres:g} m; both must be positive"
+            )
         self.unit = next((unit for length, unit in _UNITS.items() if abs(metres / length - 1) < 1e-6), "m")
         self._scale = 1.0 if abs(metres / {u: m for m, u in _UNITS.items()}[self.unit] - 1) < 1e-6 else metres
         pxr["UsdSkel"].BakeSkinning(stage.Traverse())

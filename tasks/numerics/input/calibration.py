@@ -97,8 +97,14 @@ def _json(files: Sequence[Path], where: str) -> Calibration:
         P.append(_projection(camera, f"{where}: camera {name}"))
         size = camera.get("size")
         sizes.append(None if size is None else (int(size[1]), int(size[0])))
-    fps = held.get("fps")
-    return Calibration(tuple(names), np.array(P), tuple(sizes), held.get("unit"), None if fps is None else float(fps))
+        if size is not None and min(sizes[-1] or ()) < 1:
+            raise SourceError(f"{where}: camera {name}: size is {size}; width and height of its images in pixels are needed")
+    fps, unit = held.get("fps"), held.get("unit")
+    if fps is not None and not 0 < float(fps) < np.inf:
+        raise SourceError(f"{where}: fps is {fps}; one positive number of frames a second is needed, or null")
+    if unit is not None and not isinstance(unit, str):
+        raise SourceError(f"{where}: unit is {unit}; the name of a unit of length is needed, such as m, or null")
+    return Calibration(tuple(names), np.array(P), tuple(sizes), unit, None if fps is None else float(fps))
 
 
 def _npz(files: Sequence[Path], where: str) -> Calibration:

@@ -70,6 +70,17 @@ def test_other_units_are_brought_to_metres(stage):
     np.testing.assert_allclose(frames.mesh(0)[0][0], [0.0254, 0, 0])
 
 
+@pytest.mark.parametrize("wrong", [0.0, -25.0, float("nan"), float("inf")])
+def test_rates_and_units_that_are_none_are_refused(stage, wrong):
+    stage.SetTimeCodesPerSecond(wrong)
+    with pytest.raises(SourceError, match=r"time codes a second and units of 0\.01 m; both must be positive"):
+        read(stage)
+    stage.SetTimeCodesPerSecond(50)
+    UsdGeom.SetStageMetersPerUnit(stage, wrong)
+    with pytest.raises(SourceError, match="its stage has 50 time codes a second and units of .* both must be positive"):
+        read(stage)
+
+
 def test_stages_of_other_files_still_ones_and_damaged_ones_are_refused(stage, tmp_path):
     stage.GetRootLayer().subLayerPaths.append("/etc/passwd")
     with pytest.raises(SourceError, match=r"composed of other files \('/etc/passwd'\), which are not read; flatten it"):

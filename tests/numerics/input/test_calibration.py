@@ -35,6 +35,30 @@ def read(tmp_path):
     return one
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("fps", -3, "fps is -3; one positive number of frames a second is needed, or null"),
+        ("fps", float("nan"), "fps is nan"),
+        ("fps", float("inf"), "fps is inf"),
+        ("fps", 0, "fps is 0"),
+        ("unit", 3, "unit is 3; the name of a unit of length is needed"),
+        ("unit", {"m": 1}, "the name of a unit of length is needed"),
+    ],
+)
+def test_rate_and_unit_that_are_none_are_refused(read, key, value, words):
+    held = json.loads(written_calibration(calibration()))
+    with pytest.raises(SourceError, match=rf"calibration\.json: .*{words}"):
+        read({**held, key: value})
+
+
+def test_a_size_that_no_image_has_is_refused_with_its_camera(read):
+    held = json.loads(written_calibration(calibration()))
+    held["cameras"][3]["size"] = [-5, 512]
+    with pytest.raises(SourceError, match=r"camera cam_03: size is \[-5, 512\]; width and height"):
+        read(held)
+
+
 def test_what_is_written_is_read_back(read):
     before, after = calibration(), read(written_calibration(calibration()))
     assert (after.names, after.sizes, after.unit, after.fps) == (before.names, before.sizes, "m", 25.0)
