@@ -129,7 +129,7 @@ def test_one_npz_in_a_bucket_holds_all_frames(place, files, pipeline, tmp_path):
 
 
 @pytest.mark.parametrize(("names", "words"), [
-    (["a_1.png", "a_2.png"], r"no mesh among its files \(.png\); .* silhouettes, volumes and zarr are read from folders"),
+    (["a_1.png", "a_2.png"], r"no mesh among its files \(.png\); .* manifests and zarr are read from folders"),
     (["zarr.json"], "no mesh among its files"),
     (["a_1.ply", "a_2.obj"], r"meshes of several formats \(1 × .obj, 1 × .ply\); choose by a pattern such as \*.obj"),
     (["a_1.ply", "a_01.ply"], "two files have the same number"),

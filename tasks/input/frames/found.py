@@ -63,7 +63,7 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
 
 def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
     """Every frame of a Universal Volumetric 2 sequence, numbered as its files are; those of segments one after the other."""
-    manifest = read_manifest(path, clip)
+    manifest = read_manifest(path, clip, is_growing=files.settling is not None)
     number = dict(zip(manifest.files, manifest.numbers, strict=True))
     paths = _complete([written(p) for p in manifest.files], str(path), files)
     stated = {"fps": manifest.fps}
@@ -108,7 +108,7 @@ def _in_bucket(where: str, files: Files, clip: str) -> dict[int, Source]:
     if not suffixes & set(mesh_suffixes()):
         raise SourceError(
             f"{where}: no mesh among its files ({', '.join(sorted(suffixes))}); in a bucket a folder or pattern of mesh files"
-            f" ({' '.join(mesh_suffixes())}) or one npz is read; silhouettes, volumes and zarr are read from folders"
+            f" ({' '.join(mesh_suffixes())}) or one npz is read; silhouettes, volumes, manifests and zarr are read from folders"
         )
     paths = one_format(list(named), where)
     told = files.parts_of_each([named[path] for path in paths], REMOTE, content_and_measures)

@@ -55,11 +55,12 @@ def manifest_in(folder: Path) -> Path | None:
     return found[0] if found else None
 
 
-def read_manifest(path: Path, target: str = "") -> VolumetricManifest:
+def read_manifest(path: Path, target: str = "", *, is_growing: bool = False) -> VolumetricManifest:
     """The files of a target that a manifest names, all of which lie in its folder.
 
-    target : its name; where empty, that with the most frames a second, of those the most bits of a position
-    raises : SourceError where it is no manifest of version 2, or files are not there
+    target     : its name; where empty, that with the most frames a second, of those the most bits of a position
+    is_growing : fewer files than the manifest has frames are no fault
+    raises     : SourceError where it is no manifest of version 2, or files are not there
     """
     held = _held(path)
     if not _is_manifest(held):
@@ -75,7 +76,7 @@ def read_manifest(path: Path, target: str = "") -> VolumetricManifest:
     if length is None:
         raise SourceError(f"{path}: {name} has no segmentFrameCount, the frames of one file; the manifest is not complete")
     claimed = _count(chosen, "frameCount", path)
-    if claimed is not None and len(found) * length < claimed:
+    if claimed is not None and len(found) * length < claimed and not is_growing:
         raise SourceError(
             f"{path}: {name or 'its geometry'} has {claimed} frames, but only {len(found)} files are there; copy the others"
             f" too, or name their folder {next(iter(found.values())).parent}"

@@ -49,7 +49,7 @@ def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         axes.plot(*place[j], "o", color=KINDS[found.kinds[j]], ms=6, zorder=2)
         told = labels[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
         told += f", {found.degrees[j]:.0f}°" if found.kinds[j] == "joint" else ""
-        axes.annotate(told, place[j], xytext=(6, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
+        axes.annotate(told, place[j], xytext=(9, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
     axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
     axes.set_axis_off()
     heading(axes, "Joints (orange), end effectors (blue): length of the bone to the parent, range of turning")

@@ -87,6 +87,12 @@ def test_what_cannot_be_read_ends_in_what_to_do(folder, held, told):
     assert told in refusal(folder, held)
 
 
+def test_sequence_that_still_grows_may_have_fewer_files(folder):
+    path = folder / "manifest.json"
+    path.write_text(json.dumps(target(frameCount=4)))
+    assert len(read_manifest(path, is_growing=True).files) == 3
+
+
 def test_two_files_of_one_number_are_refused(folder):
     (folder / "drc" / "1.drc").touch()
     assert "has the number of another file" in refusal(folder, target())
