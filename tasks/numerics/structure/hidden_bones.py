@@ -1,9 +1,8 @@
 """Bones under skin that is nowhere rigid: proposed between two parts that one joint does not join well (ours).
 
 A short neck or a collar moves no vertex by itself: every vertex near it blends it with the parts on both sides, so no cut into
-rigid parts can find it. Between two parts of the tree a bone is fitted whose motion is nowhere seen alone: by turns the weights
-of the skin and the motion of the bone, each of which is in closed form while the other is known. It is one where one joint
-left the two parts drifting, and where it turns about two points, one on either side, that lie well apart.
+rigid parts can find it. Between two parts of the tree a bone is fitted whose motion is nowhere seen alone (`blended_bone`). It
+is one where one joint left the two parts drifting, and where it turns about two points, one on either side, that lie apart.
 """
 
 from typing import NamedTuple
@@ -12,10 +11,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
+from kinetree.tasks.numerics.structure.blended_bone import MovingSkin, blended_bone, refitted
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.rotation_centres import Joints, RotationCentresSettings, rotation_centres
-from kinetree.tasks.numerics.structure.skinning import grams, on_simplex
 
 
 class HiddenBonesSettings(NamedTuple):
@@ -47,6 +45,8 @@ class HiddenBonesSettings(NamedTuple):
     """Vertices of that skin, at least."""
     most_vertices: int = 300
     """Vertices that the bone is fitted to, at most; for time."""
+    most_frames: int = 36
+    """Frames that it is fitted in, about; for time."""
     others: int = 2
     """Further parts that the skin may follow, at most."""
     follower: float = 0.8
@@ -57,23 +57,6 @@ class HiddenBonesSettings(NamedTuple):
     """Error of a vertex below which its motion says nothing of its weights."""
     prior: RotationCentresSettings = RotationCentresSettings(spread=1.0, frames_alike=3.0, far=2.0)
     """How firmly the new joints are held amid the skin that blends: a collar turns about a point far inside the body."""
-
-
-class MovingSkin(NamedTuple):
-    """Skin in motion, and the parts that it follows.
-
-    V, x : (vertex, xyz), (frame, vertex, xyz) mesh unit
-    area : (vertex,) mesh unit²
-    W    : (vertex, part) skinning weights
-    R, t : (frame, part, 3, 3) · (frame, part, xyz) from the reference
-    """
-
-    V: Floats
-    x: Floats
-    area: Floats
-    W: Floats
-    R: Floats
-    t: Floats
 
 
 class Border(NamedTuple):
@@ -163,39 +146,43 @@ def _skin_around(skin: MovingSkin, between: Border, narrow: float, chosen: Hidde
 
 
 def _fitted(skin: MovingSkin, between: Border, near: Ints, size: float, chosen: HiddenBonesSettings) -> HiddenBone:
-    """The bone that explains the skin best, from two starts: half-way between the parts, and where they explain least."""
+    """The bone that explains the skin best, from two starts: half-way between the parts, and where they explain least.
+
+    It is fitted to some vertices in some frames; its motion is then that of all frames, and all skin near it has weights.
+    """
     others = [p for p in np.argsort(-skin.W[near].sum(axis=0), kind="stable") if p not in (between.above, between.part)]
     used = [p for p in others[: chosen.others] if skin.W[near, p].any()]
     parts, hold = np.array([between.above, between.part, *used]), (chosen.noise * size) ** 2
     sample = near[np.linspace(0, len(near) - 1, min(chosen.most_vertices, len(near))).astype(np.int64)]
-    some = _SkinFit.of(skin, sample, parts, hold)
-    without, _ = some.weights(some.around)
-    starts = [_half_way(skin, between), some.least_explained(without, 0.4 * between.radius)]
-    R, t, _, _ = min((some.alternated(without, *start, chosen.rounds) for start in starts), key=lambda f: f[3].mean())
-    whole = _SkinFit.of(skin, near, parts, hold)
-    W, square = whole.weights(np.pad(whole.around, ((0, 0), (0, 1))), (R, t))
-    own = W[:, -1]
+    some = slice(None, None, -(-len(skin.x) // chosen.most_frames))
+    few = skin.of(sample, parts, some).weighed(hold)
+    half = _half_way(skin, between)
+    starts = [(half[0][some], half[1][some]), few.least_explained(0.4 * between.radius)]
+    found = min(
+        (blended_bone(few.with_bone(*start, 0.5), hold, chosen.rounds) for start in starts),
+        key=lambda fit: float(fit.squares().mean()),
+    )
+    sampled = refitted(skin.of(sample, parts, slice(None)).with_bone(*half, 0.0)._replace(W=found.W))
+    whole = skin.of(near, parts, slice(None)).with_bone(sampled.R[:, -1], sampled.t[:, -1], 0.0).weighed(hold)
+    own = whole.W[:, -1]
     mass = whole.area * own
-    residual = np.sqrt(square @ mass / max(mass.sum(), 1e-300))
-    joints = _joints(skin, between, whole, W, (R, t), residual, chosen)
-    span = np.array([[0, len(R)]])
-    degrees = np.array([widest_turning_range(skin.R[:, p].transpose(0, 2, 1) @ R, span) for p in parts[:2]])
-    follows = (own > 0.0) & (own >= np.minimum(W[:, :-1].max(axis=1), chosen.follower * own.max()))
-    return HiddenBone(R, t, joints.rest, joints.drift, degrees, near[follows], float(mass.sum()), residual)
+    residual = np.sqrt(whole.squares() @ mass / max(mass.sum(), 1e-300))
+    joints = _joints(whole, between, residual, chosen)
+    span = np.array([[0, len(whole.R)]])
+    degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], span) for k in (0, 1)])
+    follows = (own > 0.0) & (own >= np.minimum(whole.W[:, :-1].max(axis=1), chosen.follower * own.max()))
+    motion = whole.R[:, -1], whole.t[:, -1]
+    return HiddenBone(*motion, joints.rest, joints.drift, degrees, near[follows], float(mass.sum()), residual)
 
 
-def _joints(
-    skin: MovingSkin, between: Border, fit: "_SkinFit", W: Floats, bone: tuple[Floats, Floats], residual: Floats,
-    chosen: HiddenBonesSettings,
-) -> Joints:  # fmt: skip
+def _joints(fit: MovingSkin, between: Border, residual: Floats, chosen: HiddenBonesSettings) -> Joints:
     """About which points the bone turns against either part: held amid the skin that follows both, by how well it fits."""
-    sides = [between.above, between.part]
-    R = np.concatenate([skin.R[:, sides], bone[0][:, None]], axis=1)
-    t = np.concatenate([skin.t[:, sides], bone[1][:, None]], axis=1)
-    both = fit.area[:, None] * (W[:, :2] * W[:, -1:]) ** 2 + 1e-12 * fit.area[:, None]
+    last = fit.R.shape[1] - 1
+    both = fit.area[:, None] * ((fit.W[:, :2] * fit.W[:, -1:]) ** 2 + 1e-12)
     centre = both.T @ fit.V / both.sum(axis=0)[:, None]
-    level = np.full((len(R), 3), (residual**4).mean() ** 0.25)  # what few frames show counts
-    return rotation_centres(R, t, np.array([[0, 2], [1, 2]]), centre, np.full(2, between.radius), level, None, chosen.prior)
+    level = np.full(fit.R.shape[:2], (residual**4).mean() ** 0.25)  # what few frames show counts
+    pair, radius = np.array([[0, last], [1, last]]), np.full(2, between.radius)
+    return rotation_centres(fit.R, fit.t, pair, centre, radius, level, None, chosen.prior)
 
 
 def _half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:
@@ -205,70 +192,3 @@ def _half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:
     R = skin.R[:, a] @ Rotation.from_rotvec(0.5 * turn).as_matrix()
     place = 0.5 * ((skin.R[:, a] + skin.R[:, b]) @ between.joint + skin.t[:, a] + skin.t[:, b])
     return R, place - R @ between.joint
-
-
-class _SkinFit(NamedTuple):
-    """Skin, and where the parts that are known carry it.
-
-    V, x   : (sample, xyz), (frame, sample, xyz)
-    area   : (sample,)
-    R, t   : (frame, part, 3, 3) · (frame, part, xyz) of the known parts
-    Y      : (part, frame, sample, xyz) the skin as each of them carries it
-    around : (sample, part) weights to begin from
-    hold   : mesh unit², how firmly weights stay
-    """
-
-    V: Floats
-    x: Floats
-    area: Floats
-    R: Floats
-    t: Floats
-    Y: Floats
-    around: Floats
-    hold: float
-
-    @classmethod
-    def of(cls, skin: MovingSkin, near: Ints, parts: Ints, hold: float) -> "_SkinFit":
-        V, R, t = skin.V[near], np.ascontiguousarray(skin.R[:, parts]), np.ascontiguousarray(skin.t[:, parts])
-        Y = np.einsum("tpxy,ny->ptnx", R, V) + t.transpose(1, 0, 2)[:, :, None]
-        around = skin.W[near][:, parts]
-        around = around / around.sum(axis=1, keepdims=True)
-        return cls(V, np.ascontiguousarray(skin.x[:, near]), skin.area[near], R, t, Y, around, hold)
-
-    def weights(self, around: Floats, bone: tuple[Floats, Floats] | None = None) -> tuple[Floats, Floats]:
-        """(sample, part) best weights, those of the bone last if there is one · (frame, sample) squared distance left."""
-        R, t, Y = self.R, self.t, self.Y
-        if bone is not None:
-            R = np.concatenate([R, bone[0][:, None]], axis=1)
-            t = np.concatenate([t, bone[1][:, None]], axis=1)
-            Y = np.concatenate([Y, (np.einsum("txy,ny->tnx", bone[0], self.V) + bone[1][:, None])[None]])
-        near = np.arange(R.shape[1])[None]
-        H, g = grams(self.V, self.x, R, t, np.zeros(len(self.V), np.int64), near, np.ones(self.x.shape[:2]))
-        W = on_simplex(H, g, np.full(len(self.V), self.hold), around)
-        return W, ((np.einsum("nk,ktnx->tnx", W, Y) - self.x) ** 2).sum(axis=2)
-
-    def least_explained(self, W: Floats, width: float) -> tuple[Floats, Floats]:
-        """The rigid motion of the skin around the vertex that the known parts explain least."""
-        square = ((np.einsum("nk,ktnx->tnx", W, self.Y) - self.x) ** 2).sum(axis=(0, 2))
-        away = np.linalg.norm(self.V - self.V[square.argmax()], axis=1)
-        weight = self.area * np.exp(-((away / width) ** 2)) + 1e-15
-        return rigid_motion(np.broadcast_to(self.V, self.x.shape), self.x, np.tile(weight, (len(self.x), 1)))
-
-    def alternated(self, without: Floats, R: Floats, t: Floats, rounds: int) -> tuple[Floats, Floats, Floats, Floats]:
-        """Motion of the bone · weights · squared distance left, after rounds of weights and motion.
-
-        without : (sample, part) weights without the bone, of which it gets half at first
-        """
-        W = np.concatenate([0.5 * without, np.full((len(without), 1), 0.5)], axis=1)
-        for _ in range(rounds):
-            W, _ = self.weights(W, (R, t))
-            own = W[:, -1]
-            if self.area @ own**2 < 1e-6 * self.area.sum():
-                break
-            left = self.x - np.einsum("nk,ktnx->tnx", W[:, :-1], self.Y)
-            carried = np.einsum("txy,ny->tnx", R, self.V) + t[:, None]
-            wanted = np.where(own[:, None] > 1e-3, left / np.maximum(own, 1e-3)[:, None], carried)
-            mass = np.tile(self.area * own**2 + 1e-12 * self.area.sum(), (len(self.x), 1))
-            R, t = rigid_motion(np.broadcast_to(self.V, self.x.shape), wanted, mass)
-        W, square = self.weights(W, (R, t))
-        return R, t, W, square

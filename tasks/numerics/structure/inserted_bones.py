@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.structure.hidden_bones import Border, HiddenBone, HiddenBonesSettings, MovingSkin, hidden_bone
+from kinetree.tasks.numerics.structure.blended_bone import MovingSkin
+from kinetree.tasks.numerics.structure.hidden_bones import Border, HiddenBone, HiddenBonesSettings, hidden_bone
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.rotation_centres import Borders, Joints
 from kinetree.tasks.numerics.structure.skinning import skinning

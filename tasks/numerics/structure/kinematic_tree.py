@@ -120,7 +120,8 @@ def kinematic_tree(
     body = MovingSurface(V, np.array(F, dtype=np.int64), x, area, takes)
     given = R.shape[1]
     found = _with_hidden_bones(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
-    agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, chosen) for cut in further], body.size)
+    alike = chosen._replace(hidden_bones=bool((found.left.origin == NO_PART).any()))
+    agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, alike) for cut in further], body.size)
     F, tree, label, W, R, t = body.F, found.left.part_tree.tree, found.label, found.W, found.R, found.t
     rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)

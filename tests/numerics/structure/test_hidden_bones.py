@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from articulated import Known, chain, moved, neck, neck_ends, swings
 
+from kinetree.tasks.numerics.structure.blended_bone import MovingSkin
 from kinetree.tasks.numerics.structure.hidden_bones import (
     Border,
     HiddenBone,
     HiddenBonesSettings,
-    MovingSkin,
     hidden_bone,
     is_bone,
 )

@@ -7,7 +7,7 @@ from shipped import TREE
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 
 def with_bones(body: Known) -> tuple[TreeJoints, TreeJoints]:
@@ -15,11 +15,21 @@ def with_bones(body: Known) -> tuple[TreeJoints, TreeJoints]:
     return found, inserted_bones(MovingSurface(body.V, body.F, body.x, body.area), found, 0.002)
 
 
-def whole(body: Known, hidden_bones: bool = True, confidence: np.ndarray | None = None) -> tuple[KinematicTree, Derivation]:
+def in_pose(body: Known, frame: int) -> Cut:
+    """The first and the last part, cut in the pose of a frame."""
+    ends = [0, body.R.shape[1] - 1]
+    R = body.R[:, ends] @ body.R[frame, ends].transpose(0, 2, 1)
+    t = body.t[:, ends] - np.einsum("tpxy,py->tpx", R, body.t[frame, ends])
+    return Cut(body.x[frame], (body.V[:, 2] > 0.0).astype(np.int64), R, t, body.residual[:, ends])
+
+
+def whole(
+    body: Known, hidden_bones: bool = True, confidence: np.ndarray | None = None, further: tuple[Cut, ...] = ()
+) -> tuple[KinematicTree, Derivation]:
     ends = [0, body.R.shape[1] - 1]
     label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
     known = body.V, body.F, body.x, body.area, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends]
-    return kinematic_tree(*known, tips, confidence, settings=TREE._replace(hidden_bones=hidden_bones))
+    return kinematic_tree(*known, tips, confidence, settings=TREE._replace(hidden_bones=hidden_bones), further=further)
 
 
 def test_the_bone_stands_between_its_two_parts() -> None:
@@ -69,3 +79,11 @@ def test_no_bone_is_looked_for_where_not_every_vertex_was_followed_or_none_is_wa
     body = neck()
     for found, _ in (whole(body, False), whole(body, confidence=np.full(body.x.shape[:2], 0.99))):
         assert found.kinds.count("joint") == 1
+
+
+def test_further_cuts_look_for_the_bone_too_so_that_both_joints_have_a_spread() -> None:
+    body = neck()
+    found, derived = whole(body, further=(in_pose(body, 5),))
+    turning = np.array([kind == "joint" for kind in found.kinds])
+    assert derived.agreeing[turning].tolist() == [2, 2]
+    assert (derived.spread[turning] < 0.2).all()
