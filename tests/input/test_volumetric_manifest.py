@@ -64,6 +64,17 @@ def test_morph_targets_of_segments_are_frames_one_after_the_other(found, tmp_pat
         np.testing.assert_allclose(surface(frame)[0], TETRAHEDRON + t, atol=1e-6)
 
 
+def test_a_segment_with_more_frames_than_its_manifest_says_is_refused(found, tmp_path):
+    targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
+    folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
+    made = Made()
+    made.document["animations"] = []
+    made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in range(3)]
+    (folder / "glb_0.glb").write_bytes(made.raw())
+    with pytest.raises(SourceError, match=r"glb_0\.glb: 3 frames, but manifest\.json says that a file has 2"):
+        found("take/manifest.json")
+
+
 def test_glb_without_morph_targets_is_no_segment(found, tmp_path):
     targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
     folder = take(tmp_path / "take", targets, "[target]_[index][ext]")

@@ -71,10 +71,16 @@ def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
         contents = files.digests(paths, MOST_BYTES)
         made = [Source(content=c, path=str(p), **stated) for c, p in zip(contents, paths, strict=True)]
         return {number[p]: frame for p, frame in zip(paths, made, strict=True)}
+    segments = {p: _packed(p, "segment", files) for p in paths}
+    if longer := [p for p, frames in segments.items() if len(frames) > manifest.length]:
+        raise SourceError(
+            f"{longer[0]}: {len(segments[longer[0]])} frames, but {path.name} says that a file has {manifest.length}"
+            " (segmentFrameCount); correct it"
+        )
     return {
         number[p] * manifest.length + k: frame.model_copy(update=stated)
-        for p in paths
-        for k, frame in enumerate(_packed(p, "segment", files))
+        for p, frames in segments.items()
+        for k, frame in enumerate(frames)
     }
 
 

@@ -15,6 +15,7 @@ from typing import Any, Literal, NamedTuple
 from kinetree.errors import SourceError
 from kinetree.errors.small_text import small_json, small_text
 from kinetree.tasks.numerics.input.foreign import VOLUMETRIC_1
+from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 SUFFIXES = (".json", ".manifest")
 LARGEST = 2**26
@@ -75,6 +76,8 @@ def read_manifest(path: Path, target: str = "", *, is_growing: bool = False) -> 
     length = _count(chosen, "segmentFrameCount", path) if holds == "segment" else 1
     if length is None:
         raise SourceError(f"{path}: {name} has no segmentFrameCount, the frames of one file; the manifest is not complete")
+    if (max(found) + 1) * length > TAKE:
+        raise SourceError(f"{path}: frame {max(found) * length} is beyond the last number that a frame may have, {TAKE - 1}")
     claimed = _count(chosen, "frameCount", path)
     if claimed is not None and len(found) * length < claimed and not is_growing:
         raise SourceError(
@@ -145,7 +148,10 @@ def _files(path: Path, template: str) -> dict[int, Path]:
         raise SourceError(f"{path}: {template!r} is no path of frames; one [index] must stand for their numbers")
     before, after = template[: places[0].start()], template[places[0].end() :]
     number = re.compile(re.escape(before) + "([0-9]+)" + re.escape(after))
-    there = path.parent.glob(f"{glob.escape(before)}*{glob.escape(after)}")
+    try:
+        there = list(path.parent.glob(f"{glob.escape(before)}*{glob.escape(after)}"))
+    except (OSError, RecursionError) as error:  # names too long, folders in folders without end
+        raise SourceError(f"{path}: {template[:80]!r} is no path of frames ({type(error).__name__})") from None
     named = ((number.fullmatch(file.relative_to(path.parent).as_posix()), file) for file in there)
     found = sorted((int(match[1]), file) for match, file in named if match)
     if not found:

@@ -69,6 +69,8 @@ def test_finest_target_is_read_unless_one_is_named(folder):
         (target("../drc/[index][ext]"), "outside its folder"),
         (target("https://host/[index][ext]"), "outside its folder"),
         (target("drc/frame[ext]"), "one [index] must stand for their numbers"),
+        (target("x" * 5000 + "/[index][ext]"), "is no path of frames (OSError)"),
+        (target("x/" * 50000 + "[index][ext]"), "is no path of frames (RecursionError)"),
         (target("elsewhere/[index][ext]"), "no file at elsewhere/0000000.drc"),
         (target(frameCount=4), "has 4 frames, but only 3 files are there"),
         (target(frameRate=0), "frameRate is 0; a positive number"),
@@ -91,6 +93,14 @@ def test_sequence_that_still_grows_may_have_fewer_files(folder):
     path = folder / "manifest.json"
     path.write_text(json.dumps(target(frameCount=4)))
     assert len(read_manifest(path, is_growing=True).files) == 3
+
+
+def test_numbers_beyond_those_that_frames_may_have_are_refused(folder):
+    (folder / "drc" / "9999999999.drc").touch()
+    assert "frame 9999999999 is beyond the last number that a frame may have" in refusal(folder, target())
+    (folder / "drc" / "9999999999.drc").rename(folder / "drc" / "1.glb")
+    segments = target(format="uniform-solve", segmentFrameCount=10**9)
+    assert "frame 1000000000 is beyond the last number" in refusal(folder, segments)
 
 
 def test_two_files_of_one_number_are_refused(folder):
