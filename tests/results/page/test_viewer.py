@@ -239,7 +239,7 @@ def test_stage_says_in_words_what_it_shows(opened: Any) -> None:
     opened.evaluate("kinetree.select(1)")
     opened.select_option("#colour", "error")
     assert "coloured by the distance to the input" in words()
-    assert words().endswith("Selected: left shoulder, joint.")
+    assert re.search(r"Selected: left shoulder, joint, 90 % bound 1\.5\b[^.]*\.$", words())
     opened.select_option("#colour", "parts")
     opened.evaluate("kinetree.select(null)")
 
