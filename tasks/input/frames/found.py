@@ -1,7 +1,8 @@
 """Every frame at a path, a pattern, in a bucket or in one file that holds all, by number."""
 
+import contextlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePath, PurePosixPath
 
 from kinetree.errors import MeshError, SourceError
@@ -86,11 +87,12 @@ def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
 
 def _manifest(path: Path) -> Path | None:
     """The volumetric manifest that a path is, or that lies in a folder without meshes."""
-    if path.suffix.lower() in MANIFESTS and path.is_file():
-        return path
-    if not path.is_dir() or _is_zarr(path) or any(p.suffix.lower() in mesh_suffixes() for p in path.iterdir()):
-        return None
-    return manifest_in(path)
+    with _refusals(path):
+        if path.suffix.lower() in MANIFESTS and path.is_file():
+            return path
+        if not path.is_dir() or _is_zarr(path) or any(p.suffix.lower() in mesh_suffixes() for p in path.iterdir()):
+            return None
+        return manifest_in(path)
 
 
 def _animated(path: Path | str, clip: str, files: Files) -> dict[int, Source]:
@@ -221,7 +223,14 @@ def _packed_volumes(path: Path, files: Files) -> list[Source]:
 
 
 def _is_zarr(path: Path) -> bool:
-    try:
+    with _refusals(path):
         return any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zarray"))
+
+
+@contextlib.contextmanager
+def _refusals(path: Path) -> Iterator[None]:
+    """Turns what the file system refuses of a path into an error that a user can act on."""
+    try:
+        yield
     except OSError as error:
         raise SourceError(f"{path}: cannot be read: {error.strerror}; check its name and its permissions") from None
