@@ -35,6 +35,8 @@ ENVIRONMENT = (
     errno.ENFILE, errno.ELOOP, errno.ENOTDIR, errno.ESTALE, errno.ENOMEM,
 )  # fmt: skip
 """What the system refuses for reasons of its own: no error of the program."""
+THREADS = "NUMBA_NUM_THREADS"
+"""Variable of the environment with which numba cannot be imported if it is wrong; other libraries pass over theirs."""
 
 
 class CommandLine(TyperGroup):
@@ -100,6 +102,7 @@ def command_line(application: Application) -> CommandLine:
         if show_version:
             typer.echo(version(application.name))
             raise typer.Exit
+        _refuse_wrong_threads()
         if context.invoked_subcommand is None:
             _print_first_steps(application)
 
@@ -181,6 +184,13 @@ def _with_shortcuts(function: Callable[..., None], shortcuts: tuple[Shortcut, ..
 def _parameter(name: str, shortcut: Shortcut) -> inspect.Parameter:
     option = typer.Option(*shortcut.options, metavar=shortcut.metavar, help=shortcut.help, show_default=False)
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
+
+
+def _refuse_wrong_threads() -> None:
+    """Raises ConfigError where the environment says how many threads numba may use, and that is no number from 1 on."""
+    value = os.environ.get(THREADS, "").strip()
+    if value and not (value.isdecimal() and int(value) > 0):
+        raise ConfigError(f"{THREADS}={value}: a number of threads from 1 on is expected; unset it, or set it to 1")
 
 
 def _print_first_steps(application: Application) -> None:

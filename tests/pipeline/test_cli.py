@@ -288,6 +288,20 @@ def test_error_of_ours_shows_where_it_came_from(capsys, monkeypatch, tmp_path):
     assert "this is an error in kinetree itself; the store is whole" in complained
 
 
+@pytest.mark.parametrize("value", ["-1", "0", "many", "1.5"])
+def test_number_of_threads_in_the_environment_that_is_none_is_refused(kinetree, monkeypatch, value):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", value)
+    code, _, complained = kinetree("tasks")
+    assert code == 2
+    assert complained.startswith(f"kinetree: NUMBA_NUM_THREADS={value}: a number of threads from 1 on is expected")
+
+
+@pytest.mark.parametrize("value", ["", "1"])
+def test_number_of_threads_in_the_environment_is_left_alone(kinetree, monkeypatch, value):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", value)
+    assert kinetree("tasks")[0] == 0
+
+
 def test_refusal_that_is_not_the_users_exits_1_without_traceback(kinetree, monkeypatch):
     def broken(*_, **__):
         raise KinetreeError("the graph is bent")
