@@ -1,8 +1,8 @@
 """Where joints lie that a person or a four-legged animal has and that were not found (ours).
 
 Such a joint lies on a bone that was found in one piece. Its place on the bone is that of the same joint on the other side, else
-of published proportions of people (Drillis and Contini 1966, as in Winter 2009). A joint that was held bent lies beside the
-bone, and an ankle too where the bone leads to the toes.
+of published proportions of people (Drillis and Contini 1966, as in Winter 2009). Here it is told how far
+along the bone it lies; `limb_sections` finds the middle of the limb there, beside the bone where the joint was held bent.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,7 +42,7 @@ class Assumed(NamedTuple):
 
     named  : station and side
     child  : the joint at the bone's outer end
-    share  : place on the bone, 0 at the inner end, 1 at the outer
+    share  : place along the bone, 0 at the inner end, 1 at the outer
     source : where the place is from
     """
 

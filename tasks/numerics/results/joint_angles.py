@@ -57,7 +57,14 @@ class JointAngles(NamedTuple):
 
 
 def joint_angles(
-    anatomy: Sequence[str], parents: Sequence[int], rest: Floats, X: Floats, R: Floats, front: Floats, up: Floats
+    anatomy: Sequence[str],
+    parents: Sequence[int],
+    rest: Floats,
+    X: Floats,
+    R: Floats,
+    front: Floats,
+    up: Floats,
+    takes: Sequence[slice] | None = None,
 ) -> JointAngles:
     """Three angles of each named joint: hip, knee, ankle and elbow by Z–X–Y, shoulder by Y–X–Y (thorax to humerus).
 
@@ -67,6 +74,7 @@ def joint_angles(
     X         : (frame, joint, xyz) joints in each frame
     R         : (frame, joint, 3, 3) from the reference pose to each frame
     front, up : (xyz,) of the body in the reference pose, unit vectors
+    takes     : positions of the frames of each take; None takes all as one
     returns   : flexion, adduction, internal rotation, dorsiflexion, inversion, pronation and elevation are positive; 0° of the
                 plane of elevation is sideways, 90° ahead; pronation is against the reference pose
     """
@@ -89,7 +97,7 @@ def joint_angles(
             before = frames.get(p, trunk["shoulder" if station in ("shoulder", "elbow") else "hip"])
             frames[j] = _least(before, joint.along, rest[end] - rest[j])
             moving[j] = R[:, j] @ frames[j]
-            axial = _axial(station, side, at, X, R, moving[j], frames[j])
+            axial = _axial(station, side, at, X, R, moving[j], frames[j], takes)
             if axial is not None:
                 moving[j] = turned(moving[j], axial.turn)
             if station != "ankle":
@@ -102,7 +110,14 @@ def joint_angles(
 
 
 def _axial(
-    station: str, side: str, at: Mapping[str, int], X: Floats, R: Floats, axes: Floats, rest: Floats
+    station: str,
+    side: str,
+    at: Mapping[str, int],
+    X: Floats,
+    R: Floats,
+    axes: Floats,
+    rest: Floats,
+    takes: Sequence[slice] | None,
 ) -> AxialTurn | None:
     """How a segment is turned about its length, as what lies beyond it shows; None where nothing beyond it was found."""
 
@@ -114,12 +129,12 @@ def _axial(
         end = beyond(*JOINTS["knee" if station == "hip" else "elbow"].ends)
         if bending is None or end is None:
             return None
-        return turn_of_bend(axes, X[:, end] - X[:, bending], -1.0 if station == "hip" else 1.0)
+        return turn_of_bend(axes, X[:, end] - X[:, bending], -1.0 if station == "hip" else 1.0, takes)
     if station == "knee":
         ankle, toes = beyond("ankle"), beyond("toe", "foot_end")
-        return None if ankle is None or toes is None else turn_of_direction(axes, X[:, toes] - X[:, ankle])
+        return None if ankle is None or toes is None else turn_of_direction(axes, X[:, toes] - X[:, ankle], takes)
     wrist = beyond("wrist") if station == "elbow" else None
-    return None if wrist is None else turn_of_part(axes, R[:, wrist], rest)
+    return None if wrist is None else turn_of_part(axes, R[:, wrist], rest, takes)
 
 
 def _three(turn: Floats, station: str) -> tuple[Floats, Floats, Floats]:

@@ -5,6 +5,7 @@ rigid parts can find it. Between two parts of the tree a bone is fitted whose mo
 is one where one joint left the two parts drifting, and where it turns about two points, one on either side, that lie apart.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.blended_bone import MovingSkin, blended_bone, refitted
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.rotation_centres import Joints, RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
 class HiddenBonesSettings(NamedTuple):
@@ -104,11 +106,14 @@ class HiddenBone(NamedTuple):
         return moved / np.maximum(self.drift, 1e-6 * length + np.finfo(float).tiny)
 
 
-def hidden_bone(skin: MovingSkin, between: Border, settings: HiddenBonesSettings | None = None) -> HiddenBone | None:
+def hidden_bone(
+    skin: MovingSkin, between: Border, settings: HiddenBonesSettings | None = None, takes: Sequence[slice] | None = None
+) -> HiddenBone | None:
     """The bone between two parts, if there is one; None where one joint does.
 
     skin    : every vertex of it was followed
     between : the parts and the joint that they have without it
+    takes   : positions of the frames of each take; None takes all as one
     """
     chosen, size = settings or HiddenBonesSettings(), float(np.sqrt(skin.area.sum()))
     if between.drift < 0.5 * chosen.drift * size:
@@ -116,7 +121,7 @@ def hidden_bone(skin: MovingSkin, between: Border, settings: HiddenBonesSettings
     near = _skin_around(skin, between, chosen.narrow * size, chosen)
     if len(near) < chosen.least_vertices:
         return None
-    bone = _fitted(skin, between, near, size, chosen)
+    bone = _fitted(skin, between, near, score_spans(len(skin.x), takes), chosen)
     return bone if is_bone(bone, between, size, chosen) else None
 
 
@@ -145,14 +150,14 @@ def _skin_around(skin: MovingSkin, between: Border, narrow: float, chosen: Hidde
     return np.flatnonzero((away < chosen.reach * max(between.radius, narrow)) & (both > chosen.skin))
 
 
-def _fitted(skin: MovingSkin, between: Border, near: Ints, size: float, chosen: HiddenBonesSettings) -> HiddenBone:
+def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: HiddenBonesSettings) -> HiddenBone:
     """The bone that explains the skin best, from two starts: half-way between the parts, and where they explain least.
 
     It is fitted to some vertices in some frames; its motion is then that of all frames, and all skin near it has weights.
     """
     others = [p for p in np.argsort(-skin.W[near].sum(axis=0), kind="stable") if p not in (between.above, between.part)]
     used = [p for p in others[: chosen.others] if skin.W[near, p].any()]
-    parts, hold = np.array([between.above, between.part, *used]), (chosen.noise * size) ** 2
+    parts, hold = np.array([between.above, between.part, *used]), (chosen.noise * float(np.sqrt(skin.area.sum()))) ** 2
     sample = near[np.linspace(0, len(near) - 1, min(chosen.most_vertices, len(near))).astype(np.int64)]
     some = slice(None, None, -(-len(skin.x) // chosen.most_frames))
     few = skin.of(sample, parts, some).weighed(hold)
@@ -168,8 +173,7 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, size: float, chosen: 
     mass = whole.area * own
     residual = np.sqrt(whole.squares() @ mass / max(mass.sum(), 1e-300))
     joints = _joints(whole, between, residual, chosen)
-    span = np.array([[0, len(whole.R)]])
-    degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], span) for k in (0, 1)])
+    degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], spans) for k in (0, 1)])
     follows = (own > 0.0) & (own >= np.minimum(whole.W[:, :-1].max(axis=1), chosen.follower * own.max()))
     motion = whole.R[:, -1], whole.t[:, -1]
     return HiddenBone(*motion, joints.rest, joints.drift, degrees, near[follows], float(mass.sum()), residual)

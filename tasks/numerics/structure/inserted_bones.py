@@ -32,7 +32,7 @@ def inserted_bones(
     for k in range(1, len(tree.order)):
         radius = float(met.radius[tree.border[k]])
         between = Border(k, int(tree.parents[k]), found.rest[k], radius, float(found.drift[k]))
-        if (bone := hidden_bone(skin, between, settings)) is not None:
+        if (bone := hidden_bone(skin, between, settings, body.takes)) is not None:
             bones[k] = bone
     return _extended(body, found, bones, noise) if bones else found
 

@@ -8,6 +8,7 @@ import numpy as np
 from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.joint_names import CERTAIN_FRONT, JointNames
 from kinetree.schemas.structure.skeleton import Skeleton
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.results.gait import Event, gait_events, strides, symmetry_index
 from kinetree.tasks.numerics.results.joint_angles import joint_angles
 from kinetree.tasks.numerics.results.placement import upright_rotation
@@ -48,7 +49,8 @@ def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | 
         return None
     s = skeleton
     moving = np.array(s.rest), np.array(s.positions), np.array(s.rotation)
-    found = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up))
+    takes = take_spans(s.frames)
+    found = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes)
     shown = dict(zip(names.anatomy, s.names, strict=True))
     titles = [f"{shown[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in found.degrees)]
     titles += [f"{shown[joint]}.rotation_seen" for joint in found.rotation_seen]

@@ -52,6 +52,12 @@ def test_frames_that_do_not_show_it_lie_between_those_that_do_on_the_shorter_way
     np.testing.assert_array_equal(filled(turn, np.zeros(6, bool)).turn, 0.0)
 
 
+def test_what_one_take_shows_says_nothing_of_another():
+    turn, seen = np.radians([40.0, 0, 0, 0, -60, 0]), np.array([True, False, False, False, True, False])
+    found = filled(turn, seen, [slice(0, 2), slice(2, 3), slice(3, 6)])
+    np.testing.assert_allclose(np.degrees(found.turn), [40, 40, 0, -60, -60, -60])
+
+
 def test_turned_axes_keep_their_length_and_stay_right_handed(lost):
     axes, turn, true = lost
     np.testing.assert_allclose(true[:, :, 1], axes[:, :, 1])

@@ -16,11 +16,11 @@ from kinetree.tasks.numerics.structure.hidden_bones import (
 )
 
 
-def proposed(body: Known) -> HiddenBone | None:
+def proposed(body: Known, takes: list[slice] | None = None) -> HiddenBone | None:
     found = neck_ends(body)
     scale = float(np.ptp(body.V[:, 2])) / 10.0
     skin = MovingSkin(body.V, body.x, body.area, found.W, found.R, found.t)
-    return hidden_bone(skin, Border(1, 0, found.rest[1], scale, float(found.drift[1])))
+    return hidden_bone(skin, Border(1, 0, found.rest[1], scale, float(found.drift[1])), takes=takes)
 
 
 @pytest.mark.parametrize(("half", "blend"), [(0.6, 2.4), (0.9, 2.4), (1.2, 2.0)])
@@ -73,21 +73,41 @@ def test_a_bone_grows_with_the_body() -> None:
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "unasked"),
     [
-        {"area": 0.01},
-        {"degrees": np.array([5.0, 40.0])},
-        {"drift": np.array([0.0, 0.06])},
-        {"joint": np.array([[0, 0, 0], [0, 0, 0.5]])},
+        ({"area": 0.01}, {}),
+        ({"degrees": np.array([5.0, 40.0])}, {}),
+        ({"drift": np.array([0.0, 0.06])}, {"more_drift": 99.0}),
+        ({"drift": np.array([0.0, 0.2])}, {"steady": 9.0}),
+        ({"drift": np.array([0.0, 1.5])}, {"steady": 9.0, "more_drift": 99.0}),
+        ({"joint": np.array([[0, 0, 0], [0, 0, 0.5]])}, {}),
     ],
+    ids=["area", "degrees", "steady", "more_drift", "ratio", "apart"],
 )
-def test_every_sign_of_a_bone_is_asked_for(change: dict[str, Any]) -> None:
+def test_every_sign_of_a_bone_is_asked_for(change: dict[str, Any], unasked: dict[str, float]) -> None:
     body = neck()
     bone = proposed(body)
     between, size = Border(1, 0, np.zeros(3), 1.0, 0.05), float(np.sqrt(body.area.sum()))
+    asked = HiddenBonesSettings(**unasked)
     assert bone is not None
-    assert is_bone(bone, between, size, HiddenBonesSettings())
-    assert not is_bone(bone._replace(**change), between, size, HiddenBonesSettings())
+    assert is_bone(bone, between, size, asked)
+    assert not is_bone(bone._replace(**change), between, size, asked)
+
+
+def test_a_bone_that_turns_against_a_side_in_one_take_alone_turns() -> None:
+    body = neck()
+    still = 30 * len(body.x)
+    long = body._replace(
+        x=np.concatenate([body.x, np.repeat(body.x[:1], still, 0)]),
+        R=np.concatenate([body.R, np.repeat(body.R[:1], still, 0)]),
+        t=np.concatenate([body.t, np.repeat(body.t[:1], still, 0)]),
+    )
+    takes = [slice(0, len(body.x)), slice(len(body.x), len(long.x))]
+    alone, together, parted = proposed(body), proposed(long), proposed(long, takes)
+    assert alone is not None
+    assert parted is not None
+    assert parted.degrees.min() == pytest.approx(alone.degrees.min(), abs=2.0)
+    assert together is None or together.degrees.min() < parted.degrees.min() - 5.0
 
 
 def test_a_joint_that_does_not_drift_needs_no_second() -> None:
