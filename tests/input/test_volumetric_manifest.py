@@ -8,9 +8,10 @@ from numerics.input.animated_glbs import Made
 from numerics.input.animated_glbs import V as TETRAHEDRON
 
 from kinetree.errors import SourceError
-from kinetree.pipeline.storage.files import Files
+from kinetree.pipeline.storage.files import Files, Settling
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
+from kinetree.tasks.input.frames.found import frames_at
 from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.input.source import source
 
@@ -49,28 +50,66 @@ def test_draco_frames_have_the_rate_of_their_manifest(found, tmp_path):
     assert (len(found("take", clip="coarse")), found("take", clip="coarse")[0].fps) == (2, 15.0)
 
 
+def segment(path, shifts):
+    """A GLB of a frame for every shift."""
+    made = Made()
+    made.document["animations"] = []
+    made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in shifts]
+    path.write_bytes(made.raw())
+
+
 def test_morph_targets_of_segments_are_frames_one_after_the_other(found, tmp_path):
     targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2, "frameCount": 4}}
     folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
-    for segment in range(2):
-        made = Made()
-        made.document["animations"] = []
-        shifts = (2 * segment, 2 * segment + 1)
-        made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in shifts]
-        (folder / f"glb_{segment:07d}.glb").write_bytes(made.raw())
-    frames = found("take/manifest.json")
-    assert (list(frames), {f.fps for f in frames.values()}, {f.unit for f in frames.values()}) == ([0, 1, 2, 3], {10.0}, {"m"})
-    for t, frame in frames.items():
-        np.testing.assert_allclose(surface(frame)[0], TETRAHEDRON + t, atol=1e-6)
+    for k in range(2):
+        segment(folder / f"glb_{k:07d}.glb", (2 * k, 2 * k + 1))
+    for where in ("take", "take/manifest.json"):
+        frames = found(where, clip="glb")
+        stated = {f.fps for f in frames.values()}, {f.unit for f in frames.values()}
+        assert (list(frames), *stated) == ([0, 1, 2, 3], {10.0}, {"m"})
+        for t, frame in frames.items():
+            np.testing.assert_allclose(surface(frame)[0], TETRAHEDRON + t, atol=1e-6)
+
+
+def test_segments_that_still_come_are_read_as_far_as_they_are_complete(tmp_path):
+    targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2, "frameCount": 6}}
+    folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
+    settling = Settling()
+    files = Files.of(Store.at(tmp_path / "store"), settling)
+    for k in range(2):
+        segment(folder / f"glb_{k:07d}.glb", (2 * k, 2 * k + 1))
+    with pytest.raises(SourceError, match="no file is complete yet"):
+        frames_at(str(folder), files)
+    settling.look()
+    (folder / "glb_0000001.glb").write_bytes(b"glTF, still being written")
+    assert {t: frame.fps for t, frame in frames_at(str(folder), files).items()} == {0: 10.0, 1: 10.0}
+    with pytest.raises(SourceError, match="has 6 frames, but only 4 are there, in 2 files"):
+        frames_at(str(folder), Files.of(Store.at(tmp_path / "store")))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"joints": [[0, 1, 2]], "fps": 25},
+        {"maxVertices": 9, "frameData": [{"frameNumber": 0}]},
+        {"output": {"geometry": {"targets": {"drc": {}}, "path": "[target]/[index][ext]"}}, "input": {"geometry": {}}},
+    ],
+    ids=["truth", "version 1", "configuration of an encoder"],
+)
+def test_meshes_beside_json_that_is_no_manifest_of_theirs_are_frames_on_their_own(found, tmp_path, other):
+    (tmp_path / "take").mkdir()
+    (tmp_path / "take" / "other.json").write_text(json.dumps(other))
+    for t in range(2):
+        rows = [*("v {} {} {}".format(*row) for row in V), *("f {} {} {}".format(*row) for row in F + 1)]
+        (tmp_path / "take" / f"{t}.obj").write_text("\n".join(rows))
+    frames = found("take")
+    assert (list(frames), frames[0].fps) == ([0, 1], None)
 
 
 def test_a_segment_with_more_frames_than_its_manifest_says_is_refused(found, tmp_path):
     targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
     folder = take(tmp_path / "take", targets, "[target]_[index][ext]")
-    made = Made()
-    made.document["animations"] = []
-    made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in range(3)]
-    (folder / "glb_0.glb").write_bytes(made.raw())
+    segment(folder / "glb_0.glb", range(3))
     with pytest.raises(SourceError, match=r"glb_0\.glb: 3 frames, but manifest\.json says that a file has 2"):
         found("take/manifest.json")
 

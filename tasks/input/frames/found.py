@@ -86,13 +86,13 @@ def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
 
 
 def _manifest(path: Path) -> Path | None:
-    """The volumetric manifest that a path is, or that lies in a folder without meshes."""
+    """The volumetric manifest that a path is, or that lies in a folder."""
     with _refusals(path):
         if path.suffix.lower() in MANIFESTS and path.is_file():
             return path
-        if not path.is_dir() or _is_zarr(path) or any(p.suffix.lower() in mesh_suffixes() for p in path.iterdir()):
+        if not path.is_dir() or _is_zarr(path):
             return None
-        return manifest_in(path)
+        return manifest_in(path, beside_meshes=any(p.suffix.lower() in mesh_suffixes() for p in path.iterdir()))
 
 
 def _animated(path: Path | str, clip: str, files: Files) -> dict[int, Source]:

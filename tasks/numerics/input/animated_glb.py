@@ -25,6 +25,8 @@ _MOST_RATE = 240.0
 """… this."""
 _MOST_FRAMES = 100_000
 _MOST_VERTICES = 50_000_000
+_MOST_BYTES = 2**31
+"""Of all morph targets as numbers: those of a body of 100,000 vertices for half a minute."""
 _MOST_DEPTH = 1000
 _WIDTH = {"translation": 3, "rotation": 4, "scale": 3}
 _REST: Mapping[str, Sequence[float]] = {"translation": (0, 0, 0), "rotation": (0, 0, 0, 1), "scale": (1, 1, 1)}
@@ -89,8 +91,10 @@ class AnimatedGlb:
         V, F, begin = [], [], 0
         for piece in self._pieces:
             X = piece.V
-            w = np.eye(self._targets)[t] if self._targets else weights.get(piece.node, piece.weights_at_rest)
-            if len(piece.targets):
+            if self._targets:
+                X = X + piece.targets[t]
+            elif len(piece.targets):
+                w = weights.get(piece.node, piece.weights_at_rest)
                 n = min(len(w), len(piece.targets))
                 X = X + np.tensordot(w[:n], piece.targets[:n], 1)
             flips = False
@@ -184,7 +188,9 @@ class AnimatedGlb:
         if counts == {0} or len(counts) > 1:
             told = " and ".join(map(str, sorted(counts)))
             raise SourceError(f"{self.name}: its meshes have {told} morph targets, which are no frames")
-        return counts.pop()
+        if (count := counts.pop()) > _MOST_FRAMES:
+            raise SourceError(f"{self.name}: {count} morph targets, more than {_MOST_FRAMES} frames; export a shorter segment")
+        return count
 
     def _posed(self, t: float) -> tuple[dict[int, Floats], dict[int, Floats]]:
         """The matrix of every node in the scene, and weights of morph targets, at a time."""
@@ -204,17 +210,21 @@ class AnimatedGlb:
         return world, {node: value for (node, path), value in now.items() if path == "weights"}
 
     def _pieces_shown(self) -> list[_Piece]:
-        pieces = []
+        pieces, vertices, size = [], 0, 0
         for i in self._parents:
             node = self._nodes[i]
             if "mesh" not in node:
                 continue
             mesh = self._gltf.item("meshes", node["mesh"])
             for primitive in mesh.get("primitives", []):
-                if primitive.get("mode", 4) == 4:
-                    pieces.append(self._piece(i, node, mesh, primitive))
-                if sum(len(p.V) for p in pieces) > _MOST_VERTICES:
+                if primitive.get("mode", 4) != 4:
+                    continue
+                pieces.append(self._piece(i, node, mesh, primitive))
+                vertices += len(pieces[-1].V)
+                size += pieces[-1].targets.nbytes
+                if vertices > _MOST_VERTICES:
                     raise SourceError(f"{self.name}: its scene unfolds to more than {_MOST_VERTICES} vertices")
+                self._refuse_beyond(size)
         if not pieces:
             raise SourceError(f"{self.name}: shows no triangles; a surface is needed")
         return pieces
@@ -226,9 +236,9 @@ class AnimatedGlb:
         if V.ndim != 2 or V.shape[1] != 3 or corners.ndim != 1 or len(corners) % 3:
             raise SourceError(f"{self.name}: a mesh is not made of triangles in space; the file is damaged")
         V, F = checked(V, corners.astype(np.int64).reshape(-1, 3), self.name)
-        targets = [
-            self._gltf.array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in primitive.get("targets", [])
-        ]
+        held = primitive.get("targets", [])
+        self._refuse_beyond(len(held) * V.nbytes)  # a target without positions takes three bytes of the file
+        targets = [self._gltf.array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in held]
         if any(t.shape != V.shape for t in targets):
             raise SourceError(f"{self.name}: a morph target has not as many vertices as its mesh; the file is damaged")
         at_rest = node.get("weights", mesh.get("weights", [0.0] * len(targets)))
@@ -237,6 +247,11 @@ class AnimatedGlb:
             i, V, F.astype(np.int64), np.array(targets).reshape(-1, len(V), 3), _numbers(at_rest, None, self.name),
             joints, weights, skin, inverse,
         )  # fmt: skip
+
+    def _refuse_beyond(self, size: int) -> None:
+        """Raises SourceError where morph targets take more bytes than they may."""
+        if size > _MOST_BYTES:
+            raise SourceError(f"{self.name}: its morph targets unfold to {size} bytes, more than {_MOST_BYTES}; export fewer")
 
     def _skin(
         self, node: Mapping[str, Any], attributes: Mapping[str, Any], n: int

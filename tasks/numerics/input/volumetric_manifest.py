@@ -7,7 +7,7 @@ every few frames, whose morph targets are the frames.
 
 import glob
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal, NamedTuple
@@ -19,7 +19,9 @@ from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 SUFFIXES = (".json", ".manifest")
 LARGEST = 2**26
-"""Bytes of a manifest; version 1 lists every frame in it."""
+"""Bytes of a manifest, and of the JSON files of a folder that are looked through for one; version 1 lists every frame in it."""
+_WORDS = ("geometry", "DRCURLPattern", "frameData")
+"""Every manifest has one of them."""
 _INDEX = re.compile(r"\[index\]|\[#+\]|#+")
 _EXTENSIONS: Mapping[str, tuple[Literal["file", "segment"], str]] = {
     "draco": ("file", ".drc"), "obj": ("file", ".obj"), "glb": ("file", ".glb"), "gltf": ("file", ".glb"),
@@ -44,15 +46,23 @@ class VolumetricManifest(NamedTuple):
     fps: float | None
 
 
-def manifest_in(folder: Path) -> Path | None:
+def manifest_in(folder: Path, *, beside_meshes: bool = False) -> Path | None:
     """The one manifest of a folder; None where there is none.
 
-    raises : SourceError where there are several
+    beside_meshes : the folder can be read without one: then an encoder's configuration, or a manifest of version 1, is none
+    raises        : SourceError where there are several
     """
-    found = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file())
-    found = [path for path in found if _is_manifest(_held_or_none(path))]
+    files = [(path.stat().st_size, path) for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()]
+    found, read = [], 0
+    for size, path in sorted(files):  # a manifest is small; a take may have a large file for every frame
+        read += size
+        if read > LARGEST:
+            break
+        held = _held_or_none(path)
+        if _is_manifest(held) and not (beside_meshes and (_is_version_1(held) or "output" in held)):
+            found.append(path)
     if len(found) > 1:
-        raise SourceError(f"{folder}: {' and '.join(path.name for path in found[:3])} are manifests; name one of them")
+        raise SourceError(f"{folder}: {' and '.join(path.name for path in sorted(found)[:3])} are manifests; name one of them")
     return found[0] if found else None
 
 
@@ -60,30 +70,27 @@ def read_manifest(path: Path, target: str = "", *, is_growing: bool = False) -> 
     """The files of a target that a manifest names, all of which lie in its folder.
 
     target     : its name; where empty, that with the most frames a second, of those the most bits of a position
-    is_growing : fewer files than the manifest has frames are no fault
+    is_growing : fewer or more files than the manifest has frames are no fault
     raises     : SourceError where it is no manifest of version 2, or files are not there
     """
     held = _held(path)
     if not _is_manifest(held):
         raise SourceError(f"{path}: no manifest of Universal Volumetric 2: it has no geometry; name the folder of the frames")
-    if "frameData" in held or "frameData" in _mapping(held, "geometry"):
+    if _is_version_1(held):
         raise SourceError(f"{path}: {VOLUMETRIC_1}")
     name, template, chosen = _target(held, target, path)
     holds, ending = _EXTENSIONS.get(str(chosen.get("format", "draco")).lower(), ("file", ""))
     if not ending:
         raise SourceError(f"{path}: {name or 'its geometry'} is {chosen['format']!r}; {', '.join(_EXTENSIONS)} are read")
-    found = _files(path, template.replace("[target]", name).replace("[ext]", ending))
+    found = _files(path, template, name, ending)
     length = _count(chosen, "segmentFrameCount", path) if holds == "segment" else 1
     if length is None:
         raise SourceError(f"{path}: {name} has no segmentFrameCount, the frames of one file; the manifest is not complete")
     if (max(found) + 1) * length > TAKE:
         raise SourceError(f"{path}: frame {max(found) * length} is beyond the last number that a frame may have, {TAKE - 1}")
     claimed = _count(chosen, "frameCount", path)
-    if claimed is not None and len(found) * length < claimed and not is_growing:
-        raise SourceError(
-            f"{path}: {name or 'its geometry'} has {claimed} frames, but only {len(found)} files are there; copy the others"
-            f" too, or name their folder {next(iter(found.values())).parent}"
-        )
+    if claimed is not None and not is_growing:
+        _refuse_other_count(path, name, claimed, list(found.values()), length)
     return VolumetricManifest(tuple(found.values()), tuple(found), holds, length, _rate(chosen, path))
 
 
@@ -94,7 +101,8 @@ def _held(path: Path) -> Any:
 def _held_or_none(path: Path) -> Any:
     """What a file beside others holds; None where that cannot be read, since it need not be a manifest."""
     try:
-        return _held(path)
+        text = small_text(path, SourceError, LARGEST)
+        return small_json(text, str(path), SourceError) if any(word in text for word in _WORDS) else None
     except SourceError:
         return None
 
@@ -105,6 +113,11 @@ def _is_manifest(held: Any) -> bool:
         return False
     geometry = _mapping(held, "geometry") or _mapping(_mapping(held, "output"), "geometry")
     return bool({"targets", "path", "frameData"} & set(geometry)) or "DRCURLPattern" in held or "frameData" in held
+
+
+def _is_version_1(held: Mapping[str, Any]) -> bool:
+    """Whether a manifest lists its frames, which lie in one file."""
+    return "frameData" in held or "frameData" in _mapping(held, "geometry")
 
 
 def _mapping(held: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -136,31 +149,47 @@ def _fineness(target: Mapping[str, Any], path: Path) -> tuple[float, float]:
     return _rate(target, path) or 0.0, float(bits) if isinstance(bits, int | float) else 0.0
 
 
-def _files(path: Path, template: str) -> dict[int, Path]:
-    """The files of a template by number, in the order of numbers."""
-    relative = PurePosixPath(template)
-    if relative.is_absolute() or ".." in relative.parts or "\\" in template or "://" in template:
-        raise SourceError(
-            f"{path}: its frames lie at {template!r}, outside its folder; put them beside it and name their folder"
-        )
-    places = list(_INDEX.finditer(template))
+def _files(path: Path, template: str, name: str, ending: str) -> dict[int, Path]:
+    """The files of a target's name and ending at a template, by number, in the order of numbers."""
+
+    def filled(part: str) -> str:
+        return part.replace("[ext]", ending).replace("[target]", name)
+
+    whole = filled(template)
+    relative = PurePosixPath(whole)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in whole or "://" in whole:
+        raise SourceError(f"{path}: its frames lie at {whole!r}, outside its folder; put them beside it and name their folder")
+    places = list(_INDEX.finditer(template))  # not in the name of the target, which may have the same signs
     if len(places) != 1:
-        raise SourceError(f"{path}: {template!r} is no path of frames; one [index] must stand for their numbers")
-    before, after = template[: places[0].start()], template[places[0].end() :]
+        raise SourceError(f"{path}: {whole!r} is no path of frames; one [index] must stand for their numbers")
+    before, after = filled(template[: places[0].start()]), filled(template[places[0].end() :])
     number = re.compile(re.escape(before) + "([0-9]+)" + re.escape(after))
     try:
         there = list(path.parent.glob(f"{glob.escape(before)}*{glob.escape(after)}"))
     except (OSError, RecursionError) as error:  # names too long, folders in folders without end
-        raise SourceError(f"{path}: {template[:80]!r} is no path of frames ({type(error).__name__})") from None
+        raise SourceError(f"{path}: {whole[:80]!r} is no path of frames ({type(error).__name__})") from None
     named = ((number.fullmatch(file.relative_to(path.parent).as_posix()), file) for file in there)
     found = sorted((int(match[1]), file) for match, file in named if match)
     if not found:
         raise SourceError(
             f"{path}: no file at {before}0000000{after}; copy the frames beside the manifest, or name their folder"
+            " or a pattern (*.ply)"
         )
     if twice := {file for (n, _), (m, file) in pairwise(found) if n == m}:
         raise SourceError(f"{path}: {min(twice).name} has the number of another file; take one of them away")
     return dict(found)
+
+
+def _refuse_other_count(path: Path, name: str, claimed: int, files: Sequence[Path], length: int) -> None:
+    """Raises SourceError where files of this many frames each are not as many as the manifest claims frames."""
+    told = f"{path}: {name or 'its geometry'} has {claimed} frames, but"
+    if len(files) > -(-claimed // length):
+        raise SourceError(f"{told} {len(files)} files are there; take the others away")
+    if len(files) * length < claimed:
+        folder = files[0].parent
+        alone = f"{folder}/*{files[0].suffix}" if folder == path.parent else f"their folder {folder}"
+        remedy = "copy the others too" + (f", or name {alone}" if length == 1 else "")
+        raise SourceError(f"{told} only {len(files) * length} are there, in {len(files)} files; {remedy}")
 
 
 def _rate(target: Mapping[str, Any], path: Path) -> float | None:

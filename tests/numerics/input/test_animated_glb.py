@@ -1,5 +1,7 @@
 """Laws of an animated GLB: what moves is where glTF says it is, at the file's own rate; what is damaged is refused in words."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from numerics.input.animated_glbs import TENTHS, F, Made, V
 
 from kinetree.errors import MeshError, SourceError
+from kinetree.tasks.numerics.input import animated_glb
 from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.numerics.input.animated_glb import AnimatedGlb
 
@@ -77,6 +80,36 @@ def test_morph_targets_are_added_by_their_weights_also_sparse_ones():
     made.primitive["targets"] = [{"POSITION": len(made.document["accessors"]) - 1}, {"POSITION": made.add(V)}]
     X, _ = frames_of(made.moves("weights", [0, 1], [0, 0, 0.5, 1])).mesh(24)
     np.testing.assert_allclose(X, 2 * V + 0.5 * np.float32([[0, 0, 0], [0, 0, 0], [0, 0, 4], [0, 0, 0]]), atol=1e-6)
+
+
+def test_a_frame_of_many_morph_targets_costs_its_own_alone():
+    made = Made()
+    made.primitive["targets"] = [*[{}] * 9999, {"POSITION": made.add(V)}]
+    frames = AnimatedGlb(made.raw(), "walk.glb", targets_are_frames=True)
+    tracemalloc.start()
+    X, _ = frames.mesh(9999)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    np.testing.assert_allclose(X, 2 * V, atol=1e-6)
+    assert peak < 10**6
+
+
+@pytest.mark.parametrize(
+    ("limit", "primitives", "told"),
+    [
+        ("_MOST_FRAMES", 1, r"20 morph targets, more than 10 frames; export a shorter segment"),
+        ("_MOST_BYTES", 1, r"its morph targets unfold to 1920 bytes, more than 1900; export fewer"),
+        ("_MOST_BYTES", 2, r"its morph targets unfold to 3840 bytes, more than 3000; export fewer"),
+    ],
+    ids=["frames", "bytes", "bytes of all primitives"],
+)
+def test_morph_targets_without_bound_are_refused(monkeypatch, limit, primitives, told):
+    made = Made()
+    made.primitive["targets"] = [{}] * 20
+    made.document["meshes"][0]["primitives"] *= primitives
+    monkeypatch.setattr(animated_glb, limit, {"_MOST_FRAMES": 10}.get(limit, 1900 if primitives == 1 else 3000))
+    with pytest.raises(SourceError, match=told):
+        AnimatedGlb(made.raw(), "walk.glb", targets_are_frames=True)
 
 
 def test_skin_moves_vertices_with_their_joints_and_not_with_their_node():

@@ -49,6 +49,19 @@ def test_what_a_file_does_to_its_reader_ends_there(monkeypatch, does):
         draco.unpacked(b"DRACO")
 
 
+def test_what_unpacks_to_more_than_is_held_here_is_refused(monkeypatch):
+    V, F = grid(50)
+    raw = DracoPy.encode(V, F, quantization_bits=8)
+    size = sum(len(array) * 12 for array in (V, F))
+    monkeypatch.setattr(draco, "MOST_BYTES", size - 1)
+    with pytest.raises(
+        MeshError, match=f"its {len(raw)} bytes unpack to {size} bytes, more than {size - 1}; the file is damaged"
+    ):
+        draco.unpacked(raw)
+    monkeypatch.setattr(draco, "MOST_BYTES", size)
+    assert len(draco.unpacked(raw)[1]) == len(F)
+
+
 def test_a_file_cut_short_or_with_altered_counts_is_refused():
     raw = DracoPy.encode(*grid(3), quantization_bits=8)
     for damaged in (raw[:4], raw[:12], raw[: len(raw) // 2], raw[:7] + b"\xff\xff\xff\xff\xff" + raw[12:], b""):

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from kinetree.errors import SourceError
+from kinetree.tasks.numerics.input import volumetric_manifest
 from kinetree.tasks.numerics.input.volumetric_manifest import manifest_in, read_manifest
 
 DRACO = {"format": "draco", "frameRate": 25, "frameCount": 3}
@@ -72,7 +73,8 @@ def test_finest_target_is_read_unless_one_is_named(folder):
         (target("x" * 5000 + "/[index][ext]"), "is no path of frames (OSError)"),
         (target("x/" * 50000 + "[index][ext]"), "is no path of frames (RecursionError)"),
         (target("elsewhere/[index][ext]"), "no file at elsewhere/0000000.drc"),
-        (target(frameCount=4), "has 4 frames, but only 3 files are there"),
+        (target(frameCount=4), "drc has 4 frames, but only 3 are there, in 3 files; copy the others too, or name their folder"),
+        (target(frameCount=2), "drc has 2 frames, but 3 files are there; take the others away"),
         (target(frameRate=0), "frameRate is 0; a positive number"),
         (target(frameRate="fast"), "frameRate is fast; a positive number"),
         (target(frameCount=-1), "frameCount is -1; a positive whole number"),
@@ -89,10 +91,45 @@ def test_what_cannot_be_read_ends_in_what_to_do(folder, held, told):
     assert told in refusal(folder, held)
 
 
-def test_sequence_that_still_grows_may_have_fewer_files(folder):
+def test_of_targets_of_one_rate_that_with_the_finest_positions_is_read(folder):
+    held = target("[target]/[index][ext]", settings={"positionQuantizationBits": 8})
+    for name, settings in (("fine", {"positionQuantizationBits": 14}), ("usual", {})):
+        held["geometry"]["targets"][name] = {**DRACO, "frameCount": 1, "settings": settings}
+        (folder / name).mkdir()
+        (folder / name / "1.drc").touch()
+    assert read(folder, held).files == (folder / "fine" / "1.drc",)
+    del held["geometry"]["targets"]["fine"]
+    assert read(folder, held).files == (folder / "usual" / "1.drc",)
+
+
+@pytest.mark.parametrize("name", ["g#1", "g[index]", "g[ext]", "[g]"])
+def test_target_may_be_called_as_places_of_a_path_are(folder, name):
+    held = {"geometry": {"targets": {name: DRACO}, "path": "[target]/[index][ext]"}}
+    (folder / "drc").rename(folder / name)
+    assert read(folder, held).numbers == (1, 2, 10)
+
+
+@pytest.mark.parametrize("claimed", [2, 4])
+def test_sequence_that_still_grows_may_have_other_files(folder, claimed):
     path = folder / "manifest.json"
-    path.write_text(json.dumps(target(frameCount=4)))
+    path.write_text(json.dumps(target(frameCount=claimed)))
     assert len(read_manifest(path, is_growing=True).files) == 3
+
+
+def test_frames_and_files_of_segments_are_counted_apart(folder):
+    for t in range(3):
+        (folder / f"{t}.glb").touch()
+    segments = {"format": "uniform-solve", "segmentFrameCount": 2}
+    assert len(read(folder, target("[index][ext]", **segments, frameCount=5)).files) == 3
+    assert "has 7 frames, but only 6 are there, in 3 files; copy" in refusal(
+        folder, target("[index][ext]", **segments, frameCount=7)
+    )
+    assert "has 4 frames, but 3 files are there" in refusal(folder, target("[index][ext]", **segments, frameCount=4))
+
+
+def test_frames_beside_an_incomplete_manifest_are_named_by_a_pattern(folder):
+    (folder / "1.drc").touch()
+    assert refusal(folder, target("[index][ext]", frameCount=2)).endswith(f"or name {folder}/*.drc")
 
 
 def test_numbers_beyond_those_that_frames_may_have_are_refused(folder):
@@ -112,6 +149,13 @@ def test_folder_without_a_manifest_has_none(folder):
     (folder / "truth.json").write_text('{"joints": []}')
     (folder / "notes.json").write_text("not JSON")
     assert manifest_in(folder) is None
+
+
+def test_a_manifest_is_found_among_files_too_large_to_look_through(folder, monkeypatch):
+    (folder / "manifest.json").write_text(json.dumps(target()))
+    (folder / "a.json").write_text(json.dumps(target()).ljust(1990))
+    monkeypatch.setattr(volumetric_manifest, "LARGEST", 2000)
+    assert manifest_in(folder) == folder / "manifest.json"
 
 
 def test_two_manifests_are_not_chosen_from(folder):
