@@ -303,7 +303,9 @@ def test_unknown_format_names_the_nearest(out):
     with pytest.raises(ConfigError, match="--to glbb: no such format; did you mean 'glb'"):
         export(str(out), "glbb")
     with pytest.raises(ConfigError, match="there are: blender, bvh, c3d, csv, glb"):
-        export(str(out), "fbx")
+        export(str(out), "dae")
+    with pytest.raises(ConfigError, match="--to FBX: Blender writes it, by the script that --to blender leaves"):
+        export(str(out), "FBX")
 
 
 def test_names_are_a_style_or_a_file_that_was_written_and_edited(out, tmp_path, capsys):

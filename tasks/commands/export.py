@@ -40,6 +40,8 @@ LONGEST_NAME = 100
 """Letters of one name: other programs keep 63 of them."""
 EXTRAS = {"usd": "pxr", "c3d": "ezc3d"}
 """The module without which a format cannot be written; the extra that brings it has the format's name."""
+BY_BLENDER = ("fbx", "blend")
+"""Formats that no kept Python package writes."""
 SCHEMA = "json-schema"
 NAMES = "names"
 """What is written though no task writes it: the schema of skeleton.json, and names of joints for --names."""
@@ -73,6 +75,8 @@ def export(
     by part, rignet the rig as text, zarr part labels and aligned meshes. names is a text to edit: the names of all joints,
     which --names FILE takes.
     """
+    if to.lower() in BY_BLENDER:
+        raise ConfigError(f"--to {to}: Blender writes it, by the script that --to blender leaves beside the body")
     if to not in (*FORMATS, NAMES, SCHEMA):
         raise ConfigError(f"--to {to}: no such format; {nearest(to, (*FORMATS, NAMES, SCHEMA))}")
     if to == SCHEMA:
