@@ -1,7 +1,7 @@
 """A data set night after night: what a first run, a night without news, new and changed takes, kills and twins cost.
 
     python benchmarks/dataset.py [--sequences 50] [--distinct 50] [--frames 3] [--vertices 600] [--small 8]
-    python benchmarks/dataset.py --parts workers --sequences 50
+    python benchmarks/dataset.py --parts workers --sequences 50 [--executor processes]
 
 Prints one table. Every sequence is a generated body of other proportions: humans, quadrupeds and random trees in turn; five
 are broken in different ways. Nodes are counted in dataset.log. Kills and
@@ -47,12 +47,13 @@ def main() -> None:
     )
     options.add_argument("--small", type=int, default=8, help="sequences for kills and twins, at most 10")
     options.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, help="what is measured")
+    options.add_argument("--executor", choices=("threads", "processes"), default="threads", help="of the part workers")
     chosen = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         lab = Lab(Path(folder) / "lab", chosen.frames, chosen.vertices, chosen.distinct)
         parts = {
             "nights": lambda: _nights(lab, chosen.sequences),
-            "workers": lambda: _workers(lab, chosen.sequences - 5),
+            "workers": lambda: _workers(lab, chosen.sequences - 5, chosen.executor),
             "faults": lambda: _faults(lab, chosen.small),
         }
         for what, *cells in itertools.chain.from_iterable(parts[part]() for part in chosen.parts):
@@ -162,14 +163,14 @@ def _takes(lab: Lab, count: int) -> list[str]:
     return [f"takes/take_{number:03d}" for number in range(count)]
 
 
-def _workers(lab: Lab, count: int) -> Iterator[list[str]]:
+def _workers(lab: Lab, count: int, executor: str) -> Iterator[list[str]]:
     keys = {**CONFIG, "sequences": _takes(lab, count)}
     wall = {}
     for workers in (1, 2):
         file = lab.write(lab.home / f"workers_{workers}.yaml", {**keys, "output": f"workers_{workers}/{{name}}"})
-        told, wall[workers], spent = lab.run(file, "--workers", str(workers))
+        told, wall[workers], spent = lab.run(file, "--workers", str(workers), "--executor", executor)
         cells = _told(told, wall[workers], spent, 0, lab.home / f"workers_{workers}" / "dataset.log")
-        yield [f"{count} sequences, workers: {workers}", *cells]
+        yield [f"{count} sequences, {executor}: {workers}", *cells]
         yield from (["", f"{n}: {row['failures']}"] for n, row in told["sequences"].items() if row["state"] == "failed")
     yield ["by the clock, 1 worker over 2", f"{wall[1] / wall[2]:.2f}"]
     yield ["  results equal", _equal(lab.home / "workers_1", lab.home / "workers_2")]
