@@ -193,16 +193,18 @@ class Pipeline:
     def computed(self, name: str, also: Collection[str] = ()) -> Snapshot:
         """Computes one task from what is there and nothing else; returns the snapshot that has its artifacts.
 
-        Where the store may be read and not written, or is full, what is computed stays in the memory of this process.
+        Where the store may be read and not written, or is full, what is computed stays in the memory of this process, and
+        the snapshot's `unkept` says why.
 
         also   : tasks before it that are computed where they are out of date
         raises : UnknownNodeError where something it reads is not there; NodesFailedError where it fails itself
         """
         try:
             return self._computed(name, also)
-        except (ReadOnlyStoreError, StoreFullError):
+        except (ReadOnlyStoreError, StoreFullError) as error:
             config = replace(self.config, compute=Compute(executor="sync"))  # no other process sees that memory
-            return replace(self, config=config, store=self.store.unwritten())._computed(name, also)
+            there = replace(self, config=config, store=self.store.unwritten())._computed(name, also)
+            return replace(there, unkept=f"{error}; computed in memory, nothing is kept")
 
     def _computed(self, name: str, also: Collection[str]) -> Snapshot:
         there = self.inspect(until=[name])

@@ -1,7 +1,7 @@
 """Compares two runs from Python: `compare("walk-out", "walk-paper")` gives what `kinetree compare` prints, typed."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -35,6 +35,8 @@ SHOWN = Limits(frames=90, vertices=3000, input_vertices=1500)
 """Most of each body that a page of two holds."""
 A = TypeVar("A", bound=Artifact)
 P = TypeVar("P", bound=Params)
+Tell = Callable[[str], None]
+"""Takes a remark, in words."""
 
 
 @dataclass(frozen=True)
@@ -81,9 +83,9 @@ class FinishedRun:
         needed = {task.name for task in graph.until([graph.writer(Skeleton).name]).tasks}
         return sum(row.seconds for row in self.there.timings.tasks if row.task in needed)
 
-    def evaluation(self, sets: list[str]) -> Evaluation | None:
-        """Its skeleton against the truth, computed where it is not there; None where there is no truth."""
-        found = evaluated(Pipeline.of(self.name, sets=sets))
+    def evaluation(self, sets: list[str], tell: Tell | None = None) -> Evaluation | None:
+        """Its skeleton against the truth, computed where it is not there, as `evaluated`; None where there is no truth."""
+        found = evaluated(Pipeline.of(self.name, sets=sets), tell)
         return None if found is None else labelled(found, self.label)
 
 
@@ -137,10 +139,10 @@ def both(run_a: str | Path, run_b: str | Path) -> tuple[FinishedRun, FinishedRun
     return a, b
 
 
-def compared(a: FinishedRun, b: FinishedRun, truth: str | Path | None = None) -> Comparison:
-    """The comparison of two runs that `both` gives; raises as `compare`."""
+def compared(a: FinishedRun, b: FinishedRun, truth: str | Path | None = None, tell: Tell | None = None) -> Comparison:
+    """The comparison of two runs that `both` gives; raises as `compare`, tells as `evaluated`."""
     sets = [*_truth(a, b, truth), *_settings(a)]
-    evaluations = a.evaluation(sets), b.evaluation(sets)
+    evaluations = a.evaluation(sets, tell), b.evaluation(sets, tell)
     has_truth = all(evaluations)
     rows = [
         compared_run(run.name, run.pipeline.config.method, run.skeleton, e, run.seconds)
@@ -181,17 +183,21 @@ def _inputs(run: FinishedRun, limits: Limits) -> dict[int, CoarseMesh]:
     return coarse_meshes({f: meshes[f] for f in frames}, {f: projections[f] for f in frames}, limits.input_vertices)
 
 
-def evaluated(pipeline: Pipeline) -> Evaluation | None:
+def evaluated(pipeline: Pipeline, tell: Tell | None = None) -> Evaluation | None:
     """The evaluation of a pipeline's skeleton, computed where it is not there; None where there is no truth.
 
+    tell   : is told in words where what is computed cannot be kept
     raises : InputError where the truth is wrong; UnknownNodeError where what it is made from is not there
     """
     try:
-        stored = pipeline.computed("evaluation").artifact(Evaluation)
+        there = pipeline.computed("evaluation")
     except NodesFailedError as error:
         if f": {InputError.__name__}: " in str(error):
             raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None
         raise
+    if there.unkept and tell is not None:
+        tell(there.unkept)
+    stored = there.artifact(Evaluation)
     return None if stored.summary is None else Evaluation.model_validate({**stored.plain(), **stored.arrays()})
 
 

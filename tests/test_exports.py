@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -30,6 +31,7 @@ from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output.output import write_elsewhere
 from kinetree.pipeline.output.ownership import MARKER
+from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.store import artifact_path
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.export import EXTRAS, export
@@ -433,3 +435,23 @@ def test_shown_skeleton_is_a_tree_with_lengths_turns_and_support(out, capsys):
         "   ├─ foot  bone 4.123 mm",
         "   └─ spur  bone 3.742 mm",
     ]
+
+
+def test_a_store_that_cannot_be_written_is_told_beside_what_is_written(out, tmp_path, monkeypatch, capsys):
+    beside = Folder._beside
+
+    def refuse(place):
+        if place.root.name == "store":
+            raise OSError(errno.EACCES, os.strerror(errno.EACCES))
+        return beside(place)
+
+    monkeypatch.setattr(Folder, "_beside", refuse)
+    changed = ["joint_names.rename={arm: jaw}"]
+    export(str(out), "trc", tmp_path / "walk.trc", changed, as_json=True)
+    printed = capsys.readouterr()
+    (remark,) = [text for text in json.loads(printed.out)["remarks"] if "nothing is kept" in text]
+    assert re.fullmatch(r"store .*/store: cannot write .*: Permission denied; .*; computed in memory, nothing is kept", remark)
+    assert printed.err == ""
+    for to in ("trc", "names"):
+        export(str(out), to, tmp_path / f"walk-{to}.trc", changed)
+        assert capsys.readouterr().err.count("computed in memory, nothing is kept\n") == 1

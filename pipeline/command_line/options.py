@@ -10,7 +10,7 @@ from rich.console import Console
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application, current
-from kinetree.pipeline.command_line.printable import quoted
+from kinetree.pipeline.command_line.printable import printable, quoted
 
 if TYPE_CHECKING:
     from kinetree.pipeline.inspect import Pipeline
@@ -83,6 +83,11 @@ FollowIdle = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
 err = Console(stderr=True, soft_wrap=True, highlight=False)
+
+
+def tell(remark: str) -> None:
+    """Prints a remark where it does not mix with results, which may be JSON."""
+    err.print(printable(remark), markup=False)
 
 
 def pipeline_of(

@@ -36,6 +36,8 @@ class Snapshot:
     history: History
     notes: tuple[str, ...] = ()
     """What is to be known of the input, e.g. that it was not found and the last run's is taken."""
+    unkept: str = ""
+    """Why what was computed for it is in the memory of this process alone; empty where it is not."""
 
     @cached_property
     def plan(self) -> Plan:

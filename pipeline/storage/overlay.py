@@ -60,11 +60,12 @@ class Overlay:
         return None if data is None else len(data)
 
     def names(self, path: str) -> list[str]:
-        """Names directly below `path`, sorted; empty where nothing is."""
+        """Names directly below `path`, sorted; of a folder from which the last object was removed none."""
         within = f"{path}/" if path else ""
         inside = {name[len(within) :]: data for name, data in self._held.items() if name.startswith(within)}
-        gone = {name for name, data in inside.items() if data is None}
         held = {name.partition("/")[0] for name, data in inside.items() if data is not None}
+        less = {name.partition("/")[0] for name, data in inside.items() if data is None} - held
+        gone = less - {name.partition("/")[0] for name in self.listed(path)} if less else less
         return sorted(({*self._below.names(path)} - gone) | held)
 
     def listed(self, path: str) -> dict[str, Listed]:
@@ -84,7 +85,8 @@ class Overlay:
 
     def remove(self, path: str) -> None:
         """Removes an object, or all below a folder; nothing happens where nothing is."""
-        inside = [f"{path}/{name}" for name in self.listed(path)]
+        within = f"{path}/" if path else ""
+        inside = [f"{within}{name}" for name in self.listed(path)]
         self._held |= dict.fromkeys(inside or [path])
 
     def remove_all(self, paths: Iterable[str]) -> None:

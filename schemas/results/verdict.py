@@ -56,7 +56,8 @@ class Finding(Params):
     frames; imprecise: share of the body's longest side; uncertain, weak: least mean confidence; small, still: greatest range
     in degrees; short: frames."""
     bounds: tuple[float, ...] = ()
-    """imprecise: of each joint, what its mean error exceeds at one joint of ten, share of the body's longest side."""
+    """imprecise: of each joint, the distance that the mean error of nine joints of ten keeps, share of the body's longest
+    side."""
 
 
 class Verdict(Artifact):

@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.command_line.options import AsJson, out, print_json
+from kinetree.pipeline.command_line.options import AsJson, out, print_json, tell
 from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def compare(
 
     _check_name(output)
     a, b = both(run_a, run_b)
-    comparison = compared(a, b, truth)
+    comparison = compared(a, b, truth, tell)
     if as_json:
         print_json(json.loads(comparison_files(comparison, ())["comparison.json"]))
     else:

@@ -123,20 +123,28 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
     import numpy as np
 
     told = small_json(small_text(folder / "told.json", InputError, MOST_TOLD), f"{file}: what Blender says", InputError)
-    counts, fps, scale = np.array(told["counts"], dtype=np.int64).reshape(-1, 2), float(told["fps"]), float(told["scale"])
+    try:
+        counts, fps, scale = np.array(told["counts"], dtype=np.int64).reshape(-1, 2), float(told["fps"]), float(told["scale"])
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{file}: what Blender says: counts, scale and fps are needed ({error!r})") from None
     if not (0 < fps < math.inf and 0 < scale < math.inf):
         raise InputError(f"{file}: its scene has {fps:g} frames a second and a unit of {scale:g} m; set both in Blender")
-    if not len(counts) or (counts == 0).any():
+    if not len(counts) or (counts < 1).any():
         raise InputError(
             f"{file}: no surface in {'any frame' if not counts.any() else 'some frames'}; a mesh that is rendered is needed"
         )
     if len(counts) == 1:
         raise InputError(f"{file}: a single frame; kinematics are seen in motion, and nothing in the file moves")
-    V = np.fromfile(folder / "vertices", np.float32).reshape(-1, 3).astype(np.float64) * scale
-    F = np.fromfile(folder / "faces", np.int32).reshape(-1, 3)
     ends = np.vstack([[0, 0], np.cumsum(counts, axis=0)])
-    if tuple(ends[-1]) != (len(V), len(F)):
-        raise InputError(f"{file}: Blender left {len(V)} of {ends[-1, 0]} vertices; is the disk of {folder.parent} full?")
+    paths, needed = (folder / "vertices", folder / "faces"), [12 * int(end) for end in ends[-1]]
+    left = [path.stat().st_size if path.exists() else 0 for path in paths]
+    if left != needed:
+        raise InputError(
+            f"{file}: Blender left {left[0]} bytes of vertices and {left[1]} of faces, not {needed[0]} and {needed[1]};"
+            f" is the disk of {folder.parent} full?"
+        )
+    V = np.fromfile(paths[0], np.float32).reshape(-1, 3).astype(np.float64) * scale
+    F = np.fromfile(paths[1], np.int32).reshape(-1, 3)
     arrays: dict[str, Any] = {"vertices": V, "faces": F, "vertex_offsets": ends[:, 0], "face_offsets": ends[:, 1]}
     arrays |= {"fps": fps, "unit": "m"}
     beside = target.with_name(f".{target.stem}.{os.getpid()}.npz")

@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from kinetree.errors import ConfigError
-from kinetree.pipeline.command_line.options import AsJson, Set, out, pipeline_of, print_json
+from kinetree.pipeline.command_line.options import AsJson, Set, out, pipeline_of, print_json, tell
 from kinetree.pipeline.command_line.printable import printable
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def evaluated(run: str, truth: Path | None, body: Path | None = None, sets: list
 
     paths = {"truth.file": truth, "truth.body": body}
     changes = [f"{key}={json.dumps(str(path.absolute()))}" for key, path in paths.items() if path is not None]
-    evaluation = of_pipeline(pipeline_of(run, sets=[*(sets or ()), *changes]))
+    evaluation = of_pipeline(pipeline_of(run, sets=[*(sets or ()), *changes]), tell)
     if evaluation is None:
         raise ConfigError(f"{run}: its input came without a true skeleton; name one, e.g. kinetree evaluate {run} truth.json")
     return evaluation

@@ -9,7 +9,7 @@ import typer
 
 from kinetree.errors import ConfigError
 from kinetree.errors.small_text import small_text
-from kinetree.pipeline.command_line.options import AsJson, Set, Target, pipeline_of, print_json
+from kinetree.pipeline.command_line.options import AsJson, Set, Target, pipeline_of, print_json, tell
 from kinetree.pipeline.command_line.printable import printable
 from kinetree.pipeline.suggest import nearest
 
@@ -95,7 +95,7 @@ def export(
         print_json({"files": [str(path) for path in written], "remarks": remarks})
         return
     for text in remarks:
-        typer.echo(printable(text), err=True)
+        tell(text)
     named = written if len(written) <= 4 else written[:1]
     for path in named:
         typer.echo(printable(path))
@@ -111,9 +111,11 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | 
     from kinetree.schemas.structure.joint_names import STYLES
     from kinetree.tasks.views.structure import unknown_joints
 
-    schedule = pipeline.computed(task, LAID_OUT_BY).schedule
+    there = pipeline.computed(task, LAID_OUT_BY)
+    schedule = there.schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
-    remarks = list(dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node))))
+    told = dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node)))
+    remarks = [*([there.unkept] if there.unkept else []), *told]
     if (named := _joint_names(schedule)) is not None:
         remarks += unknown_joints("joint_names.rename" if names is None or names in STYLES else names, named)
     if output is not None:
@@ -147,7 +149,10 @@ def _names_text(pipeline: "Pipeline") -> str:
     """Every joint's own name and the name that files have, as YAML."""
     from kinetree.pipeline.settings.yaml_text import dumped
 
-    found = _joint_names(pipeline.computed("joint_names", LAID_OUT_BY).schedule)
+    there = pipeline.computed("joint_names", LAID_OUT_BY)
+    if there.unkept:
+        tell(there.unkept)
+    found = _joint_names(there.schedule)
     assert found is not None
     return dumped(dict(zip(found.given, found.names, strict=True)), sort_keys=False)
 

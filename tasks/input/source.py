@@ -1,7 +1,6 @@
 """Where the frames are: meshes, silhouettes or volumes, a file each or in one file that holds all, or a synthetic body."""
 
 from collections.abc import Mapping
-from pathlib import Path
 
 from kinetree.errors import SourceError
 from kinetree.pipeline.identity.key import digest
@@ -46,15 +45,18 @@ def _several(params: SourceParams, files: Files) -> dict[int, Source]:
     names = [take.name for take in params.takes]
     if len({name.casefold() for name in names}) < len(names) or not all(take.input for take in params.takes):
         raise SourceError(
-            f"source.takes: {', '.join(names)}: each take needs an input and a name of its own, other than in its capitals"
+            f"source.takes: {', '.join(names)}: each take needs an input, and a name that differs from the others in more than"
+            " capitals"
         )
     found: dict[int, Source] = {}
     measured: dict[str, list[FrameMeasures]] = {}
-    known: dict[tuple[Path, str], str] = {}
+    known: dict[tuple[str, ...], str] = {}
     for k, take in enumerate(params.takes):
         own = _usable(_chosen(frames_at(take.input, files, take.clip), params.frames, take.input), params, files)
-        if (other := known.setdefault((Path(take.input).resolve(), take.clip), take.name)) != take.name:
-            raise SourceError(f"source.takes: {other} and {take.name} are the same ({take.input}); leave one of them out")
+        if (other := known.setdefault(tuple(frame.content for frame in own.values()), take.name)) != take.name:
+            raise SourceError(
+                f"source.takes: {other} and {take.name} have the same frames ({take.input}); leave one of them out"
+            )
         measured[take.name] = [m for m in measures_of_frames(own, files).values() if not isinstance(m, str)]
         for t, frame in own.items():
             dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)

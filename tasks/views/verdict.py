@@ -77,7 +77,8 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
     "uncertain": lambda f, joints, frames: f"{joints}: uncertain in {frames}, hidden or not fitting the input",
     "weak": lambda f, joints, frames: f"{joints}: few frames support it (mean confidence {f.amount:.2f})",
     "imprecise": lambda f, joints, frames: (
-        f"{joints}: not placed well; nine of ten such joints lie within so much of the body's longest side of their true place"
+        f"{joints}: may be off; in nine of ten cases such a joint lies within the distance given, a share of the body's longest"
+        " side, of its true place"
     ),
     "asymmetric": lambda f, joints, frames: f"{joints}: one is misplaced, as their bones differ by {_percent(f.amount)}",
     "short": lambda f, joints, frames: (

@@ -1,6 +1,8 @@
 """The command: two runs in, tables, JSON or a page out, and refusals in words."""
 
+import errno
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ from typer.testing import CliRunner
 from kinetree.errors import ConfigError, InputError, UnknownNodeError
 from kinetree.pipeline import application
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.storage.place import Folder
 from kinetree.schemas.results.evaluation import Evaluation, JointScore
 from kinetree.tasks import compare as compare_module
 from kinetree.tasks.application import APPLICATION
@@ -88,6 +91,19 @@ def test_exchanged_runs_exchange_the_result(runs: tuple[str, str]) -> None:
     assert one.only_a == two.only_b
     assert [(p.a, p.b) for p in one.pairs] == [(p.b, p.a) for p in two.pairs]
     assert (one.a.found, one.b.found) == (two.b.found, two.a.found)
+
+
+def test_what_cannot_be_kept_is_told_beside_the_result(
+    runs: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_: Folder) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    (tmp_path / "truth.json").write_text(written_truth(generated(frames=4)))
+    monkeypatch.setattr(Folder, "_beside", refuse)
+    result = asked(*runs, "--truth", tmp_path / "truth.json", "--json")
+    assert json.loads(result.stdout)["truth"] == "truth.json"
+    assert [line.partition("; computed")[2] for line in result.stderr.splitlines()] == [" in memory, nothing is kept"] * 2
 
 
 def test_truth_that_is_named_judges_both(runs: tuple[str, str], tmp_path: Path) -> None:

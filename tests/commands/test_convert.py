@@ -198,23 +198,42 @@ def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):
         convert(file, tmp_path / "walk.zip")
 
 
-def leaving(folder, told, vertices=18):
-    """A stand-in for Blender that leaves two frames of a triangle."""
-    numbers = r'while [ "$1" != -- ]; do shift; done; cd "$3"; head -c 24 /dev/zero > faces'
-    return program(folder, f"{numbers}; head -c {4 * vertices} /dev/zero > vertices; printf '%s' '{told}' > told.json")
+def leaving(folder, told, vertices=72, faces=24):
+    """A stand-in for Blender that leaves two frames of a triangle, in so many bytes; None leaves no such file."""
+    left = {"vertices": vertices, "faces": faces}
+    zeros = [f"head -c {size} /dev/zero > {name}" for name, size in left.items() if size is not None]
+    there = r'while [ "$1" != -- ]; do shift; done; cd "$3"'
+    return program(folder, "; ".join([there, *zeros, f"printf '%s' '{told}' > told.json"]))
 
 
 def test_what_is_left_by_blender_is_checked(file, tmp_path):
-    counts = '"counts": [[3, 1], [3, 1]]'
-    for told, vertices, words in (
-        ("nonsense", 18, "what Blender says: not JSON"),
-        (f'{{{counts}, "scale": NaN, "fps": 24}}', 18, "a unit of nan m; set both in Blender"),
-        (f'{{{counts}, "scale": 1, "fps": 0}}', 18, "its scene has 0 frames a second"),
-        (f'{{{counts}, "scale": 1, "fps": 24}}', 15, "left 5 of 6 vertices"),
+    counts, rest = '"counts": [[3, 1], [3, 1]]', '"scale": 1, "fps": 24'
+    for told, words in (
+        ("nonsense", "what Blender says: not JSON"),
+        (f'{{{counts}, "scale": NaN, "fps": 24}}', "a unit of nan m; set both in Blender"),
+        (f'{{{counts}, "scale": 1, "fps": 0}}', "its scene has 0 frames a second"),
+        (f'{{{counts}, "scale": 1}}', "counts, scale and fps are needed"),
+        (f'{{{counts}, "scale": 1, "fps": "fast"}}', "counts, scale and fps are needed"),
+        ("[]", "counts, scale and fps are needed"),
+        (f'{{"counts": [[3, 1], [3]], {rest}}}', "counts, scale and fps are needed"),
+        (f'{{"counts": [[3, 1], [{10**30}, 1]], {rest}}}', "counts, scale and fps are needed"),
+        (f'{{"counts": [[-3, 1], [9, 1]], {rest}}}', "no surface in some frames"),
     ):
         with pytest.raises(InputError, match=words):
-            convert(file, None, leaving(tmp_path, told, vertices))
-    convert(file, None, leaving(tmp_path, f'{{{counts}, "scale": 1, "fps": 24}}'))
+            convert(file, None, leaving(tmp_path, told))
+    assert not file.with_suffix(".npz").exists()
+
+
+@pytest.mark.parametrize(("vertices", "faces"), [(60, 24), (64, 24), (73, 24), (72, 12), (72, 20), (None, 24), (72, None)])
+def test_numbers_that_blender_could_not_write_whole_are_refused(file, tmp_path, vertices, faces):
+    left = rf"left {vertices or 0} bytes of vertices and {faces or 0} of faces, not 72 and 24; is the disk of .* full"
+    with pytest.raises(InputError, match=left):
+        convert(file, None, leaving(tmp_path, '{"counts": [[3, 1], [3, 1]], "scale": 1, "fps": 24}', vertices, faces))
+    assert not file.with_suffix(".npz").exists()
+
+
+def test_what_is_left_whole_becomes_a_sequence(file, tmp_path):
+    convert(file, None, leaving(tmp_path, '{"counts": [[3, 1], [3, 1]], "scale": 1, "fps": 24}'))
     assert len(read_npz(file.with_suffix(".npz"))) == 2
 
 

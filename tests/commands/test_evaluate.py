@@ -1,6 +1,8 @@
 """The command: a run and a truth in, a table, JSON or a picture out, and refusals in words."""
 
+import errno
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,7 @@ from typer.testing import CliRunner
 from kinetree.errors import ConfigError, InputError, UnknownNodeError
 from kinetree.pipeline import application
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.storage.place import Folder
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.evaluate import evaluate
@@ -87,6 +90,18 @@ def test_truth_that_is_named_goes_before_the_runs_own(run: str, truth: Path) -> 
     result: dict[str, Any] = json.loads(asked(run, truth, "--json").output)
     assert result["truth"] == "truth.json"
     assert result["summary"]["percent"] == pytest.approx(3.0)
+
+
+def test_what_cannot_be_kept_is_told_beside_the_result(run: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: Folder) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(Folder, "_beside", refuse)
+    result = asked(run, "--json", "--set", "evaluation.found=0.2")
+    assert json.loads(result.stdout)["summary"]["found"] > 8
+    assert result.stderr.startswith(f"store {run}/store: cannot write ")
+    assert result.stderr.endswith("; computed in memory, nothing is kept\n")
+    assert asked(run, "--json").stderr == ""
 
 
 def test_limit_can_be_set(run: str, truth: Path) -> None:

@@ -1,6 +1,7 @@
 """Contracts of finding frames: which frames there are, what each is, and that what is read is what was planned."""
 
 import os
+import re
 import shutil
 import zipfile
 
@@ -374,28 +375,31 @@ def test_source_that_is_told_by_hand_is_read_like_any_other(scans):
 
 def test_takes_are_numbered_one_after_the_other(files, scans, tmp_path):
     shutil.copytree(scans, tmp_path / "other")
+    (tmp_path / "other" / "frame_9.off").write_text(off(1.95))
     takes = [{"name": "a", "input": str(scans)}, {"name": "b-2", "input": str(tmp_path / "other")}]
     found = source(SourceParams(takes=takes), files)
-    own = source(SourceParams(input=str(scans)), files)
+    own = source(SourceParams(input=str(tmp_path / "other")), files)
     assert list(found) == [*own, *(TAKE + t for t in own)]
     assert [found[t].take for t in found] == ["a"] * len(own) + ["b-2"] * len(own)
     assert [found[TAKE + t].content for t in own] == [own[t].content for t in own]
 
 
-def test_the_same_input_as_two_takes_is_refused(files, scans, tmp_path):
+def test_the_same_frames_as_two_takes_are_refused(files, scans, tmp_path):
     (tmp_path / "link").symlink_to(scans)
-    for same in (scans, tmp_path / "link", scans / ".." / scans.name):
+    copy = shutil.copytree(scans, tmp_path / "copy")
+    for same in (scans, tmp_path / "link", scans / ".." / scans.name, copy, scans / "*.off"):
         takes = [{"name": "a", "input": str(scans)}, {"name": "b", "input": str(same)}]
-        with pytest.raises(SourceError, match=rf"source\.takes: a and b are the same \({same}\); leave one"):
+        words = rf"source\.takes: a and b have the same frames \({re.escape(str(same))}\); leave one of them out"
+        with pytest.raises(SourceError, match=words):
             source(SourceParams(takes=takes), files)
 
 
 def test_takes_without_names_of_their_own_and_beside_an_input_are_refused(files, scans):
     one = {"name": "a", "input": str(scans)}
-    with pytest.raises(SourceError, match="a, a: each take needs an input and a name of its own"):
+    with pytest.raises(SourceError, match="a, a: each take needs an input, and a name that differs"):
         source(SourceParams(takes=[one, one]), files)
     other = {"name": one["name"].upper(), "input": str(scans)}
-    with pytest.raises(SourceError, match="a name of its own, other than in its capitals"):
+    with pytest.raises(SourceError, match="differs from the others in more than capitals"):
         source(SourceParams(takes=[one, other]), files)
     with pytest.raises(SourceError, match="takes excludes source.input"):
         source(SourceParams(takes=[one], input=str(scans)), files)

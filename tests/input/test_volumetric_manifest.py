@@ -106,6 +106,20 @@ def test_meshes_beside_json_that_is_no_manifest_of_theirs_are_frames_on_their_ow
     assert (list(frames), frames[0].fps) == ([0, 1], None)
 
 
+def test_a_manifest_its_folder_and_its_only_target_are_the_same_take(tmp_path):
+    targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
+    folder = take(tmp_path / "take", targets, "[target]/[index][ext]")
+    (folder / "glb").mkdir()
+    made = Made()
+    made.document["animations"] = []
+    made.primitive["targets"] = [{"POSITION": made.add(np.full((4, 3), x, np.float32))} for x in range(2)]
+    (folder / "glb" / "0.glb").write_bytes(made.raw())
+    files, one = Files.of(Store.at(tmp_path / "store")), {"name": "a", "input": str(folder)}
+    for same in ({"input": str(folder / "manifest.json")}, {"input": str(folder), "clip": "glb"}):
+        with pytest.raises(SourceError, match="a and b have the same frames"):
+            source(SourceParams(takes=[one, {"name": "b", **same}]), files)
+
+
 def test_a_segment_with_more_frames_than_its_manifest_says_is_refused(found, tmp_path):
     targets = {"glb": {"format": "uniform-solve", "frameRate": 10, "segmentFrameCount": 2}}
     folder = take(tmp_path / "take", targets, "[target]_[index][ext]")

@@ -59,7 +59,7 @@ class Evidence(NamedTuple):
     turning    : (joint,) whether it is a joint: neither root nor end of a bone
     length     : (joint,) of the bone to its parent, share of the diagonal
     expected   : (joint,) expected error, share of the longest side of the body's box; NaN where it is not known
-    bound      : (joint,) what the error exceeds at one joint of ten, the same share; NaN where it is not known
+    bound      : (joint,) the distance that the mean error of nine joints of ten keeps, the same share; NaN where not known
     pairs      : pairs of joints, left and right, whose bones should be equally long
     unpaired   : joints that have a side, and no partner
     """

@@ -96,7 +96,7 @@ class ErrorBars(NamedTuple):
     """Lengths in the mesh unit.
 
     expected : (joint,) expected mean error over the frames
-    bound    : (joint,) what the mean error exceeds at one joint of ten
+    bound    : (joint,) the distance that the mean error of nine joints of ten keeps
     in_frame : (frame, joint) expected error in a frame
     """
 

@@ -10,6 +10,7 @@ from kinetree.schemas.results.assumed_joints import AssumedJoint, AssumedJoints
 from kinetree.schemas.results.complete_skeleton import CompleteSkeleton
 from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.tasks.numerics.results.limb_sections import share_beyond
+from kinetree.tasks.results.formats.rig import carried
 
 NOTHING_ASSUMED = AssumedJoints()
 
@@ -77,15 +78,10 @@ def _above(n: int, order: list[int | AssumedJoint], number: dict[int, int], pare
 
 def _positions(skeleton: CompleteSkeleton, order: list[int | AssumedJoint]) -> Floats:
     """(frame, joint, xyz) positions of all joints; assumed ones move with the part of their bone."""
-    columns = []
-    for j in order:
-        if isinstance(j, AssumedJoint):
-            p = skeleton.parents[j.child]
-            offset = np.array(j.place) - skeleton.rest[p]
-            columns.append(skeleton.positions[:, p] + skeleton.rotation[:, p] @ offset)
-        else:
-            columns.append(np.asarray(skeleton.positions[:, j]))
-    return np.stack(columns, axis=1)
+    assumed = [j for j in order if isinstance(j, AssumedJoint)]
+    places = carried(skeleton, [skeleton.parents[j.child] for j in assumed], np.array([j.place for j in assumed]))
+    known = np.asarray(skeleton.positions)
+    return np.stack([places[:, assumed.index(j)] if isinstance(j, AssumedJoint) else known[:, j] for j in order], axis=1)
 
 
 def _weights(

@@ -106,6 +106,19 @@ def skinned(skeleton: Skeleton, t: int) -> Floats:
     return blended_skin(s.vertices, s.influence, s.weight, s.rest, s.rotation[t], s.positions[t])
 
 
+def carried(skeleton: Skeleton, bones: Sequence[int], places: Floats) -> Floats:
+    """Where the parts of joints bring places of the reference pose: X_p + R_p (place − rest_p), in every frame.
+
+    bones   : (place,) joint p whose part carries the place
+    places  : (place, xyz) mesh unit
+    returns : (frame, place, xyz) mesh unit
+    """
+    p = np.asarray(bones, np.int64)
+    offsets = places - np.asarray(skeleton.rest)[p]
+    turned = np.einsum("tjyx,jx->tjy", np.asarray(skeleton.rotation)[:, p], offsets)
+    return np.asarray(np.asarray(skeleton.positions)[:, p] + turned)
+
+
 def _rotated(frame: Floats, along: Floats) -> Floats:
     """Axes rotated as little as possible so that y points along a direction: mirrored across y, then across the bisector."""
     length = float(np.linalg.norm(along))

@@ -104,7 +104,7 @@ def document(page: Page) -> str:
 def _bounds(known: bool) -> dict[str, str]:
     """The switch for error bounds, its key and its legend, where a page has bounds."""
     box = '<label><input id="see-bounds" type="checkbox"> Error bounds (90 %)</label>\n'
-    key = " <kbd>B</kbd> shows within which distance nine of ten joints lie,"
+    key = " <kbd>B</kbd> shows the error bound of every joint,"
     return {"bounds": box if known else "", "bounds_key": key if known else ""}
 
 

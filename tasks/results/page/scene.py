@@ -20,6 +20,7 @@ from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.results.scene import Lattice
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF, part_palette
+from kinetree.tasks.results.formats.rig import carried
 from kinetree.tasks.results.plots.drawing import directions
 
 
@@ -115,7 +116,8 @@ def scene(
     if len(leaves.positions):
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
     if assumed:
-        arrays["assumed"] = (_carried_places(skeleton, assumed)[selected_frames] @ axes).astype(np.float32)
+        bones, places = [skeleton.parents[child] for _, child, _ in assumed], np.array([place for _, _, place in assumed])
+        arrays["assumed"] = (carried(skeleton, bones, places)[selected_frames] @ axes).astype(np.float32)
     if trust is not None:
         arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
     if colours is not None:
@@ -137,14 +139,6 @@ def scene(
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
-
-
-def _carried_places(skeleton: Skeleton, assumed: Sequence[tuple[str, int, tuple[float, float, float]]]) -> Floats:
-    """(frame, assumed joint, xyz) where the parts of their bones bring joints that were not found."""
-    bones = [skeleton.parents[child] for _, child, _ in assumed]
-    offsets = np.array([place for _, _, place in assumed]) - np.asarray(skeleton.rest)[bones]
-    R = np.asarray(skeleton.rotation)[:, bones]
-    return np.asarray(np.asarray(skeleton.positions)[:, bones] + np.einsum("tjyx,jx->tjy", R, offsets))
 
 
 def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict[str, NDArray[Any]]:

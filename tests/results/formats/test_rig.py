@@ -7,6 +7,7 @@ from results.rigged_bodies import spider
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.results.formats.rig import (
+    carried,
     children,
     local_offsets,
     local_rotations,
@@ -74,3 +75,11 @@ def test_skin_follows_the_joints_and_time_the_frames():
     np.testing.assert_allclose(skinned(body, 7), truth(body)[7], atol=1e-12)
     np.testing.assert_allclose(seconds(body, 10.0)[[0, 1, -1]], [0, 0.1, 2])
     assert children(body.parents)[0] == [1, 3, 4]
+
+
+def test_a_place_is_carried_as_a_vertex_that_follows_its_joint_alone():
+    body = spider()
+    vertex = np.flatnonzero(body.weight[:, 0] == 1.0)[::5]
+    found = carried(body, body.influence[vertex, 0].tolist(), np.asarray(body.vertices)[vertex])
+    assert len(np.unique(body.influence[vertex, 0])) > 2
+    np.testing.assert_allclose(found, np.stack([skinned(body, t)[vertex] for t in range(len(body.frames))]), atol=1e-9)

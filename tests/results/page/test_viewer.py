@@ -132,6 +132,7 @@ def test_bounds_are_not_shown_at_first_and_a_key_shows_them_as_large_as_they_are
 def test_the_bound_of_the_selected_joint_is_told_in_words(opened: Any) -> None:
     opened.evaluate("kinetree.select(1)")
     assert "Selected: left shoulder, joint, 90 % bound 1.5" in opened.get_attribute("#stage", "aria-label")
+    assert "B shows the error bound of every joint" in opened.inner_text("#keys")
     opened.evaluate("kinetree.select(null)")
 
 
@@ -143,7 +144,7 @@ def test_a_page_without_bounds_has_no_switch_for_them(browser: Any, tmp_path: Pa
     tab.goto((tmp_path / "report.html").as_uri())
     tab.wait_for_selector("body[data-ready=yes]")
     assert tab.query_selector("#see-bounds") is None
-    assert "within which distance" not in tab.inner_text("#keys")
+    assert "error bound of every joint" not in tab.inner_text("#keys")
     tab.locator("#stage").focus()
     tab.keyboard.press("b")
     assert complaints == []
