@@ -77,8 +77,7 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
     "uncertain": lambda f, joints, frames: f"{joints}: uncertain in {frames}, hidden or not fitting the input",
     "weak": lambda f, joints, frames: f"{joints}: few frames support it (mean confidence {f.amount:.2f})",
     "imprecise": lambda f, joints, frames: (
-        f"{joints}: may be off; in nine of ten cases such a joint lies within the distance given, a share of the body's longest"
-        " side, of its true place"
+        f"{joints}: may be off; nine of ten such joints lie nearer their true place than that share of the body's longest side"
     ),
     "asymmetric": lambda f, joints, frames: f"{joints}: one is misplaced, as their bones differ by {_percent(f.amount)}",
     "short": lambda f, joints, frames: (

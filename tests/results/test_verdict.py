@@ -79,8 +79,8 @@ def test_joints_with_a_large_bound_are_named_with_it_as_share_of_the_longest_sid
     side = float(np.ptp(spider().vertices, axis=0).max())
     line, reason = views.remarks(of(bound=0.08 * side))
     assert line.startswith("good except for left shoulder (within 8 %)")
-    meaning = "may be off; in nine of ten cases such a joint lies within the distance given, a share of the body's longest side"
-    assert reason == f"left shoulder (within 8 %), knee (within 8 %): {meaning}, of its true place"
+    meaning = "may be off; nine of ten such joints lie nearer their true place than that share of the body's longest side"
+    assert reason == f"left shoulder (within 8 %), knee (within 8 %): {meaning}"
     (found,) = [f for f in views.summary(of(bound=0.08 * side))["findings"] if f["kind"] == "imprecise"]
     assert found["bounds"] == pytest.approx([0.08] * len(found["joints"]))
 
