@@ -39,8 +39,8 @@ def way_along(V: Floats, F: Ints, part: Ints, parents: Sequence[int], rest: Floa
     if not len(own):
         return out
     beyond = np.isin(part, list(_below(parents, child)))
-    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    edges = np.concatenate([edges, edges[:, ::-1]])
+    one_way = _edges(F)
+    edges = np.concatenate([one_way, one_way[:, ::-1]])
     leaving = edges[(part[edges[:, 0]] == inner) & (part[edges[:, 1]] != inner)]
     to_child = beyond[leaving[:, 1]]
     ends = [np.unique(leaving[~to_child, 0]), np.unique(leaving[to_child, 0])]
@@ -81,12 +81,17 @@ def share_beyond(V: Floats, F: Ints, joint: Floats, before: Floats, after: Float
     near = np.sort(away)[:FEWEST]
     half = float(np.median(near))
     rising = np.clip((along / max(half, 1e-300) + 1.0) / 2.0, 0.0, 1.0)
-    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
+    edges = _edges(F)
     edges = edges[(rising[edges] > 0.0).all(axis=1)]
     graph = csr_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(len(V), len(V)))
     piece = connected_components(graph, directed=False)[1]
     reached: Flags = piece == piece[np.argmin(np.linalg.norm(V - after, axis=1))]
     return np.asarray(np.where(reached, rising**2 * (3.0 - 2.0 * rising), 0.0))
+
+
+def _edges(F: Ints) -> Ints:
+    """(edge, 2) the edges of all faces, one way round each face."""
+    return np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
 
 
 def _below(parents: Sequence[int], joint: int) -> set[int]:

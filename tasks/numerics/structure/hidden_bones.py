@@ -19,7 +19,11 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
 class HiddenBonesSettings(NamedTuple):
-    """What makes a bone; lengths are shares of the root of the area where nothing else is said, areas shares of it."""
+    """What makes a bone; lengths are shares of the root of the area where nothing else is said, areas shares of it.
+
+    Chosen on generated people, quadrupeds and random trees of seeds 0 to 9 and on recorded bodies, a dance among them; judged
+    on seeds 10 to 19.
+    """
 
     drift: float = 0.0015
     """Drift of the one joint from which on two are tried."""
