@@ -71,7 +71,7 @@ class ReportPlayer extends Player {
       const discs = new THREE.InstancedMesh(annulus(inner, outer), new THREE.MeshBasicMaterial({ color, opacity, transparent: true, depthTest: false, side: THREE.DoubleSide }), Math.max(count, 1));
       discs.count = count;
       discs.frustumCulled = false;
-      discs.renderOrder = 1.5 + k / 10;
+      discs.renderOrder = 3.1 + k / 10; // above the joint's own dot, which is the larger one where the bound is small
       this.bounds.add(discs);
     });
     this.world.add(this.bounds);
