@@ -19,12 +19,11 @@ from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSe
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 from kinetree.tasks.numerics.registration.edges import add_edges, edge_energy
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, stepped, turned
+from kinetree.tasks.numerics.registration.match_rows import MatchRows, match_rows, residuals, row_energies
 
 _Pair = tuple[Ints, Ints]
 """Of the body and of the frame."""
 
-_LEAST_COSINE = 0.5
-"""Matches whose normals have a smaller cosine do not count; with 0.3 a dancer and a wolf keep the same turning."""
 _DAMPING = 1e-4
 """Added to the diagonal, share of its mean."""
 _TOLERANCE = 1e-2
@@ -94,14 +93,27 @@ class _Forms(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """Matches of one step: the model's vertex, the point, the normal there, both weights, and colours where they count."""
+    """Matches of one step: those that count, the frame's points, the weight of distance, and colours where they count."""
 
-    vertex: Ints
-    point: Floats
-    normal: Floats
-    plane: Floats
+    match: MatchRows
+    V: Floats
     nearness: Floats
     colour: _Forms | None = None
+
+
+class _System(NamedTuple):
+    """Room for the normal equations of a step: new memory costs more than its filling; arrays as in `add_data`."""
+
+    D: Floats
+    B: Floats
+    b: Floats
+
+
+class _Posed(NamedTuple):
+    """The body in a pose, every vertex: (vertex, xyz)."""
+
+    pose: Pose
+    x: Floats
 
 
 def at_rest(graph: DeformationGraph) -> Pose:
@@ -135,15 +147,17 @@ def fit(
     returns   : Fitted; a step that would raise the energy is halved, and left out if that does not help
     """
     s = np.ones(len(graph.edge)) if stiffness is None else stiffness
-    pose, energy, match, shown = start, np.zeros((settings.steps, 2)), None, None
+    body, energy, match, shown = _posed(graph, start), np.zeros((settings.steps, 2)), None, None
     samples = graph.sample[:: settings.thin], target.sample[:: settings.thin]
+    nodes = len(graph.node)
+    room = _System(np.empty((nodes, 6, 6)), np.empty((len(graph.pair), 6, 6)), np.empty((nodes, 6)))
     for i in range(settings.steps):
         share = i / max(settings.steps - 1, 1)
         lam, reach, scale, b = (
             first * (last / first) ** share
             for first, last in (settings.stiffness, settings.reach, settings.scale, settings.point_weight)
         )
-        x, n = shape(graph, pose)
+        x, n = body.x, turned(graph.N, graph.bound, graph.weight, body.pose.rotation)
         if shown is None:
             last = None if i < settings.searches else match
             match = _matches(graph, target, samples, x, n, last, settings.beta * target.size)
@@ -153,8 +167,12 @@ def fit(
             if shown is not None:
                 match = coloured_matches(graph, target, samples, x, n, begun, shown, settings.beta * target.size)
         rows = _rows(graph, target, samples, x, n, match, (reach * graph.size, scale * graph.size, b), shown)
-        pose, energy[i] = _step(graph, pose, rows, lam * s, settings.solver_steps)
-    return Fitted(pose, energy / graph.size**2)
+        body, energy[i] = _step(graph, body, rows, room, lam * s, settings.solver_steps)
+    return Fitted(body.pose, energy / graph.size**2)
+
+
+def _posed(graph: DeformationGraph, pose: Pose) -> _Posed:
+    return _Posed(pose, deformed(graph.V, graph.bound, graph.weight, graph.g, *pose))
 
 
 def _matches(
@@ -183,63 +201,57 @@ def _rows(
     limits: tuple[float, float, float],
     shown: Compared | None,
 ) -> _Rows:
-    """Matches nearer than `reach`, weighted (n·m) / (1 + (distance from the plane / scale)²)²; limits: reach, scale, b.
-
-    Planes are halfway between both normals: then matches that are not quite opposite cost nothing on a round surface
-    (Rusinkiewicz 2019).
-    """
+    """Matches nearer than `reach`, weighted (see `match_rows`); limits: reach, scale, b."""
     reach, scale, b = limits
     vertex, other = np.concatenate([samples[0], match[1]]), np.concatenate([match[0], samples[1]])
-    r, m = x[vertex] - target.V[other], target.N[other]
-    alike = np.einsum("rx,rx->r", n[vertex], m)
-    near = (alike > _LEAST_COSINE) & (np.einsum("rx,rx->r", r, r) < reach * reach)
-    halfway = m + n[vertex]
-    halfway /= np.maximum(np.linalg.norm(halfway, axis=1, keepdims=True), np.finfo(float).tiny)
-    off = np.einsum("rx,rx->r", r, halfway)
-    a = len(graph.node) / len(vertex) * alike / (1.0 + (off / scale) ** 2) ** 2
+    share = len(graph.node) / len(vertex)
+    rows = MatchRows(*match_rows(x, n, target.V, target.N, vertex, other, reach, scale, share))
     forms = None
     if shown is not None:
-        forms = _Forms(*forms_of_matches(target, shown, vertex[near], other[near], r[near], a[near]))
-    return _Rows(vertex[near], target.V[other[near]], halfway[near], a[near], b * a[near], forms)
+        forms = _Forms(*forms_of_matches(target, shown, rows.vertex, rows.other, rows.residual, rows.plane))
+    return _Rows(rows, target.V, b * rows.plane, forms)
 
 
-def _energy(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats) -> tuple[float, Floats]:
-    """The energy with these matches, mesh unit² · (row, xyz) x − y."""
-    v = rows.vertex
-    r = deformed(graph.V[v], graph.bound[v], graph.weight[v], graph.g, *pose) - rows.point
-    off = np.einsum("rx,rx->r", r, rows.normal)
-    data = (rows.plane * off**2).sum() + (rows.nearness * np.einsum("rx,rx->r", r, r)).sum()
+def _energy(graph: DeformationGraph, pose: Pose, r: Floats, rows: _Rows, stiffness: Floats) -> float:
+    """The energy with these matches, mesh unit²; r : (row, xyz) x − y."""
+    plane, distance = row_energies(r, rows.match.normal, rows.match.plane, rows.nearness)
+    data = plane.sum() + distance.sum()
     if rows.colour is not None:
         H, p, c = rows.colour
         data += (np.einsum("rx,rxy,ry->r", r, H, r) - 2.0 * np.einsum("rx,rx->r", r, p) + c).sum()
-    return float(data) + edge_energy(graph.edge, stiffness, *pose, graph.g), r
+    return float(data) + edge_energy(graph.edge, stiffness, *pose, graph.g)
 
 
 def _whole_forms(rows: _Rows, colour: _Forms, r: Floats) -> tuple[Floats, Floats]:
     """(row, 3, 3) form and (row, xyz) slope at r of plane, point and colour together."""
     H, p, _ = colour
-    n, plane = rows.normal, rows.plane[:, None]
+    n, plane = rows.match.normal, rows.match.plane[:, None]
     M = H + plane[:, :, None] * n[:, :, None] * n[:, None, :] + rows.nearness[:, None, None] * np.eye(3)
     return M, np.einsum("rxy,ry->rx", M, r) - p
 
 
-def _step(graph: DeformationGraph, pose: Pose, rows: _Rows, stiffness: Floats, solves: int) -> tuple[Pose, tuple[float, float]]:
+def _step(
+    graph: DeformationGraph, body: _Posed, rows: _Rows, room: _System, stiffness: Floats, solves: int
+) -> tuple[_Posed, tuple[float, float]]:
     """One Gauss–Newton step with fixed matches, and the energy before and after."""
-    before, r = _energy(graph, pose, rows, stiffness)
-    nodes, g = len(graph.node), graph.g
-    D, B, b = np.zeros((nodes, 6, 6)), np.zeros((len(graph.pair), 6, 6)), np.zeros((nodes, 6))
-    body = (graph.V, graph.bound, graph.weight)
+    vertex, other, r, normal, plane = rows.match
+    before = _energy(graph, body.pose, r, rows, stiffness)
+    g, R = graph.g, body.pose.rotation
+    D, B, b = room
+    for array in room:
+        array.fill(0.0)
+    rest = (graph.V, graph.bound, graph.weight, graph.of_vertex)
     if rows.colour is None:
-        add_data(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, r, rows.normal, rows.plane, rows.nearness)
+        add_data(D, B, b, *rest, R, g, vertex, r, normal, plane, rows.nearness)
     else:
-        add_forms(D, B, b, *body, graph.of_vertex, pose.rotation, g, rows.vertex, *_whole_forms(rows, rows.colour, r))
-    add_edges(D, B, b, graph.edge, graph.of_edge, stiffness, *pose, g)
+        add_forms(D, B, b, *rest, R, g, vertex, *_whole_forms(rows, rows.colour, r))
+    add_edges(D, B, b, graph.edge, graph.of_edge, stiffness, *body.pose, g)
     D[:, range(6), range(6)] += _DAMPING * np.einsum("jaa->ja", D).mean(axis=0)
     inverse = np.linalg.inv(D).astype(np.float64)
     step = conjugate_gradients(D, inverse, B, graph.pair, b, solves, _TOLERANCE)
     for halving in range(_HALVINGS):
-        moved = Pose(*stepped(*pose, step, 0.5**halving))
-        after = _energy(graph, moved, rows, stiffness)[0]
+        moved = _posed(graph, Pose(*stepped(*body.pose, step, 0.5**halving)))
+        after = _energy(graph, moved.pose, residuals(moved.x, vertex, rows.V, other), rows, stiffness)
         if after <= before:
             return moved, (before, after)
-    return pose, (before, before)
+    return body, (before, before)

@@ -22,7 +22,7 @@ def add_edges(
     """
     q, r, T = np.empty(3), np.empty(3), np.zeros((3, 3))
     for e in range(len(edge)):
-        s, block = stiffness[e], B[of_edge[e]]
+        s, n = stiffness[e], of_edge[e]
         for end in range(2):
             j, k = edge[e, end], edge[e, 1 - end]
             _edge(j, k, R, p, g, q, r)
@@ -37,15 +37,15 @@ def add_edges(
                 D[j, x, x] += s * square
                 D[j, 3 + x, 3 + x] += s
                 D[k, 3 + x, 3 + x] += s
-                block[3 + x, 3 + x] -= s
+                B[n, 3 + x, 3 + x] -= s
                 for y in range(3):
                     D[j, x, y] -= s * q[x] * q[y]
                     D[j, x, 3 + y] += T[x, y]
                     D[j, 3 + x, y] += T[y, x]
                     if end == 0:
-                        block[x, 3 + y] -= T[x, y]
+                        B[n, x, 3 + y] -= T[x, y]
                     else:
-                        block[3 + x, y] -= T[y, x]
+                        B[n, 3 + x, y] -= T[y, x]
 
 
 @compiled
