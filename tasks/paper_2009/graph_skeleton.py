@@ -54,7 +54,7 @@ def _centres(
     V, F, aligned, frames = np.array(s.vertices), np.array(s.faces), list(alignment.values()), tuple(alignment)
     x, confidence = np.stack([a.vertices for a in aligned]), np.stack([a.confidence for a in aligned])
     area = Surface.of(V, F).area
-    evidence = FrameEvidence(
+    evidence = FrameEvidence.of(
         confidence,
         np.stack([a.residual for a in aligned]),
         lambda t: (np.array(meshes[frames[t]].vertices), np.array(meshes[frames[t]].faces, np.int64)),

@@ -36,7 +36,7 @@ def kinematic_tree(
 ) -> KinematicTree:
     """Joins the rigid parts into one tree, places its joints and poses it in every frame (2014, Sec. 6.3)."""
     frames, aligned, at = tuple(alignment), list(alignment.values()), leaves.frames.index(reference.frame)
-    evidence = FrameEvidence(
+    evidence = FrameEvidence.of(
         np.stack([a.confidence for a in aligned]),
         np.stack([a.residual for a in aligned]),
         lambda t: (np.array(mesh[frames[t]].vertices, np.float64), np.array(mesh[frames[t]].faces, np.int64)),

@@ -32,6 +32,32 @@ class Projection(NamedTuple):
     distance: Floats
 
 
+class SurfaceTree(NamedTuple):
+    """A surface that is asked for its nearest points several times: its faces along a Morton curve and the boxes above them.
+
+    triangle : (face, corner, xyz) in the order of the leaves, mesh unit
+    order    : (face,) their numbers
+    box      : (node, 6) see `_boxes`
+    """
+
+    triangle: Floats
+    order: Ints
+    box: Floats
+
+    @staticmethod
+    def of(V: Floats, F: npt.NDArray[np.integer[Any]]) -> "SurfaceTree":
+        """The tree of V (vertex, xyz), mesh unit, and F (face, corner), at least one face; those without area are accepted."""
+        corners = np.asarray(V, np.float64)[F]
+        order = morton_order(corners.mean(axis=1))
+        triangle = np.ascontiguousarray(corners[order])
+        return SurfaceTree(triangle, order, _boxes(triangle))
+
+    def nearest(self, P: Floats) -> Projection:
+        """The nearest points of the surface to P (point, xyz), as `projected` gives them."""
+        points = np.ascontiguousarray(P, np.float64)
+        return Projection(*_nearest(points, morton_order(points), self.triangle, self.order, self.box))
+
+
 def projected(P: Floats, V: Floats, F: npt.NDArray[np.integer[Any]]) -> Projection:
     """The nearest point of all faces; of faces equally near, the first  (Ericson 2005, Sec. 5.1.5 for one triangle).
 
@@ -39,11 +65,7 @@ def projected(P: Floats, V: Floats, F: npt.NDArray[np.integer[Any]]) -> Projecti
     V, F    : (vertex, xyz) mesh unit · (face, corner), at least one face; those without area are accepted
     returns : Projection
     """
-    corners = np.asarray(V, np.float64)[F]
-    order = morton_order(corners.mean(axis=1))
-    triangle = np.ascontiguousarray(corners[order])
-    points = np.ascontiguousarray(P, np.float64)
-    return Projection(*_nearest(points, morton_order(points), triangle, order, _boxes(triangle)))
+    return SurfaceTree.of(V, F).nearest(P)
 
 
 @compiled

@@ -187,9 +187,10 @@ def _axial(N: Floats) -> Floats:
 
 def _crossing(p: Floats) -> Floats:
     """(…, 3, 3) the matrix of p ×."""
-    o = np.zeros_like(p[..., 0])
-    rows = [[o, -p[..., 2], p[..., 1]], [p[..., 2], o, -p[..., 0]], [-p[..., 1], p[..., 0], o]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    K = np.zeros((*p.shape, 3))
+    K[..., 0, 1], K[..., 1, 2], K[..., 2, 0] = -p[..., 2], -p[..., 0], -p[..., 1]
+    K[..., 0, 2], K[..., 1, 0], K[..., 2, 1] = p[..., 1], p[..., 2], p[..., 0]
+    return K
 
 
 def rotations(omega: Floats) -> Floats:

@@ -8,17 +8,21 @@ other joints need less evidence.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
+from hashlib import blake2b
 from typing import NamedTuple
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.closest_point import SurfaceTree
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import area_vectors, smoothed_normals
 from kinetree.tasks.numerics.structure.articulated_fit import rotations
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 
+TARGETS = 8
+"""Most surfaces that are kept ready at a time; all joints are looked for in few frames, and memory has an end."""
 NEAREST = 1e-6
 """Least scale of the weights of closest points, share of the piece's extent; keeps them finite."""
 
@@ -57,19 +61,71 @@ class JointEvidenceSettings(NamedTuple):
     two generated bodies; it guards against holes of a frame."""
 
 
+class _Target(NamedTuple):
+    """A frame's surface, on which pieces are laid.
+
+    V, F : (vertex, xyz) mesh unit · (face, corner)
+    n    : (face, xyz) unit normals; 0 where a face has no area
+    tree : to ask for nearest points
+    """
+
+    V: Floats
+    F: Ints
+    n: Floats
+    tree: SurfaceTree
+
+    @staticmethod
+    def of(V: Floats, F: Ints) -> "_Target":
+        """The surface made ready."""
+        n = area_vectors(V, F)
+        n /= np.maximum(np.linalg.norm(n, axis=1, keepdims=True), np.finfo(float).tiny)
+        return _Target(V, F, n, SurfaceTree.of(V, F))
+
+
+class _Fit(NamedTuple):
+    """A piece laid on a frame's surface: x = R v + t, and the distance of each of its points."""
+
+    R: Floats
+    t: Floats
+    distance: Floats
+
+
 class FrameEvidence(NamedTuple):
-    """The frames' surfaces, and how well an aligned body lies on them.
+    """The frames' surfaces, and how well an aligned body lies on them; remembers what was laid on them.
 
     confidence : (frame, vertex) 0 to 1
     residual   : (frame, vertex) distance to the frame's surface as aligned, mesh unit
-    surface    : gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner), by its place among the frames
+    target     : gives a frame's surface, ready, by its place among the frames
     settings   : what makes a joint evident in them
+    known      : the fits so far: where one part is dropped, most of the others are laid on the same frames again
     """
 
     confidence: Floats
     residual: Floats
-    surface: Callable[[int], tuple[Floats, Ints]]
+    target: Callable[[int], _Target]
     settings: JointEvidenceSettings
+    known: dict[tuple[int, JointEvidenceSettings, bytes], _Fit]
+
+    @staticmethod
+    def of(
+        confidence: Floats,
+        residual: Floats,
+        surface: Callable[[int], tuple[Floats, Ints]],
+        settings: JointEvidenceSettings,
+    ) -> "FrameEvidence":
+        """Nothing is laid on the frames yet; `surface` gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner)."""
+        ready = lru_cache(maxsize=TARGETS)(lambda f: _Target.of(*surface(f)))
+        return FrameEvidence(confidence, residual, ready, settings, {})
+
+    def laid(self, f: int, P: Floats, weight: Floats, R: Floats, t: Floats) -> _Fit:
+        """P (point, xyz) as one rigid piece on the surface of frame f, from R, t."""
+        told = blake2b(digest_size=16)
+        for given in (P, weight, R, t):
+            told.update(given.tobytes())
+        key = f, self.settings, told.digest()
+        if key not in self.known:
+            self.known[key] = _registered(P, weight, R, t, self.target(f), self.settings)
+        return self.known[key]
 
 
 def least_evident_joint(body: MovingSurface, parts: MovingParts, tree: PartTree, evidence: FrameEvidence) -> int:
@@ -83,7 +139,7 @@ def least_evident_joint(body: MovingSurface, parts: MovingParts, tree: PartTree,
     order, parents = tree.tree.order, tree.tree.parents
     sides = [(int(order[k]), int(order[parents[k]])) for k in range(1, len(mass))]
     pairs = [sorted(both, key=lambda p: (mass[p], p)) for both in sides]
-    scores = np.array([_score(body, parts, evidence, roughness, small, large, chosen) for small, large in pairs])
+    scores = np.array([_score(body, parts, evidence, roughness, small, large) for small, large in pairs])
     needed = chosen.misfit_ratio_if_moving if np.isinf(scores).any() else chosen.misfit_ratio
     return pairs[int(scores.argmin())][0] if (scores < needed).any() else -1
 
@@ -95,9 +151,9 @@ def _score(
     roughness: Floats,
     small: int,
     large: int,
-    chosen: JointEvidenceSettings,
 ) -> float:
     """How many times farther from the surface two parts are as one than as two; infinite where the smaller moves clearly."""
+    chosen = evidence.settings
     own = np.flatnonzero(parts.label == small)
     if len(own) < chosen.least_vertices:
         return 0.0
@@ -109,7 +165,7 @@ def _score(
         return np.inf
     own, others = _evenly(own, chosen.sample), _evenly(np.flatnonzero(parts.label == large), chosen.sample)
     frames = np.argsort(-moved, kind="stable")[: chosen.frames]
-    distances = np.array([_distances(body, parts, evidence, int(f), small, large, own, others, chosen) for f in frames])
+    distances = np.array([_distances(body, parts, evidence, int(f), small, large, own, others) for f in frames])
     one, alone, median, aligned = np.maximum(np.sqrt((distances**2).mean(axis=0)), np.finfo(float).tiny)
     return float(np.sqrt(one / alone * median / aligned))
 
@@ -123,19 +179,15 @@ def _distances(
     large: int,
     own: Ints,
     others: Ints,
-    chosen: JointEvidenceSettings,
 ) -> tuple[float, float, float, float]:
     """The smaller part's distances to frame f: root mean squares as one piece and alone, medians as one and as aligned."""
-    V, F = evidence.surface(f)
-    n = area_vectors(V, F)
-    n /= np.maximum(np.linalg.norm(n, axis=1, keepdims=True), np.finfo(float).tiny)
     both = np.concatenate([own, others])
     count = np.bincount(parts.label, minlength=parts.R.shape[1])[[small, large]] / (len(own), len(others))
     weight = body.area[both] * evidence.confidence[f, both] * np.repeat(count, (len(own), len(others)))
-    R, t, distance = _registered(body.V[both], weight, parts.R[f, large], parts.t[f, large], V, F, n, chosen)
+    R, t, distance = evidence.laid(f, body.V[both], weight, parts.R[f, large], parts.t[f, large])
     w = np.maximum(weight[: len(own)], 1e-300)
     starts = ((R, t), (parts.R[f, small], parts.t[f, small]))
-    alone = min(float(w @ _registered(body.V[own], w, Q, u, V, F, n, chosen)[2] ** 2) for Q, u in starts)
+    alone = min(float(w @ evidence.laid(f, body.V[own], w, Q, u).distance ** 2) for Q, u in starts)
     one = distance[: len(own)]
     return (
         float(np.sqrt(w @ one**2 / w.sum())),
@@ -145,26 +197,33 @@ def _distances(
     )
 
 
-def _registered(
-    P: Floats, weight: Floats, R: Floats, t: Floats, V: Floats, F: Ints, n: Floats, chosen: JointEvidenceSettings
-) -> tuple[Floats, Floats, Floats]:
-    """P as one rigid piece on the surface V, F with face normals n, from R, t: R · t · (point,) distances."""
+def _registered(P: Floats, weight: Floats, R: Floats, t: Floats, target: _Target, chosen: JointEvidenceSettings) -> _Fit:
+    """P as one rigid piece on a surface, from R, t."""
     weight = weight / weight.sum()
     for _ in range(chosen.rounds):
         y = P @ R.T + t
-        closest = projected(y, V, F)
+        closest = target.tree.nearest(y)
         near = chosen.outlier * float(np.median(closest.distance)) + NEAREST * float(np.ptp(y, axis=0).max())
         w = weight / (1.0 + (closest.distance / near) ** 2)
-        N, goal = n[closest.face], np.einsum("pk,pkx->px", closest.share, V[F[closest.face]])
+        N, goal = target.n[closest.face], np.einsum("pk,pkx->px", closest.share, target.V[target.F[closest.face]])
         c = w @ y / w.sum()
-        A = np.concatenate([np.cross(y - c, N), N], axis=1)
+        A = _lines(y - c, N)
         H = A.T @ (w[:, None] * A)
         hold = np.repeat([w @ ((y - c) ** 2).sum(axis=1), w.sum()], 3)
         H[np.diag_indices(6)] += chosen.stiffness * np.maximum(hold, np.finfo(float).tiny)
         s = np.linalg.solve(H, A.T @ (w * ((goal - y) * N).sum(axis=1)))
         turn = rotations(s[:3])
         R, t = turn @ R, turn @ (t - c) + c + s[3:]
-    return R, t, projected(P @ R.T + t, V, F).distance
+    return _Fit(R, t, target.tree.nearest(P @ R.T + t).distance)
+
+
+def _lines(arm: Floats, N: Floats) -> Floats:
+    """(point, 6) arm × N and N: how far along N each point goes with a turn and a shift."""
+    A = np.empty((len(N), 6))
+    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        A[:, k] = arm[:, i] * N[:, j] - arm[:, j] * N[:, i]
+    A[:, 3:] = N
+    return A
 
 
 def _roughness(body: MovingSurface) -> Floats:

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 from shapes import sphere, y_pipe
 
-from kinetree.tasks.numerics.geometry.closest_point import projected
+from kinetree.tasks.numerics.geometry.closest_point import SurfaceTree, projected
 
 
 def points(projection, V, F):
@@ -19,6 +19,14 @@ def test_points_of_the_surface_are_their_own_nearest_points(rng):
     found = projected(P, V, F)
     assert found.distance.max() < 1e-12
     np.testing.assert_allclose(points(found, V, F), P, atol=1e-12)
+
+
+def test_tree_that_is_asked_again_answers_as_one_made_anew(rng):
+    V, F = sphere(2)
+    tree = SurfaceTree.of(V, F)
+    for P in (rng.normal(size=(40, 3)), rng.normal(size=(7, 3)) * 5):
+        for kept, anew in zip(tree.nearest(P), projected(P, V, F), strict=True):
+            np.testing.assert_array_equal(kept, anew)
 
 
 def test_shares_are_a_partition_of_unity_and_reach_the_stated_distance(rng):

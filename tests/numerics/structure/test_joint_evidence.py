@@ -31,7 +31,7 @@ def looked_at(aligned: Known, true: Known, moved: np.ndarray | None = None) -> t
     x, goal = aligned.x @ M.T, true.x @ M.T
     residual = np.stack([projected(a, b, true.F).distance for a, b in zip(x, goal, strict=True)])
     parts = MovingParts(aligned.label, M @ aligned.R, aligned.t @ M.T, aligned.residual)
-    evidence = FrameEvidence(np.ones(residual.shape), residual, lambda t: (goal[t], true.F), EVIDENCE)
+    evidence = FrameEvidence.of(np.ones(residual.shape), residual, lambda t: (goal[t], true.F), EVIDENCE)
     return MovingSurface(aligned.V, aligned.F, x, aligned.area), parts, evidence
 
 
@@ -73,6 +73,20 @@ def test_what_makes_a_joint_evident_can_be_set() -> None:
         (tested._replace(misfit_ratio=1e9), 1),
     ):
         assert least_evident_joint(body, parts, tree, evidence._replace(settings=settings)) == least_evident
+
+
+def test_piece_is_laid_on_a_frame_once_and_again_by_other_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    bent = turned(X, 20.0)
+    body, parts, evidence = looked_at(chain((1.0,), bent), otherwise(bent))
+    tree, laid, registered = part_tree(body, parts), [], numerics._registered
+    monkeypatch.setattr(numerics, "_registered", lambda *given: (laid.append(given), registered(*given))[1])
+    tested = evidence._replace(settings=EVIDENCE._replace(clear_motion=1e9))
+    first = least_evident_joint(body, parts, tree, tested), len(laid)
+    assert len(laid) > 0
+    assert (least_evident_joint(body, parts, tree, tested), len(laid)) == first
+    longer = tested._replace(settings=tested.settings._replace(rounds=tested.settings.rounds + 1))
+    least_evident_joint(body, parts, tree, longer)
+    assert len(laid) == 2 * first[1]
 
 
 def test_handful_of_vertices_shows_nothing() -> None:
