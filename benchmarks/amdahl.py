@@ -31,6 +31,7 @@ from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import Node, parse, project
+from kinetree.pipeline.planning.together import STRETCH
 from kinetree.pipeline.running import execute
 from kinetree.pipeline.task import Space
 
@@ -202,7 +203,7 @@ def longest_path(jobs: Jobs) -> list[Job]:
 
 
 def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Node]], first: Node) -> list[Node]:
-    """The nodes that travel together, by the rule of `Schedule.send`."""
+    """The nodes that travel together, by the rule of `together`."""
     parcel = [first]
     for member in parcel if first.at else ():
         for node in after[member]:
@@ -210,6 +211,13 @@ def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Nod
             goes_along = jobs[first].is_aside or not jobs[node].is_aside
             if is_here and goes_along and node not in parcel and waits[node] <= set(parcel):
                 parcel.append(node)
+    last = first
+    for _ in range(STRETCH - 1):
+        following = [n for n in after[last] if n.task == first.task and n not in parcel and waits[n] <= set(parcel)]
+        if len(following) != 1:
+            break
+        (last,) = following
+        parcel.append(last)
     return parcel
 
 

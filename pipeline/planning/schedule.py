@@ -19,6 +19,7 @@ from kinetree.pipeline.planning.freshness import Freshness
 from kinetree.pipeline.planning.layout import Given, Layout, T
 from kinetree.pipeline.planning.made_with import EVERY_VERSION_TRUSTED, MadeWith
 from kinetree.pipeline.planning.reason import Reason, Recall
+from kinetree.pipeline.planning.together import together
 from kinetree.pipeline.storage.store import Record, Store
 from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Index, Params
@@ -115,33 +116,16 @@ class Schedule:
         return self._rank[self._ready[0][2].task] / len(self._rank) if self._ready else None
 
     def send(self, entry: Entry) -> list[Entry]:
-        """A ready node runs, and all nodes of the same index that need nothing else: they travel as one piece of work.
+        """A ready node runs, and with it what travels with it as one piece of work (`together`).
 
-        What little waits for does not travel with what much waits for, and a node whose task has a limit of time travels alone,
-        since time is taken of the whole piece.
         An artifact of it that was found damaged is removed first, so that it is made again.
         returns : these nodes, each after those of them that it reads
         """
         self._discard_damaged(entry)
-        parcel = [entry]
-        inside = {entry.node}
-        for member in parcel:
-            if not entry.node.at or entry.task.timeout is not None:
-                break
-            for node in self._dependents[member.node]:
-                other = self.entries[node]
-                here = node.at == entry.node.at and other.task.over == entry.task.over and other.task.timeout is None
-                if here and other.state == "waits" and node not in inside and self._goes_along(other, entry):
-                    if node not in self._unlisted and other.waits <= inside:
-                        inside.add(node)
-                        parcel.append(other)
-        parcel.sort(key=lambda e: self._rank[e.node.task])
+        parcel = together(entry, self.graph, self.entries, self._dependents, self._unlisted)
         for member in parcel:
             member.state = "running"
         return parcel
-
-    def _goes_along(self, other: Entry, first: Entry) -> bool:
-        return other.task.name not in self.graph.aside or first.task.name in self.graph.aside
 
     def complete(self, node: Node, key: str, artifact: str, record: Record | None, *, ran: bool) -> list[Entry]:
         """A node has its artifact: its dependents settle, what it opens is laid out; returns what turned out fresh."""

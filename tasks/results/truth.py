@@ -65,15 +65,20 @@ def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str
     returns : two of (vertex,) joints, the second −1 where the joint carries all its bones; None where nothing is known
     """
     if source.recipe and truth.source == SYNTH:
-        generated = body(source.recipe)
-        first_joint = np.array([truth.names.index(joints[0]) for joints in generated.truth()["parts"]], dtype=np.int32)
-        carrier = first_joint[generated.parts(source.part or 0, V)]
+        first_joint = np.array([truth.names.index(name) for name in _first_joints(source.recipe)], dtype=np.int32)
+        carrier = first_joint[body(source.recipe).parts(source.part or 0, V)]
         return carrier, np.full_like(carrier, -1)
     if not truth.vertices.shape[1]:
         return None
     scale = unit_factor(truth.unit, unit, truth.source)
     at = nearest_vertices(truth.vertices[truth.frames.index(frame)] * scale, V)
     return truth.carrier[at], truth.bone_end[at]
+
+
+@lru_cache(maxsize=2)
+def _first_joints(recipe: str) -> tuple[str, ...]:
+    """The first joint of every true rigid part of a generated sequence, by name."""
+    return tuple(joints[0] for joints in body(recipe).truth()["parts"])
 
 
 def _stamp(path: str) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 import pytest
 
 from kinetree.errors import GraphError
+from kinetree.pipeline.planning.together import STRETCH
 from kinetree.pipeline.running.launch import Launcher
 from kinetree.pipeline.running.run import run
 
@@ -172,23 +173,40 @@ def test_a_long_chain_needs_no_stack(toys):
     assert toys.run().ran == set()
 
 
-def test_frames_travel_whole_and_the_deepest_go_first(toys):
-    """With one parcel out at a time, a frame's nodes are sent together, not task by task."""
-    sent, names = [], []
-    schedule = toys.pipeline().schedule(until=["smooth"])
-    schedule.store.create()
-
-    def submit(name, demand, url, steps, sight):
-        from dask.local import SynchronousExecutor
-
-        from kinetree.pipeline.running.execute import execute
-
-        names.append(name.partition("-")[0])
-        sent.append([step.label for step in steps])
-        return SynchronousExecutor().submit(execute, url, steps, sight)
+def sent_by_run(schedule):
+    """The labels of every parcel of a run with one parcel out at a time, in the order in which they are sent."""
+    from dask.local import SynchronousExecutor
 
     from kinetree.pipeline.running.events import Watch
+    from kinetree.pipeline.running.execute import execute
 
+    sent = []
+
+    def submit(name, demand, url, steps, sight):
+        sent.append((name.partition("-")[0], [step.label for step in steps]))
+        return SynchronousExecutor().submit(execute, url, steps, sight)
+
+    schedule.store.create()
     run(schedule, Launcher(submit, lambda: 1), Watch())
-    assert sent == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]
-    assert set(names) == {"points+smooth"}
+    return sent
+
+
+def test_frames_travel_whole_and_the_deepest_go_first(toys):
+    """With one parcel out at a time, a frame's nodes are sent together, not task by task."""
+    sent = sent_by_run(toys.pipeline().schedule(until=["smooth"]))
+    assert [labels for _, labels in sent] == [[f"points[frame={n}]", f"smooth[frame={n}]"] for n in range(6)]
+    assert {name for name, _ in sent} == {"points+smooth"}
+
+
+def test_each_side_of_a_chain_travels_by_itself_once_nothing_else_is_missing(toys):
+    toys.run(until=("centred",))
+    sent = [labels for name, labels in sent_by_run(toys.pipeline().schedule(until=["track"])) if name == "track"]
+    assert sent == [["track[frame=2]"], ["track[frame=1]", "track[frame=0]"], [f"track[frame={n}]" for n in (3, 4, 5)]]
+
+
+def test_a_long_chain_travels_in_stretches(toys):
+    (toys.folder / toys.name / "chain.py").write_text(CHAIN.replace("range(2000)", "range(2 * 16 + 3)"))
+    toys.main = "chain"
+    sent = [labels for name, labels in sent_by_run(toys.pipeline().schedule()) if name == "link"]
+    assert [len(labels) for labels in sent] == [STRETCH, STRETCH, 3]
+    assert [label for labels in sent for label in labels] == [f"link[frame={n}]" for n in range(2 * STRETCH + 3)]

@@ -170,10 +170,12 @@ def _values(cones, P, near):  # type: ignore[no-untyped-def]
 def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
     d, of_limb = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
     for b in range(len(cones.A)):
-        length = np.sqrt((cones.D[b] ** 2).sum())
+        ax, ay, az = cones.A[b, 0], cones.A[b, 1], cones.A[b, 2]
+        dx, dy, dz = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
+        length = np.sqrt(dx * dx + dy * dy + dz * dz)
         for i in range(len(P)):
             _limb(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
-            along = ((P[i] - cones.A[b]) * cones.D[b]).sum() / length
+            along = ((P[i, 0] - ax) * dx + (P[i, 1] - ay) * dy + (P[i, 2] - az) * dz) / length
             d[i, b] = of_limb[b, 0] + 0.5 * max(0.0, -along, along - length)
     return d
 

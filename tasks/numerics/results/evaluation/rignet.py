@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.results.evaluation.settings import EvaluationSettings
 
 
@@ -91,19 +92,38 @@ def _bones(x: Floats, parents: Sequence[int]) -> Floats:
     return x[np.array(ends)]
 
 
+@compiled
 def _points(bones: Floats, step: float) -> Floats:
     """(point, xyz) points along every bone about `step` apart, including its ends."""
-    points = []
-    for a, b in bones:
-        count = max(round(float(np.linalg.norm(b - a)) / step), 1)
-        points.append(a + np.linspace(0.0, 1.0, count + 1)[:, None] * (b - a))
-    return np.concatenate(points)
+    count = np.empty(len(bones), np.int64)
+    for b in range(len(bones)):
+        length = np.sqrt(((bones[b, 1] - bones[b, 0]) ** 2).sum())
+        count[b] = max(round(length / step), 1)
+    out = np.empty((count.sum() + len(bones), 3))
+    row = 0
+    for b in range(len(bones)):
+        for k in range(count[b] + 1):
+            for x in range(3):
+                out[row, x] = bones[b, 0, x] + k / count[b] * (bones[b, 1, x] - bones[b, 0, x])
+            row += 1
+    return out
 
 
+@compiled
 def _to_bones(P: Floats, bones: Floats) -> Floats:
     """(point,) distance from each point to the nearest point of any bone."""
-    a, d = bones[:, 0], bones[:, 1] - bones[:, 0]
-    square = np.maximum((d * d).sum(axis=1), 1e-300)
-    along = np.clip(((P[:, None] - a) * d).sum(axis=2) / square, 0.0, 1.0)
-    distance: Floats = np.linalg.norm(P[:, None] - (a + along[:, :, None] * d), axis=2).min(axis=1)
-    return distance
+    out = np.empty(len(P))
+    for i in range(len(P)):
+        least = np.inf
+        for b in range(len(bones)):
+            square, along, off = 1e-300, 0.0, 0.0
+            for x in range(3):
+                d = bones[b, 1, x] - bones[b, 0, x]
+                square += d * d
+                along += (P[i, x] - bones[b, 0, x]) * d
+            along = min(max(along / square, 0.0), 1.0)
+            for x in range(3):
+                off += (P[i, x] - bones[b, 0, x] - along * (bones[b, 1, x] - bones[b, 0, x])) ** 2
+            least = min(least, off)
+        out[i] = np.sqrt(least)
+    return out

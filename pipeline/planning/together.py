@@ -1,0 +1,61 @@
+"""Which nodes travel together as one piece of work: those of one index, and a stretch of a chain."""
+
+from collections.abc import Collection, Iterator, Mapping
+
+from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.node import Node
+from kinetree.pipeline.planning.entry import Entry
+
+STRETCH = 16
+"""Nodes of a chain that travel together at most: their arrays stay in one process, and none waits to be sent. Each result is
+stored as soon as it is there, and heard of with the last one."""
+
+
+def together(
+    first: Entry,
+    graph: Graph,
+    entries: Mapping[Node, Entry],
+    dependents: Mapping[Node, Collection[Node]],
+    unlisted: Collection[Node],
+) -> list[Entry]:
+    """A ready node and the nodes that need nothing else: all of its own index, and the next ones of its own chain.
+
+    What little waits for does not travel with what much waits for, and a node whose task has a limit of time travels alone,
+    since time is taken of the whole piece. A chain that branches ends there, so that its branches go on side by side.
+
+    dependents : the nodes that read a node or are laid out by it
+    unlisted   : nodes of which it is not known yet what they read
+    returns    : these nodes, each after those of them that it reads
+    """
+    parcel, inside = [first], {first.node}
+    if not first.node.at or first.task.timeout is not None:
+        return parcel
+
+    def waiting(member: Entry) -> Iterator[Entry]:
+        for node in dependents.get(member.node, ()):
+            other = entries[node]
+            if other.state == "waits" and node not in inside and node not in unlisted and other.waits <= inside:
+                yield other
+
+    def goes_along(other: Entry) -> bool:
+        is_here = other.node.at == first.node.at and other.task.over == first.task.over and other.task.timeout is None
+        return is_here and (other.task.name not in graph.aside or first.task.name in graph.aside)
+
+    def add(other: Entry) -> None:
+        inside.add(other.node)
+        parcel.append(other)
+
+    for member in parcel:
+        for other in waiting(member):
+            if goes_along(other):
+                add(other)
+    rank = {task.name: n for n, task in enumerate(graph.tasks)}
+    parcel.sort(key=lambda e: rank[e.node.task])
+    last = first
+    for _ in range(STRETCH - 1 if first.task.along is not None else 0):
+        following = [other for other in waiting(last) if other.task is first.task]
+        if len(following) != 1:
+            break
+        (last,) = following
+        add(last)
+    return parcel
