@@ -30,6 +30,8 @@ ALONE = {
     "distributed": "pipeline/running/clusters.py",
     "zarr": "pipeline/storage/groups.py",
 }
+SLOW = {"scipy.signal", "scipy.stats"}
+"""Take as long to import as all else of scipy."""
 ROOMS = ("identity", "storage", "settings", "planning", "running", "inspection", "output", "dataset", "command_line")
 """Folders of the loom: one imports only from those before it."""
 OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
@@ -94,6 +96,14 @@ def test_one_file_each_imports_dask_distributed_and_zarr() -> None:
         for library, home in ALONE.items():
             if name(path) != home:
                 assert library not in outside(imports(path)), name(path)
+
+
+def test_what_is_slow_to_import_is_imported_where_it_is_used() -> None:
+    for path in FILES:
+        at_once = ast.parse(path.read_text()).body
+        names = {alias.name for node in at_once if isinstance(node, ast.Import) for alias in node.names}
+        names |= {str(node.module) for node in at_once if isinstance(node, ast.ImportFrom)}
+        assert not names & SLOW, name(path)
 
 
 def test_numerics_know_numbers_and_nothing_of_the_loom() -> None:

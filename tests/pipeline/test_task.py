@@ -1,5 +1,6 @@
 """Laws of a declaration: every form a signature may have, and every refusal at import in words that name the place."""
 
+import gc
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Optional
 
@@ -282,6 +283,17 @@ def test_worker_finds_a_task_by_its_name():
     assert (found.name, found.module) == ("mesh", "kinetree.tasks.input.mesh")
     with pytest.raises(GraphError, match=r"^kinetree\.tasks\.input\.mesh:clean is not a task$"):
         load("kinetree.tasks.input.mesh:clean")
+
+
+def test_no_garbage_is_looked_for_while_a_task_is_imported(tmp_path, monkeypatch):
+    (tmp_path / "slow_task.py").write_text("import gc\nbefore = gc.isenabled()\nassert not before\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(GraphError, match="slow_task:before is not a task"):
+        load("slow_task:before")
+    assert gc.isenabled()
+    with pytest.raises(ImportError):
+        load("no_such_module:task")
+    assert gc.isenabled()
 
 
 def test_threads_and_retries_that_make_no_sense_are_refused():

@@ -8,7 +8,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from kinetree.tasks.numerics.arrays import Floats
 
@@ -80,6 +79,8 @@ def _turning(way: Floats, reach: float, prominence: float) -> list[float]:
     span = float(np.ptp(way))
     if span < reach:
         return []
+    from scipy.signal import find_peaks  # takes as long to import as all else of scipy
+
     peaks, _ = find_peaks(way, prominence=prominence * span)
     before, at, after = way[peaks - 1], way[peaks], way[peaks + 1]
     bend = before - 2.0 * at + after

@@ -187,9 +187,12 @@ def picture(figure: "Figure", caption: str, alternative: str) -> str:
 
 def rendered(figure: "Figure") -> bytes:
     """A figure as the bytes of an SVG file, its surfaces as pixels; equal figures give equal bytes."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     file = io.BytesIO()
-    with rendering():
-        verbatim(figure).savefig(file, format="svg", dpi=PAGE_DOTS, metadata={"Date": None, "Creator": None})
+    with rendering():  # the canvas itself draws once; savefig draws twice where there is a layout
+        verbatim(figure).set_dpi(PAGE_DOTS)
+        FigureCanvasSVG(figure).print_svg(file, metadata={"Date": None, "Creator": None})
     return following_the_page(file.getvalue())
 
 

@@ -1,7 +1,7 @@
 """The means of all pictures: figures without a window, views of a body, surfaces as shaded faces, colours of values."""
 
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,11 +49,23 @@ def words(text: str) -> "Figure":
 
 def verbatim(figure: "Figure") -> "Figure":
     """The figure with all text printed as it is: a $ in a name does not begin a formula."""
-    from matplotlib.text import Text
-
-    for text in figure.findobj(Text):
+    for text in _texts(figure):
         text.set_parse_math(False)
     return figure
+
+
+def _texts(artist: Any) -> Iterator[Any]:
+    """All texts below an artist. Whoever looks into an axis makes its ticks, which axes that are off never show."""
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.text import Text
+
+    if isinstance(artist, Text):
+        yield artist
+    is_off = isinstance(artist, Axes) and not artist.axison
+    for child in artist.get_children():
+        if not (is_off and isinstance(child, Axis)):
+            yield from _texts(child)
 
 
 def write_figure(figure: "Figure", path: Path, style: Style = "screen") -> None:

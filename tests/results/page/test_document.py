@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import io
 import json
 import re
 import threading
@@ -9,6 +10,8 @@ import threading
 import numpy as np
 import pytest
 from matplotlib import rcParams
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from results.sample_report import page, trusted
 
@@ -16,6 +19,8 @@ from kinetree.pipeline import views
 from kinetree.schemas.results.report import RUN, Report
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, linear
 from kinetree.tasks.results.page.document import Remark, as_script, page_file, rendered, table
+from kinetree.tasks.results.plots.drawing import blank, verbatim
+from kinetree.tasks.results.plots.style import PAGE_DOTS, following_the_page, rendering
 
 EVIL = "</script><script>alert(1)</script>{{scene}}<!--"
 
@@ -123,14 +128,12 @@ def test_figures_that_are_written_at_once_do_not_share_settings():
     begun, first_is_done, fonts = threading.Event(), threading.Event(), []
 
     class First(Figure):
-        def savefig(self, file, **_):
-            file.write(b"<svg>")
+        def draw(self, renderer):
             other.start()
             begun.wait(0.5)  # in vain where they wait for each other
 
     class Second(Figure):
-        def savefig(self, file, **_):
-            file.write(b"<svg>")
+        def draw(self, renderer):
             begun.set()
             first_is_done.wait()
             fonts.append(rcParams["svg.fonttype"])
@@ -140,3 +143,31 @@ def test_figures_that_are_written_at_once_do_not_share_settings():
     first_is_done.set()
     other.join()
     assert fonts == ["none"]
+
+
+def test_figure_is_drawn_once_and_has_the_bytes_that_savefig_gives_it(monkeypatch):
+    def drawn():
+        figure, (off, on) = blank(4.0, 2.0, 2)
+        off.set_axis_off()
+        on.set_title("$ 1")
+        figure.colorbar(on.scatter([0, 1], [1, 0], c=[0, 1]), ax=on)
+        return figure
+
+    twice = io.BytesIO()
+    with rendering():
+        told = {"format": "svg", "dpi": PAGE_DOTS, "metadata": {"Date": None, "Creator": None}}
+        verbatim(drawn()).savefig(twice, **told)
+    draws, plain = [], Axes.draw
+    monkeypatch.setattr(Axes, "draw", lambda axes, *given: (draws.append(axes), plain(axes, *given)))
+    figure = drawn()
+    assert rendered(figure) == following_the_page(twice.getvalue())
+    assert sorted(map(id, draws)) == sorted(map(id, figure.axes))
+
+
+def test_axes_that_are_off_are_given_no_ticks(monkeypatch):
+    figure, axes = blank(2.0, 2.0)
+    axes.set_axis_off()
+    axes.text(0.0, 0.0, "$ 1")
+    monkeypatch.setattr(Axis, "get_major_ticks", lambda *_: pytest.fail("ticks are made for nobody"))
+    verbatim(figure)
+    assert not axes.texts[0].get_parse_math()
