@@ -26,6 +26,10 @@ UNWATCHED = {
 """How dask watches processes of our own: its defaults look at every one fifty times a second, and at what a worker computes a
 hundred times, for a performance report; results are too small to be moved about."""
 
+ENVIRONMENT, TRIM = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
+"""What dask sets in the environment of our own processes; and of that, what makes them give back the memory of every array
+at once, which the kernel then clears for the next one. Where the run's own environment sets it, it holds."""
+
 
 class Future(Protocol):
     """What the loop asks of a parcel under way."""
@@ -76,8 +80,10 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
 
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
         with contextlib.ExitStack() as stack:
-            if is_ours and not compute.cluster and compute.performance_report is None:
-                stack.enter_context(dask.config.set(UNWATCHED))
+            if is_ours and not compute.cluster:
+                kept = {name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != TRIM}
+                watching = UNWATCHED if compute.performance_report is None else {}
+                stack.enter_context(dask.config.set({ENVIRONMENT: kept, **watching}))
             found = stack.enter_context(clusters.connected(compute, client))
             yield _on_client(found, stack.enter_context(followed(found, compute, is_ours=is_ours)), compute)
         return

@@ -1,6 +1,7 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
 
 import json
+import os
 import threading
 import time
 
@@ -13,7 +14,7 @@ from kinetree.errors import ClusterError, ConfigError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.running import clusters
 from kinetree.pipeline.running.clusters import cluster_of
-from kinetree.pipeline.running.launch import launcher
+from kinetree.pipeline.running.launch import ENVIRONMENT, TRIM, launcher
 from kinetree.pipeline.running.living_workers import LivingWorkers
 from kinetree.pipeline.settings.config import Compute
 
@@ -177,6 +178,14 @@ def test_our_own_workers_are_profiled_for_a_report_alone(monkeypatch, tmp_path, 
         pass
     assert asked == [is_profiled]
     assert dask.config.get("distributed.worker.profile.enabled")
+
+
+def test_our_own_workers_do_not_give_back_memory_that_they_need_again():
+    """By that setting a run over six frames of 12,000 vertices cleared 1.6 million pages instead of 0.25: an eighth of its time."""
+    assert dask.config.get(ENVIRONMENT)[TRIM]
+    with launcher(Compute(executor="processes", workers=1)):
+        told = Client.current().submit(os.environ.get, TRIM).result(timeout=60)
+        assert told == os.environ.get(TRIM)
 
 
 def test_adaptive_workers_come_with_the_work_and_go_with_it(toys):
