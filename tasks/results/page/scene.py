@@ -23,6 +23,9 @@ from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURF
 from kinetree.tasks.results.formats.rig import carried
 from kinetree.tasks.results.plots.drawing import directions
 
+_LEVEL = 4
+"""Of deflation: of a body in 108 frames 5.53 MB in 0.17 s, where zlib's own level 6 makes 5.54 MB in 0.49 s."""
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -212,7 +215,7 @@ def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]
         raw += bytes(-len(raw) % 4)
         chunks.append(raw)
         offset += len(raw)
-    return layout, base64.b64encode(zlib.compress(b"".join(chunks), 6)).decode()
+    return layout, base64.b64encode(zlib.compress(b"".join(chunks), _LEVEL)).decode()
 
 
 def _offsets(counts: list[int]) -> NDArray[np.uint32]:

@@ -22,7 +22,7 @@ from kinetree.tasks.numerics.input.synth.defects import punctured, roughened
 from kinetree.tasks.numerics.input.synth.descriptions import Motion, suggestion
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
-from kinetree.tasks.numerics.input.synth.implicit import Cones, extent, grid_values, limb_distances
+from kinetree.tasks.numerics.input.synth.implicit import Cones, extent, grid_values, nearest_limbs
 from kinetree.tasks.numerics.input.synth.losses import Dropped
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations, true_joints
 from kinetree.tasks.numerics.input.synth.skins import Skin
@@ -158,7 +158,7 @@ class Body:
         self._check_frame(t)
         carried = [joint["part"] for joint in self._true_joints[0]]
         of_limb = np.array([carried[p] for p in self.flesh.parent], dtype=np.int64)
-        return np.asarray(of_limb[np.argmin(limb_distances(self._limbs(t), V), axis=1)], dtype=np.int64)
+        return np.asarray(of_limb[nearest_limbs(self._limbs(t), V)], dtype=np.int64)
 
     def volume(self, t: int, voxel: float | None = None) -> Volume:
         """Clipped signed distance of frame t on a grid that is the same in every frame of the clip.

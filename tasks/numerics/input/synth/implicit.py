@@ -17,6 +17,8 @@ from kinetree.tasks.numerics.compiled import compiled
 
 _BLOCK = 4
 """Grid points along the side of a block; a bound at its centre decides whether any of them is near the surface."""
+_SAFE = 1.0 + 1e-9
+"""A limb is passed over only if its bound exceeds the least distance by more than rounding."""
 
 
 class Cones(NamedTuple):
@@ -66,6 +68,14 @@ def limb_distances(cones: Cones, P: Floats) -> Floats:
     returns : (point, limb) in the figure's unit
     """
     return _limb_distances(cones, np.ascontiguousarray(P))
+
+
+def nearest_limbs(cones: Cones, P: Floats) -> Ints:
+    """(point,) the limb to which each point is nearest by `limb_distances`, of equals the first; far limbs are not measured.
+
+    P : (point, xyz)
+    """
+    return _nearest_limbs(cones, np.ascontiguousarray(P))
 
 
 def grid_values(cones: Cones, origin: Floats, spacing: float, shape: tuple[int, int, int], band: float) -> Floats:
@@ -169,15 +179,43 @@ def _values(cones, P, near):  # type: ignore[no-untyped-def]
 @compiled
 def _limb_distances(cones, P):  # type: ignore[no-untyped-def]
     d, of_limb = np.empty((len(P), len(cones.A))), np.empty((len(cones.A), 4))
-    for b in range(len(cones.A)):
-        ax, ay, az = cones.A[b, 0], cones.A[b, 1], cones.A[b, 2]
-        dx, dy, dz = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
-        length = np.sqrt(dx * dx + dy * dy + dz * dz)
-        for i in range(len(P)):
-            _limb(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
-            along = ((P[i, 0] - ax) * dx + (P[i, 1] - ay) * dy + (P[i, 2] - az) * dz) / length
-            d[i, b] = of_limb[b, 0] + 0.5 * max(0.0, -along, along - length)
+    for i in range(len(P)):
+        for b in range(len(cones.A)):
+            d[i, b] = _limb_distance(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
     return d
+
+
+@compiled
+def _limb_distance(cones, b, x, y, z, of_limb):  # type: ignore[no-untyped-def]
+    """Value of limb b plus half of how far the point lies past the ends of its axis."""
+    _limb(cones, b, x, y, z, of_limb)
+    dx, dy, dz = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
+    length = np.sqrt(dx * dx + dy * dy + dz * dz)
+    along = ((x - cones.A[b, 0]) * dx + (y - cones.A[b, 1]) * dy + (z - cones.A[b, 2]) * dz) / length
+    return of_limb[b, 0] + 0.5 * max(0.0, -along, along - length)
+
+
+@compiled
+def _nearest_limbs(cones, P):  # type: ignore[no-untyped-def]
+    """A limb's value is at least the distance to its axis less what it bows and its largest radius, times its flatness."""
+    nearest, of_limb, held = np.empty(len(P), np.int64), np.empty((len(cones.A), 4)), np.empty(len(cones.A))
+    for b in range(len(cones.A)):
+        held[b] = np.sqrt((cones.bow[b] ** 2).sum()) + max(cones.table[b].max(), 0.0) * (1.0 + max(cones.folds[b, 1], 0.0))
+    found = 0
+    for i in range(len(P)):
+        least = _limb_distance(cones, found, P[i, 0], P[i, 1], P[i, 2], of_limb)
+        for b in range(len(cones.A)):
+            dx, dy, dz = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
+            x, y, z = P[i, 0] - cones.A[b, 0], P[i, 1] - cones.A[b, 1], P[i, 2] - cones.A[b, 2]
+            t = min(max((x * dx + y * dy + z * dz) / (dx * dx + dy * dy + dz * dz), 0.0), 1.0)
+            away = np.sqrt((x - t * dx) ** 2 + (y - t * dy) ** 2 + (z - t * dz) ** 2) - held[b]
+            if away > 0.0 and away * min(cones.flat[b], 1.0) > least * _SAFE:
+                continue
+            d = _limb_distance(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
+            if d < least or (d == least and b < found):
+                least, found = d, b
+        nearest[i] = found
+    return nearest
 
 
 @compiled

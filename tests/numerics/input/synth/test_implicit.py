@@ -6,7 +6,7 @@ import trimesh
 
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
-from kinetree.tasks.numerics.input.synth.implicit import extent, grid_values, limb_distances, values
+from kinetree.tasks.numerics.input.synth.implicit import extent, grid_values, limb_distances, nearest_limbs, values
 from kinetree.tasks.numerics.input.synth.surfacing import largest_component, spacing_for, surface
 
 
@@ -106,6 +106,16 @@ def test_an_absent_limb_leaves_the_others_as_they_are():
 def test_points_past_a_joint_belong_to_the_limb_beside_them():
     distances = limb_distances(at_rest(chain((0, 0, 0), (0, 0, 4), (0, 0, 8))), np.array([[1.0, 0, 3.5], [1.0, 0, 4.5]]))
     assert distances.argmin(axis=1).tolist() == [0, 1]
+
+
+def test_far_limbs_are_passed_over_and_none_that_could_be_nearest():
+    figure = chain((0, 0, 0), (0, 0, 4), (3, 0, 5), (3, 3, 5), (0, 6, 1), (2, 0, 2))
+    cones = at_rest(figure)
+    bent = np.random.default_rng(8).normal(scale=0.4, size=cones.bow.shape)
+    folds = np.column_stack([np.full(len(bent), 5.0), np.full(len(bent), 0.3), np.arange(len(bent))])
+    P = np.random.default_rng(9).uniform(-3, 8, (3000, 3))
+    for body in (cones, cones._replace(bow=bent), cones._replace(flat=np.full(len(bent), 0.4)), cones._replace(folds=folds)):
+        np.testing.assert_array_equal(nearest_limbs(body, P), limb_distances(body, P).argmin(axis=1))
 
 
 def test_a_surfaced_capsule_lacks_volume_in_proportion_to_a_voxels_face():
