@@ -8,6 +8,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.inlined import inlined
 
 
 @compiled
@@ -80,11 +81,10 @@ def strains(edge: Ints, R: Floats, p: Floats, g: Floats) -> Floats:
     return out
 
 
-@compiled
+@inlined
 def _edge(j: int, k: int, R: Floats, p: Floats, g: Floats, q: Floats, r: Floats) -> None:
     """Writes into q the edge turned with j, into r the vector from node k to where node j would carry it."""
+    d0, d1, d2 = g[k, 0] - g[j, 0], g[k, 1] - g[j, 1], g[k, 2] - g[j, 2]
     for x in range(3):
-        q[x] = 0.0
-        for y in range(3):
-            q[x] += R[j, x, y] * (g[k, y] - g[j, y])
+        q[x] = R[j, x, 0] * d0 + R[j, x, 1] * d1 + R[j, x, 2] * d2
         r[x] = q[x] + p[j, x] - p[k, x]

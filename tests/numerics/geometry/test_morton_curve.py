@@ -31,3 +31,16 @@ def test_samples_spread_evenly_in_whatever_order_the_mesh_lists_its_vertices():
 def test_as_many_samples_as_vertices_are_all_of_them():
     V, _ = tube()
     np.testing.assert_array_equal(np.sort(spread_along_curve(V, 10**6)), np.arange(len(V)))
+
+
+def test_the_order_is_that_of_sorting_by_the_interleaved_bits_of_the_cells():
+    V = np.random.default_rng(2).normal(size=(500, 3))
+    cell = np.minimum((V - V.min(axis=0)) / np.ptp(V) * 1024, 1023).astype(int)
+    bits = ["".join(f"{c:010b}"[k] for k in range(10) for c in (z, y, x)) for x, y, z in cell.tolist()]
+    assert morton_order(V).tolist() == sorted(range(len(V)), key=lambda i: (bits[i], i))
+
+
+def test_one_far_point_that_puts_all_others_into_one_cell_costs_no_time():
+    V = np.vstack([np.random.default_rng(3).normal(size=(40_000, 3)), [[1e9, 0.0, 0.0]]])
+    sample = spread_along_curve(V, 100)
+    np.testing.assert_array_equal(np.diff(V[sample, 0]) >= 0, True)
