@@ -1,6 +1,6 @@
 """Where the frames are: meshes, silhouettes or volumes, a file each or in one file that holds all, or a synthetic body."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from kinetree.errors import SourceError
 from kinetree.pipeline.identity.key import digest
@@ -9,6 +9,7 @@ from kinetree.pipeline.task import origin
 from kinetree.schemas.input.source import BadFrame, Source, SourceParams
 from kinetree.tasks.input.frames.found import frames_at
 from kinetree.tasks.input.frames.measured import measures_of_frames
+from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.numerics.input.bad_frames import (
     FrameMeasures,
     bad_frames,
@@ -17,6 +18,7 @@ from kinetree.tasks.numerics.input.bad_frames import (
     refuse_other_bodies,
 )
 from kinetree.tasks.numerics.input.frame_numbers import TAKE, selected_frames
+from kinetree.tasks.numerics.input.same_surfaces import have_same_measures, have_same_vertices
 
 
 @origin(over="frame")
@@ -38,7 +40,7 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
 def _several(params: SourceParams, files: Files) -> dict[int, Source]:
     """The frames of several takes, numbered one take after the other; bad frames are looked for in each take by itself.
 
-    raises : SourceError where a take shows another body, or the same frames as one before it
+    raises : SourceError where a take shows another body, or the same frames as one before it, also in files of another format
     """
     if params.input or params.synth is not None:
         raise SourceError("source.takes excludes source.input and source.synth; name each take's input in source.takes")
@@ -50,19 +52,37 @@ def _several(params: SourceParams, files: Files) -> dict[int, Source]:
         )
     found: dict[int, Source] = {}
     measured: dict[str, list[FrameMeasures]] = {}
-    known: dict[tuple[str, ...], str] = {}
+    known: dict[str, dict[int, Source]] = {}
     for k, take in enumerate(params.takes):
         own = _usable(_chosen(frames_at(take.input, files, take.clip), params.frames, take.input), params, files)
-        if (other := known.setdefault(tuple(frame.content for frame in own.values()), take.name)) != take.name:
-            raise SourceError(
-                f"source.takes: {other} and {take.name} have the same frames ({take.input}); leave one of them out"
-            )
         measured[take.name] = [m for m in measures_of_frames(own, files).values() if not isinstance(m, str)]
+        for other, frames in known.items():
+            if _are_same(frames, own, measured[other], measured[take.name], files):
+                raise SourceError(
+                    f"source.takes: {other} and {take.name} have the same frames ({take.input}); leave one of them out"
+                )
+        known[take.name] = own
         for t, frame in own.items():
             dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)
             found[k * TAKE + t] = frame.model_copy(update={"take": take.name, "dropped": dropped})
     refuse_other_bodies(measured)
     return found
+
+
+def _are_same(
+    some: Mapping[int, Source],
+    others: Mapping[int, Source],
+    measures: Sequence[FrameMeasures],
+    other_measures: Sequence[FrameMeasures],
+    files: Files,
+) -> bool:
+    """Whether two takes have the same frames; surfaces are read only where their measures are the same."""
+    pairs = list(zip(some.values(), others.values(), strict=False))
+    if [a.content for a in some.values()] == [b.content for b in others.values()]:
+        return True
+    if not have_same_measures(measures, other_measures) or any(files.is_remote(f.path) for pair in pairs for f in pair):
+        return False
+    return all(have_same_vertices(*surface(a), *surface(b)) for a, b in pairs)
 
 
 def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -> dict[int, Source]:

@@ -394,6 +394,49 @@ def test_the_same_frames_as_two_takes_are_refused(files, scans, tmp_path):
             source(SourceParams(takes=takes), files)
 
 
+def moving(folder, ending, shift=0.0, width=1.0):
+    """Three frames of an egg that grows a nose, as a folder of files of a format."""
+    folder.mkdir(exist_ok=True)
+    for t in range(3):
+        egg = trimesh.creation.icosphere(subdivisions=3)
+        egg.vertices *= (width, 2.0, 3.0)
+        egg.vertices[np.argmax(egg.vertices[:, 2])] += (0.0, shift, 0.1 * t)
+        if ending == "drc":
+            content = pytest.importorskip("DracoPy").encode(egg.vertices, egg.faces.astype(np.uint32), quantization_bits=11)
+            (folder / f"frame_{t}.drc").write_bytes(content)
+        else:
+            egg.export(folder / f"frame_{t}.{ending}")
+    return str(folder)
+
+
+@pytest.mark.parametrize("ending", ["obj", "stl", "off", "glb", "drc", "npz"])
+def test_the_same_frames_in_another_format_as_a_second_take_are_refused(files, tmp_path, ending):
+    first, second = moving(tmp_path / "first", "ply"), str(tmp_path / "second.npz")
+    if ending == "npz":
+        eggs = [trimesh.load(tmp_path / "first" / f"frame_{t}.ply", process=False) for t in range(3)]
+        count = np.cumsum([0, *(len(egg.vertices) for egg in eggs)])
+        arrays = {"vertices": np.concatenate([egg.vertices for egg in eggs]), "vertex_offsets": count}
+        np.savez(second, faces=eggs[0].faces, face_offsets=np.array([0, len(eggs[0].faces)]), **arrays)
+    else:
+        second = moving(tmp_path / "second", ending)
+    takes = [{"name": "walk", "input": first}, {"name": "again", "input": second}]
+    with pytest.raises(
+        SourceError, match=rf"walk and again have the same frames \({re.escape(second)}\); leave one of them out"
+    ):
+        source(SourceParams(takes=takes), files)
+
+
+def test_takes_that_differ_by_one_vertex_are_two(files, tmp_path):
+    takes = [{"name": n, "input": moving(tmp_path / n, e, by)} for n, e, by in (("a", "ply", 0.0), ("b", "obj", 0.05))]
+    assert len(source(SourceParams(takes=takes), files)) == 6
+
+
+def test_takes_of_other_measures_are_not_read_again(files, tmp_path, monkeypatch):
+    takes = [{"name": n, "input": moving(tmp_path / n, "ply", width=w)} for n, w in (("a", 1.0), ("b", 1.05))]
+    monkeypatch.setattr("kinetree.tasks.input.source.surface", lambda _: pytest.fail("it is read"))
+    assert len(source(SourceParams(takes=takes), files)) == 6
+
+
 def test_takes_without_names_of_their_own_and_beside_an_input_are_refused(files, scans):
     one = {"name": "a", "input": str(scans)}
     with pytest.raises(SourceError, match="a, a: each take needs an input, and a name that differs"):
