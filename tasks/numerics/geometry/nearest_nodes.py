@@ -10,6 +10,8 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 
 _REACH = 5.0
 """Largest gaps between nodes, or edges of the mesh, within which a vertex's nine nearest nodes lie."""
+_GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+"""Steps of this length around a circle divide it ever more evenly."""
 
 
 def nearest_nodes(surface: Surface, node: Ints, count: int) -> tuple[Ints, Floats]:
@@ -21,8 +23,13 @@ def nearest_nodes(surface: Surface, node: Ints, count: int) -> tuple[Ints, Float
     """
     mesh, rank = surface.links, np.argsort(surface.order)
     # where every vertex is a node there is no gap, and across a long edge the next node lies beyond the largest one
-    gap = max(_largest_gap(mesh, rank, surface.order, surface.edge, node), float(surface.length.max(initial=0.0)))
+    gap = max(_largest_gap(mesh, rank, surface.order, surface.edge, _interleaved(node)), float(surface.length.max(initial=0.0)))
     return _nearest(mesh, rank, surface.order, surface.edge, node, _REACH * gap, count)
+
+
+def _interleaved(node: Ints) -> Ints:
+    """The nodes in an order of which any first few lie all over the list: gaps, and with them fronts, soon are small."""
+    return node[np.argsort(np.arange(len(node)) * _GOLDEN % 1.0)]
 
 
 @compiled
