@@ -5,29 +5,25 @@ sequence), its nodes appear when that data does, so that running is a fixpoint o
 schedule nobody completes; it computes nothing.
 """
 
-import heapq
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from kinetree.errors import DamagedArtifactError, GraphError, StoreError
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.identity.key import artifact_digest
 from kinetree.pipeline.node import Node, label
+from kinetree.pipeline.planning.damage import MENDS, discard_damaged, is_mended
 from kinetree.pipeline.planning.entry import DONE, Entry, Loss, State
 from kinetree.pipeline.planning.freshness import Freshness
 from kinetree.pipeline.planning.layout import Given, Layout, T
 from kinetree.pipeline.planning.made_with import EVERY_VERSION_TRUSTED, MadeWith
+from kinetree.pipeline.planning.origin import Links, accepted
+from kinetree.pipeline.planning.ready import ReadyNodes
 from kinetree.pipeline.planning.reason import Reason, Recall
 from kinetree.pipeline.planning.together import together
 from kinetree.pipeline.storage.store import Record, Store
 from kinetree.pipeline.task import Argument
-from kinetree.schemas.array import Artifact, Index, Params
-
-Links = Mapping[str, Mapping[Index, str]]
-"""Digests of artifacts that another graph made, by task name and index."""
-MENDS = 3
-"""How often a node is computed again because its artifact is damaged, before the disk is to blame."""
+from kinetree.schemas.array import Artifact, Params
 
 
 class Schedule:
@@ -56,11 +52,9 @@ class Schedule:
         self.freshness = Freshness(graph, params, store, frozenset(force), recall, distrusted)
         self.entries: dict[Node, Entry] = {}
         self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
-        self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
-        self._depth = {name: n - len(graph.tasks) * (name in graph.aside) for name, n in self._rank.items()}
         self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
         self._unlisted: dict[Node, None] = {}
-        self._ready: list[tuple[int, Index, Node]] = []
+        self._ready = ReadyNodes(graph, self.entries)
         self._values: dict[Node, Artifact] = {}
         self._shaping = {t.name for t in graph.openers.values()}
         self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
@@ -76,7 +70,8 @@ class Schedule:
         fresh: list[Node] = []
         for task in self.graph.tasks:
             if task.is_origin:
-                self._accept(task)
+                for entry in accepted(task, self.links, self.given, self.entries):
+                    self.entries[entry.node] = entry
                 continue
             for each in (task, *self.graph.behind(task)):  # what is read at a previous member may come later in the graph
                 self._list(each)
@@ -103,17 +98,13 @@ class Schedule:
 
         What little waits for goes last: it fills the time in which nothing else is ready.
         """
-        while self._ready:
-            entry = self.entries[heapq.heappop(self._ready)[2]]
-            if entry.state == "stale":
-                entry.state = "running"
-                yield entry
+        for entry in self._ready.taken():
+            entry.state = "running"
+            yield entry
 
     def deepest(self) -> float | None:
         """How deep in the graph the next ready node stands, 0 to 1; None where no node is ready."""
-        while self._ready and self.entries[self._ready[0][2]].state != "stale":
-            heapq.heappop(self._ready)
-        return self._rank[self._ready[0][2].task] / len(self._rank) if self._ready else None
+        return self._ready.deepest()
 
     def send(self, entry: Entry) -> list[Entry]:
         """A ready node runs, and with it what travels with it as one piece of work (`together`).
@@ -121,7 +112,9 @@ class Schedule:
         An artifact of it that was found damaged is removed first, so that it is made again.
         returns : these nodes, each after those of them that it reads
         """
-        self._discard_damaged(entry)
+        if entry.damaged is not None:
+            discard_damaged(self.store, entry, entry.damaged)
+            entry.damaged = None
         parcel = together(entry, self.graph, self.entries, self._dependents, self._unlisted)
         for member in parcel:
             member.state = "running"
@@ -176,7 +169,8 @@ class Schedule:
         if entry.state == "skipped":
             return []
         redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
-        if self._is_mended(entry, [maker for maker, _ in redone], artifact):
+        if is_mended(self.store, entry, [maker for maker, _ in redone], artifact):
+            entry.is_late = True
             makers, redone = [n for n in makers if self.entries[n].state not in DONE], []
         if any(maker.redone >= MENDS for maker, _ in redone):
             return None
@@ -188,29 +182,8 @@ class Schedule:
             self._dependents[other][node] = None
         if not makers:
             entry.state = "stale"
-            heapq.heappush(self._ready, (-self._depth[node.task], node.at, node))
+            self._ready.add(node)
         return redone
-
-    def _is_mended(self, reader: Entry, makers: Sequence[Entry], artifact: str) -> bool:
-        """Whether a reader had begun before its input was made again, and may read it now; believed once of each reader."""
-        if reader.is_late or not any(maker.redone for maker in makers) or not self._is_whole(makers[0], artifact):
-            return False
-        reader.is_late = True
-        return True
-
-    def _is_whole(self, maker: Entry, artifact: str) -> bool:
-        try:
-            self.store.read(maker.task.returns, artifact).arrays()
-        except DamagedArtifactError:
-            return False
-        return True
-
-    def _discard_damaged(self, entry: Entry) -> None:
-        """Removes what was found damaged, unless another node that makes the same has mended it already."""
-        if entry.damaged is not None:
-            if not self._is_whole(entry, entry.damaged):
-                self.store.discard(entry.damaged)
-            entry.damaged = None
 
     def _redo(self, node: Node, what: str) -> None:
         """A node's artifact turned out to be damaged: it runs again, and what was to read it waits for it again."""
@@ -218,7 +191,7 @@ class Schedule:
         entry.redone += 1
         self._values.pop(node, None)
         entry.state, entry.reasons, entry.damaged = "stale", (Reason("artifact", what),), entry.artifact
-        heapq.heappush(self._ready, (-self._depth[node.task], node.at, node))
+        self._ready.add(node)
 
     def value(self, node: Node) -> Artifact:
         """The artifact of a node that has one, arrays read lazily."""
@@ -234,18 +207,6 @@ class Schedule:
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
         return tuple(self._dependents[node])
-
-    def _accept(self, task: AnyTask) -> None:
-        for index, digest in self.links.get(task.name, {}).items():
-            node = Node(task.name, index)
-            made = Entry(node, task, label(node, task.over), state="fresh", inputs=(), artifact=digest)
-            self.entries.setdefault(node, made)
-        for index, artifact in self.given.get(task.name, {}).items():
-            node = Node(task.name, index)
-            if node not in self.entries:
-                entry = Entry(node, task, label(node, task.over), state="fresh", inputs=())
-                entry.artifact = artifact_digest(artifact)
-                self.entries[node] = entry
 
     def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
         """What an opener or a traversal answers, None while it is not there (or no longer readable)."""
@@ -335,5 +296,5 @@ class Schedule:
             entry.state, entry.artifact, entry.record = "fresh", record.artifact, record
             return True
         entry.state, entry.reasons = "stale", reasons
-        heapq.heappush(self._ready, (-self._depth[entry.node.task], entry.node.at, entry.node))
+        self._ready.add(entry.node)
         return False

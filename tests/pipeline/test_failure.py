@@ -11,7 +11,7 @@ import pytest
 from zips import alter
 
 from kinetree.errors import DamagedArtifactError
-from kinetree.pipeline.planning.schedule import MENDS
+from kinetree.pipeline.planning.damage import MENDS
 from kinetree.pipeline.running import launch, sight
 from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.records import Records

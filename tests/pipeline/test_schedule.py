@@ -8,8 +8,9 @@ import pytest
 
 from kinetree.errors import StoreError
 from kinetree.pipeline.planning import schedule as module
+from kinetree.pipeline.planning.damage import MENDS
 from kinetree.pipeline.planning.entry import Entry
-from kinetree.pipeline.planning.schedule import MENDS, Schedule
+from kinetree.pipeline.planning.schedule import Schedule
 
 HOME = Path(str(module.__file__))
 
