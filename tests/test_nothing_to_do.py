@@ -58,7 +58,15 @@ def test_commands_that_compute_nothing_import_no_library_that_computes(written, 
     time.sleep(SETTLED_SECONDS + 0.1)  # nothing is remembered of files that were written just now
     begin = ["--input", str(source), "--output", str(output), "--until", "mesh"]
     assert "scipy" in imported("run", *begin, "--quiet"), "there was something to compute"
-    for command in (["run", *begin, "--quiet"], ["plan", *begin], ["runs", str(output)], ["config", str(output)], ["tasks"]):
+    whole = ["plan", "--input", str(source), "--output", str(output)]
+    for command in (
+        ["run", *begin, "--quiet"],
+        ["plan", *begin],
+        whole,
+        ["runs", str(output)],
+        ["config", str(output)],
+        ["tasks"],
+    ):
         modules = imported(*command)
         assert "kinetree.schemas.input.mesh" in modules, command
         assert not modules & COMPUTING, command

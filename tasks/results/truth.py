@@ -16,8 +16,6 @@ from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.truth import Truth, TruthParams
-from kinetree.tasks.input.synth import body
-from kinetree.tasks.numerics.results.evaluation.body import nearest_vertices
 from kinetree.tasks.numerics.results.truth import TrueMotion, read_truth, truth_of_json
 from kinetree.tasks.numerics.results.units import unit_factor
 
@@ -37,6 +35,8 @@ def truth(params: TruthParams, files: object) -> Truth:
 
 def synthetic(recipe: str) -> Truth:
     """The truth of a generated sequence, computed from the recipe of its frames."""
+    from kinetree.tasks.input.synth import body  # every plan reads a truth, and generates nothing
+
     return _artifact(truth_of_json(body(recipe).truth(), SYNTH), SYNTH, None)
 
 
@@ -64,6 +64,9 @@ def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str
     unit    : the sequence's unit
     returns : two of (vertex,) joints, the second −1 where the joint carries all its bones; None where nothing is known
     """
+    from kinetree.tasks.input.synth import body
+    from kinetree.tasks.numerics.results.evaluation.body import nearest_vertices
+
     if source.recipe and truth.source == SYNTH:
         first_joint = np.array([truth.names.index(name) for name in _first_joints(source.recipe)], dtype=np.int32)
         carrier = first_joint[body(source.recipe).parts(source.part or 0, V)]
@@ -78,6 +81,8 @@ def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str
 @lru_cache(maxsize=2)
 def _first_joints(recipe: str) -> tuple[str, ...]:
     """The first joint of every true rigid part of a generated sequence, by name."""
+    from kinetree.tasks.input.synth import body
+
     return tuple(joints[0] for joints in body(recipe).truth()["parts"])
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from kinetree.errors import InputError
 from kinetree.tasks.numerics.arrays import Floats
@@ -168,6 +167,8 @@ class _Reader:
 
 def _posed(tree: _Reader, values: Floats) -> tuple[Floats, Floats]:
     """(frame, joint, 3, 3) rotations against the parent, (frame, joint, xyz) positions: x_j = x_p + G_p d_j, G_j = G_p R_j."""
+    from scipy.spatial.transform import Rotation  # a truth of another format does without scipy
+
     shape = (len(values), len(tree.names))
     R, G, X = np.tile(np.eye(3), (*shape, 1, 1)), np.empty((*shape, 3, 3)), np.empty((*shape, 3))
     column = 0

@@ -10,9 +10,7 @@ import numpy as np
 from kinetree.errors import InputError
 from kinetree.errors.small_text import small_json
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.input.synth.motion import turning_angles
 from kinetree.tasks.numerics.results.bvh_reader import LARGEST_NUMBER, read_bvh
-from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree
 
 Kind = Literal["joint", "tip"]
 KINDS: Mapping[str, Kind] = {"root": "joint", "joint": "joint", "tip": "tip", "leaf": "tip"}
@@ -84,6 +82,9 @@ def truth_of_bvh(text: str, name: str, settings: TruthSettings | None = None) ->
     name   : name of the file, for messages
     raises : InputError where it is not a BVH
     """
+    # a plan without a truth does without scipy
+    from kinetree.tasks.numerics.input.synth.motion import turning_angles
+
     limit = settings or TruthSettings()
     clip = read_bvh(text, name)
     turns = turning_angles(clip.R[:: max(1, -(-len(clip.R) // limit.sampled_frames))])
@@ -114,6 +115,9 @@ def truth_of_json(content: Any, name: str, settings: TruthSettings | None = None
     name    : name of the file, for messages
     raises  : InputError where it is not a truth
     """
+    # a plan without a truth does without scipy
+    from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree
+
     if not isinstance(content, Mapping) or not {"joints", "positions"} <= set(content):
         raise InputError(f"{name}: it has no joints and positions; expected a truth.json, as kinetree synth writes it")
     if content.get("format", SKELETON_FORMATS[0]) not in SKELETON_FORMATS:
