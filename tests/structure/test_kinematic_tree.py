@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from articulated import Known, chain, swings, three_arms
 from pydantic import ValidationError
+from smeared import Frames, aligned, turning
 
+from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
@@ -29,7 +31,13 @@ def rigid(body: Known, frames: tuple[int, ...]) -> RigidParts:
     )  # fmt: skip
 
 
-def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), **params: float) -> KinematicTree:
+def surface(V: np.ndarray, F: np.ndarray) -> Mesh:
+    return Mesh(vertices=V, faces=F, vertex_of_input=np.arange(len(V)), cleaning=Cleaning())
+
+
+def told(
+    body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), shown: Frames | None = None, **params: float
+) -> KinematicTree:
     frames = tuple(range(FIRST, FIRST + len(body.x)))
     count = len(frames)
     reference = Reference(
@@ -48,7 +56,8 @@ def told(body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (
         frames=frames, rows=np.zeros((len(tips), count), int), positions=positions, kept=np.ones((1, len(tips)), bool),
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
-    return kinematic_tree(reference, parts, {}, aligned, {}, leaves, KinematicTreeParams(**params))
+    mesh = {f: surface(*(shown(k) if shown else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))}
+    return kinematic_tree(reference, parts, {}, aligned, mesh, leaves, KinematicTreeParams(**params))
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
@@ -110,6 +119,16 @@ def test_frame_that_is_not_trusted_has_a_pose_without_confidence() -> None:
     assert found.confidence[5].max() < 0.05 < 0.9 < found.confidence[6].min()
     assert found.support.tolist() == [15] * len(found.names)
     assert np.flatnonzero(found.uncertain).tolist() == [5]
+
+
+def test_joints_at_ends_are_looked_for_where_connectivity_changes_and_only_if_asked() -> None:
+    body, turn = aligned(turning()), turning()
+    true = Frames(turn)
+    confidence = np.full(body.x.shape[:2], 0.99)
+    two = body._replace(label=(body.V[:, 2] > 0.0).astype(np.int64), R=body.R[:, :2], t=body.t[:, :2])
+    asked, not_asked = (told(two, confidence, shown=true, end_joints=flag) for flag in (True, False))
+    assert asked.kinds.count("joint") == 2
+    assert not_asked.kinds.count("joint") == 1
 
 
 def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:

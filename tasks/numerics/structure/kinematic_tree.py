@@ -11,6 +11,7 @@ from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_names import joint_names
@@ -121,8 +122,10 @@ def kinematic_tree(
     given = R.shape[1]
     found = _with_hidden_bones(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
     alike = chosen._replace(hidden_bones=bool((found.left.origin == NO_PART).any()))
+    if chosen.end_joints and evidence is not None and confidence is not None:
+        body, found = inserted_ends(body, found, confidence, evidence, chosen.noise * body.size)
     agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, alike) for cut in further], body.size)
-    F, tree, label, W, R, t = body.F, found.left.part_tree.tree, found.label, found.W, found.R, found.t
+    F, x, tree, label, W, R, t = body.F, body.x, found.left.part_tree.tree, found.label, found.W, found.R, found.t
     rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
     share = confident_share(label, area, confidence, len(x), len(tree.order))

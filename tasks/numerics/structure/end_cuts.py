@@ -1,0 +1,89 @@
+"""Where the last part of a limb may have one more joint: rings across it, at several distances from its border (ours).
+
+A toe or a hand that is cut off too far up moves as one piece with what lies above it, because an alignment smears small turns.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.structure.end_effectors import from_border
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+
+
+class EndCutsSettings(NamedTuple):
+    """Which rings are proposed. Chosen, with `EndJointsSettings`, on eleven bodies, see there."""
+
+    levels: tuple[float, ...] = (0.12, 0.25, 0.38, 0.5, 0.62, 0.75)
+    """Distances from the border, shares of the greatest on the part."""
+    farthest: float = 0.995
+    """Share of the part's vertices that are no farther than what counts as the greatest distance."""
+    least_area: float = 0.0015
+    """Surface on either side of a ring, share of the body's, at least."""
+    least_vertices: int = 25
+    """Vertices on either side of a ring, at least: a few more than a rigid piece has freedoms make hands and paws turn."""
+    apart: float = 1.0
+    """Distance of a ring's centre from the joint that is there, in radii of the ring, at least: nearer by, both are one."""
+
+
+class EndCut(NamedTuple):
+    """A ring across a part.
+
+    part   : in the tree's order
+    centre : (xyz,) of the ring in the reference, mesh unit
+    radius : of the ring, mesh unit
+    own    : (own,) vertices of the part
+    far    : (own,) whether each lies beyond the ring
+    """
+
+    part: int
+    centre: Floats
+    radius: float
+    own: Ints
+    far: Flags
+
+
+def end_cuts(
+    body: MovingSurface, label: Ints, parents: Ints, rest: Floats, settings: EndCutsSettings | None = None
+) -> Iterator[EndCut]:
+    """Rings across all parts with no part below them but the root, part by part, nearest to the border first.
+
+    label   : (vertex,) part
+    parents : (part,) −1 for the root
+    rest    : (part, xyz) joints in the reference, mesh unit
+    """
+    chosen = settings or EndCutsSettings()
+    start, ring = rings(body.F, len(body.V))
+    edge = np.stack([np.repeat(np.arange(len(body.V)), np.diff(start)), ring], axis=1)
+    for part in range(1, len(parents)):
+        own = np.flatnonzero(label == part)
+        if (parents == part).any() or len(own) < 2 * chosen.least_vertices:
+            continue
+        distance = from_border(body.V, edge, label, part)
+        inside = edge[(label[edge] == part).all(axis=1)]
+        for level in np.array(chosen.levels) * np.quantile(distance[own], chosen.farthest):
+            cut = _ring(body.V, part, own, distance, inside, float(level))
+            if cut is not None and _is_wide(cut, body.area, rest[part], chosen):
+                yield cut
+
+
+def _ring(V: Floats, part: int, own: Ints, distance: Floats, inside: Ints, level: float) -> EndCut | None:
+    """The ring at one distance; None where no edge crosses it."""
+    a, b = inside[(distance[inside[:, 0]] < level) & (distance[inside[:, 1]] >= level)].T
+    if not len(a):
+        return None
+    middle = (V[a] + V[b]) / 2
+    centre = middle.mean(axis=0)
+    radius = float(np.sqrt(((middle - centre) ** 2).sum(axis=1).mean()))
+    return EndCut(part, centre, radius, own, distance[own] >= level)
+
+
+def _is_wide(cut: EndCut, area: Floats, joint: Floats, chosen: EndCutsSettings) -> bool:
+    """Whether there is enough surface on both sides, and the ring is not where the part's joint already lies."""
+    for side in (cut.far, ~cut.far):
+        if side.sum() < chosen.least_vertices or area[cut.own[side]].sum() < chosen.least_area * area.sum():
+            return False
+    return bool(np.linalg.norm(cut.centre - joint) >= chosen.apart * cut.radius)

@@ -1,0 +1,84 @@
+"""Joints that the frames show within the last parts of limbs become parts of the tree."""
+
+import numpy as np
+import pytest
+from shipped import TREE
+from smeared import END, Frames, aligned, found_in, turning
+
+from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
+from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+
+
+def with_ends(degrees: float = 25.0) -> tuple[MovingSurface, TreeJoints, MovingSurface, TreeJoints]:
+    before, found = found_in(aligned(turning(degrees)))
+    ones = np.ones(before.x.shape[:2])
+    return before, found, *inserted_ends(before, found, ones, Frames(turning(degrees)).evidence(), 0.002)
+
+
+def whole(end_joints: bool, degrees: float = 25.0) -> tuple[KinematicTree, Derivation]:
+    body, ones = aligned(turning(degrees)), np.ones((24, len(aligned(turning(degrees)).V)))
+    label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    known = body.V, body.F, body.x, body.area, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2]
+    return kinematic_tree(
+        *known, tips, ones, Frames(turning(degrees)).evidence(), settings=TREE._replace(end_joints=end_joints)
+    )
+
+
+def test_the_new_part_hangs_on_the_one_that_it_was_cut_from() -> None:
+    _, before, _, after = with_ends()
+    tree = after.left.part_tree.tree
+    assert tree.parents.tolist() == [*before.left.part_tree.tree.parents.tolist(), 1]
+    assert after.left.origin.tolist() == [*before.left.origin.tolist(), NO_PART]
+    pair = after.left.part_tree.borders.pair[tree.border[2]]
+    assert sorted(pair.tolist()) == sorted([int(tree.order[1]), 2])
+    np.testing.assert_allclose(after.rest[2], [0.0, 0.0, END], atol=0.4)
+    assert after.left.part_tree.degrees[2] == pytest.approx(50.0, abs=12.0)
+    assert after.drift[2] < 0.01 * np.sqrt(aligned(turning()).area.sum())
+
+
+def test_parts_are_the_same_by_number_and_by_place() -> None:
+    *_, after = with_ends()
+    order = after.left.part_tree.tree.order
+    np.testing.assert_array_equal(after.left.parts.R[:, order], after.R)
+    np.testing.assert_array_equal(after.left.parts.t[:, order], after.t)
+    np.testing.assert_array_equal(order[after.label], after.left.parts.label)
+    assert set(after.label) == {0, 1, 2}
+    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
+
+
+def test_the_surface_beyond_the_joint_lies_on_the_frames() -> None:
+    before, _, after, _ = with_ends()
+    z, true = before.V[:, 2], Frames(turning()).true
+    want = np.einsum("txy,vy->tvx", true.R[:, 2], before.V) + true.t[:, None, 2]
+    tip = z > END + 0.5
+    # about its own axis a round tube is free: its middle line tells
+    middle = [x[:, tip].mean(axis=1) for x in (before.x, after.x, want)]
+    assert np.linalg.norm(middle[1] - middle[2], axis=1).max() < 0.2
+    assert np.linalg.norm(middle[0] - middle[2], axis=1).max() > 0.5
+    np.testing.assert_array_equal(after.x[:, z < END - 0.5], before.x[:, z < END - 0.5])
+
+
+def test_a_tree_whose_ends_do_not_turn_is_given_back() -> None:
+    surface, before, same, after = with_ends(0.0)
+    assert after is before
+    assert same is surface
+
+
+def test_the_finished_body_has_the_joint_in_every_frame() -> None:
+    tree, derivation = whole(True)
+    assert sum(kind == "joint" for kind in tree.kinds) == 2
+    new = int(np.argmax(tree.rest[:, 2] * [kind == "joint" for kind in tree.kinds]))
+    true = Frames(turning()).true
+    where = np.einsum("txy,y->tx", true.R[:, 1], true.joints[2]) + true.t[:, 1]
+    assert np.linalg.norm(tree.positions[:, new] - where, axis=1).max() < 0.5
+    assert tree.degrees[new] > 30.0
+    assert new not in derivation.joint_of_part
+    assert derivation.agreeing[new] == 1
+
+
+def test_without_the_setting_the_body_stays_as_aligned() -> None:
+    assert sum(kind == "joint" for kind in whole(False)[0].kinds) == 1
+    assert sum(kind == "joint" for kind in whole(True, 0.0)[0].kinds) == 1

@@ -1,0 +1,53 @@
+"""A tube with a joint near its end that the aligned vertices do not show, before frames that do."""
+
+import numpy as np
+from articulated import Known, chain, moved, swings
+from shipped import EVIDENCE, TREE
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
+
+END = 2.9
+"""Height of the joint that is not seen; the other one is at 0, the tube ends at 5."""
+
+
+def turning(degrees: float = 25.0) -> Floats:
+    """(frame, part, 3, 3) the middle part swings, the last one about its joint too."""
+    turn = swings(24, 3, 20.0, axes=1, seed=1)
+    turn[:, 2] = swings(24, 3, degrees, axes=1, seed=2)[:, 2]
+    return turn
+
+
+def aligned(turn: Floats) -> Known:
+    """The body as aligned: the last part goes with the middle one."""
+    body, still = chain((0.0, END), turn, along=60), turn.copy()
+    still[:, 0] = still[:, 2] = np.eye(3)
+    return moved(body.V, body.F, body.W, body.joints, body.parents, still)
+
+
+def found_in(body: Known) -> tuple[MovingSurface, TreeJoints]:
+    """The tree of two parts that aligned vertices give."""
+    label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    cut, surface = Cut(body.V, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2]), moving(body)
+    return surface, tree_joints(surface, cut, tips, np.ones(body.x.shape[:2]), settings=TREE)
+
+
+def moving(body: Known) -> MovingSurface:
+    return MovingSurface(body.V, body.F, body.x, body.area)
+
+
+class Frames:
+    """Frames that show the true body in other triangles, with noise of their own."""
+
+    def __init__(self, turn: Floats, noise: float = 0.0, scale: float = 1.0) -> None:
+        self.true, self.noise, self.scale = chain((0.0, END), turn, around=27, along=83), noise, scale
+
+    def __call__(self, frame: int) -> tuple[Floats, Ints]:
+        x = self.true.x[frame]
+        return self.scale * (x + np.random.default_rng(frame).normal(0.0, self.noise, x.shape)), self.true.F
+
+    def evidence(self) -> FrameEvidence:
+        of_aligned = np.zeros((len(self.true.x), len(chain((0.0,), along=60).V)))
+        return FrameEvidence.of(of_aligned + 1.0, of_aligned, self, EVIDENCE)
