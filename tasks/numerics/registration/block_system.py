@@ -165,6 +165,33 @@ def _add(
 
 
 @compiled
+def block_inverses(D: Floats) -> Floats:
+    """(node, 6, 6) inverses of symmetric positive blocks (node, 6, 6), of which lower halves are read (Cholesky, D = L Lᵀ)."""
+    out, L, W = np.empty_like(D), np.zeros((6, 6)), np.zeros((6, 6))
+    for j in range(len(D)):
+        for c in range(6):
+            for r in range(c, 6):
+                s = D[j, r, c]
+                for k in range(c):
+                    s -= L[r, k] * L[c, k]
+                L[r, c] = np.sqrt(s) if r == c else s / L[c, c]
+        for c in range(6):  # W = L⁻¹
+            W[c, c] = 1.0 / L[c, c]
+            for r in range(c + 1, 6):
+                s = 0.0
+                for k in range(c, r):
+                    s -= L[r, k] * W[k, c]
+                W[r, c] = s / L[r, r]
+        for r in range(6):
+            for c in range(r + 1):
+                s = 0.0
+                for k in range(r, 6):
+                    s += W[k, r] * W[k, c]
+                out[j, r, c] = out[j, c, r] = s
+    return out
+
+
+@compiled
 def _times(D: Floats, B: Floats, pair: Ints, x: Floats, y: Floats) -> None:
     """Write the product of the system with x into y."""
     for j in range(len(D)):

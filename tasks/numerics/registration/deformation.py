@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.registration.block_system import add_data, add_forms, conjugate_gradients
+from kinetree.tasks.numerics.registration.block_system import add_data, add_forms, block_inverses, conjugate_gradients
 from kinetree.tasks.numerics.registration.colour_term import Compared
 from kinetree.tasks.numerics.registration.coloured_matches import agreeing_colours, coloured_matches, forms_of_matches
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, local_matches
@@ -247,8 +247,7 @@ def _step(
         add_forms(D, B, b, *rest, R, g, vertex, *_whole_forms(rows, rows.colour, r))
     add_edges(D, B, b, graph.edge, graph.of_edge, stiffness, *body.pose, g)
     D[:, range(6), range(6)] += _DAMPING * np.einsum("jaa->ja", D).mean(axis=0)
-    inverse = np.linalg.inv(D).astype(np.float64)
-    step = conjugate_gradients(D, inverse, B, graph.pair, b, solves, _TOLERANCE)
+    step = conjugate_gradients(D, block_inverses(D), B, graph.pair, b, solves, _TOLERANCE)
     for halving in range(_HALVINGS):
         moved = _posed(graph, Pose(*stepped(*body.pose, step, 0.5**halving)))
         after = _energy(graph, moved.pose, residuals(moved.x, vertex, rows.V, other), rows, stiffness)
