@@ -1,7 +1,10 @@
 """A data set night after night: what a first run, a night without news, new and changed takes, kills and twins cost.
 
     python benchmarks/dataset.py [--sequences 50] [--distinct 50] [--frames 3] [--vertices 600] [--small 8]
-    python benchmarks/dataset.py --parts workers --sequences 50 [--executor processes]
+    python benchmarks/dataset.py --parts workers --sequences 50 --frames 2 --vertices 600 [--executor processes]
+
+The second line computes 45 bodies three times: by one worker, by two, and by two commands of one worker at once. It needs a
+machine with nothing else to do: about 7 minutes on two cores.
 
 Prints one table. Every sequence is a generated body of other proportions: humans, quadrupeds and random trees in turn; five
 are broken in different ways. Nodes are counted in dataset.log. Kills and
@@ -116,9 +119,11 @@ class Lab:
         spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         return json.loads(done.stdout), time.perf_counter() - started, spent
 
-    def start(self, file: Path) -> "subprocess.Popen[bytes]":
+    def start(self, file: Path, *options: str) -> "subprocess.Popen[bytes]":
         """A run that goes on while others do."""
-        return subprocess.Popen([*KINETREE, "run", str(file), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        return subprocess.Popen(
+            [*KINETREE, "run", str(file), "--json", *options], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        )
 
 
 def computed(log: Path) -> Counter[tuple[str, str]]:
@@ -174,6 +179,21 @@ def _workers(lab: Lab, count: int, executor: str) -> Iterator[list[str]]:
         yield from (["", f"{n}: {row['failures']}"] for n, row in told["sequences"].items() if row["state"] == "failed")
     yield ["by the clock, 1 worker over 2", f"{wall[1] / wall[2]:.2f}"]
     yield ["  results equal", _equal(lab.home / "workers_1", lab.home / "workers_2")]
+    yield from _two_commands(lab, keys, wall[1])
+
+
+def _two_commands(lab: Lab, keys: dict[str, Any], alone: float) -> Iterator[list[str]]:
+    """The same by two commands at once, which share the sequences; `alone` is what one worker takes, seconds by the clock."""
+    file = lab.write(lab.home / "commands.yaml", {**keys, "output": "commands/{name}"})
+    before, started = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    told = [json.loads(one.communicate()[0]) for one in [lab.start(file, "--workers", "1") for _ in range(2)]]
+    after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter() - started
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    shares = " and ".join(f"{one['counts']['ran']}" for one in told)
+    nodes = sum(computed(lab.home / "commands" / "dataset.log").values())
+    yield ["two commands at once, threads: 1 each", f"{shares} ran", f"{nodes} nodes", f"{spent:.1f} s, {wall:.1f} s wall"]
+    yield ["by the clock, 1 worker over 2 commands", f"{alone / wall:.2f}"]
+    yield ["  results equal", _equal(lab.home / "workers_1", lab.home / "commands")]
 
 
 def _faults(lab: Lab, count: int) -> Iterator[list[str]]:

@@ -1,12 +1,19 @@
 """What the loom itself costs: planning, doing nothing again, and seconds per node outside the numerics.
 
     python benchmarks/overhead.py [--nodes 10000] [--frames 500]
+    python benchmarks/overhead.py --parts small [--beside OTHER/.venv/bin/python]
 
-Prints one table. Toy tasks of no cost are planned and run, so that all the time there is belongs to the loom.
+Prints one table. Toy tasks of no cost are planned and run, so that all time belongs to the loom. The part small is a whole
+run of a body of 600 vertices in 6 frames, its kernels compiled before; --beside runs another version of kinetree in turn with
+this one, and prints the ratio.
 """
 
 import argparse
 import contextlib
+import itertools
+import resource
+import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -21,6 +28,10 @@ import numpy as np
 from kinetree.pipeline.task import Task
 from kinetree.schemas.array import Artifact
 
+PARTS = ("toy", "shell", "share", "small")
+SMALL = ("--frames", "6", "--vertices", "600")
+TIMES = 3
+"""Runs of each kind, of which the median counts."""
 CHAIN = """
 from collections.abc import Mapping
 from typing import Annotated
@@ -74,11 +85,18 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--nodes", type=int, default=10_000, help="nodes of the planned graph")
     options.add_argument("--frames", type=int, default=500, help="frames of the run that does nothing")
+    options.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, help="what is measured")
+    options.add_argument("--beside", metavar="PYTHON", help="the interpreter of another version, for the part small")
     chosen = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        rows = (*_toy(Path(folder), chosen.nodes), *_shell(Path(folder), chosen.frames), *_share(Path(folder)))
-        for row in rows:
-            print(f"{row[0]:<64}{row[1]:>12}")
+        parts = {
+            "toy": lambda: _toy(Path(folder), chosen.nodes),
+            "shell": lambda: _shell(Path(folder), chosen.frames),
+            "share": lambda: _share(Path(folder)),
+            "small": lambda: _small(Path(folder), chosen.beside),
+        }
+        for what, *cells in itertools.chain.from_iterable(parts[part]() for part in chosen.parts):
+            print(f"{what:<64}" + "".join(f"{cell:>12}" for cell in cells), flush=True)
 
 
 def _toy(folder: Path, nodes: int) -> Iterator[tuple[str, str]]:
@@ -125,6 +143,39 @@ def _shell(folder: Path, frames: int) -> Iterator[tuple[str, str]]:
         started = time.perf_counter()
         subprocess.run([*command, "--until", "mesh", "--quiet"], check=True)
         yield f"{what}, {frames} frames of 4 vertices, from the shell", f"{time.perf_counter() - started:.2f} s"
+
+
+def _small(folder: Path, beside: str | None) -> Iterator[tuple[str, ...]]:
+    """Processor seconds of a whole run of a small body: what a run costs besides its frames."""
+    command, body = "from kinetree.tasks.application import main; main()", str(folder / "small")
+    pythons = [sys.executable, *([beside] if beside else [])]
+    subprocess.run([*pythons[:1], "-c", command, "synth", "human", "-o", body, *SMALL], check=True, stdout=subprocess.DEVNULL)
+
+    def seconds(python: str, *options: str) -> float:
+        output = folder / "small-out"
+        shutil.rmtree(output, ignore_errors=True)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        run = [python, "-c", command, "run", "--input", body, "--output", str(output), "--quiet", *options]
+        subprocess.run(run, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    for python in pythons:
+        seconds(python)  # compiles, or loads what was compiled
+    spent: dict[tuple[str, int], list[float]] = {}
+    for executor, workers in (("sync", 1), ("threads", 2), ("processes", 1), ("processes", 2)):
+        options = ("--executor", executor, "--workers", str(workers))
+        told = [[seconds(python, *options) for python in pythons] for _ in range(TIMES)]
+        spent[executor, workers] = [statistics.median(column) for column in zip(*told, strict=True)]
+        yield _compared(f"600 vertices, 6 frames, {executor}, {workers}: processor", spent[executor, workers])
+    further = [two - one for one, two in zip(spent["processes", 1], spent["processes", 2], strict=True)]
+    yield _compared("  of it for a further worker process", further)
+
+
+def _compared(what: str, seconds: list[float]) -> tuple[str, ...]:
+    """A row: seconds of each version, and how many times as many the second takes."""
+    ratio = [f"{seconds[1] / seconds[0]:.2f}"] if len(seconds) > 1 else []
+    return (what, *(f"{s:.1f} s" for s in seconds), *ratio)
 
 
 def _share(folder: Path, frames: int = 16, vertices: int = 13_000) -> Iterator[tuple[str, str]]:
