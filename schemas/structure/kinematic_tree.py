@@ -35,7 +35,7 @@ class KinematicTreeParams(JointParams):
 
     hidden_bones: bool = True
     """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
-    end_joints: bool = False
+    end_joints: bool = True
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
 
 

@@ -28,11 +28,12 @@ class EndJointsSettings(NamedTuple):
     """What makes a joint. Chosen on wave, dance, ballet, wolf, people 0, 1, 5, 6, 7, four-legged 5, 6 and random trees 1, 6."""
 
     least_score: float = 0.026
-    """Score of a ring (`ring_score`), at least. Of 16 true joints of these bodies 12 had more, up to 0.19; of rings where
+    """Score of a ring (`ring_score`), at least. Of 15 true joints of these bodies 12 had more, up to 0.19; of rings where
     nothing turns one, a paw with 18 vertices on one side."""
-    nearer: float = 0.7
-    """Turn of the nearer piece against the part above, in turns of the hinge, at least: where it turns less, it belongs to the
-    part above, and the joint that is there lies at a wrong place. There it was 0.6 at most, at true joints 1.1 or more."""
+    nearer: float = 4.0
+    """Root mean square turn of the nearer piece against the part above, degrees, as `degrees`, at least: where it turns less it
+    belongs to the part above, and the joint that is there lies at a wrong place. There it was 3.4° at most, at true joints
+    6.1° or more."""
     degrees: float = 2.0
     """Root mean square turn that agrees from frame to frame, at least: that of a swing over 6°, which other joints need."""
     better: float = 0.98
@@ -214,7 +215,7 @@ def _evident(
         one, two = (np.array([getattr(h, name) for h in fit.values()]) for name in ("one", "two"))
         score, degrees = ring_score(one, two, *(np.array([far[f] for f in side]) for side in both.T))
         _, nearer = ring_score(one, two, *(np.array([near[f] for f in side]) for side in both.T))
-        turns = degrees >= chosen.degrees and nearer >= chosen.nearer * degrees
+        turns = degrees >= chosen.degrees and nearer >= chosen.nearer
         if score >= chosen.least_score:
             mine = float(one.sum() / two.sum()), k, score if turns else 0.0
             best[cut.part] = max(best.get(cut.part, mine), mine)
