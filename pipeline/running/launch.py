@@ -28,7 +28,8 @@ hundred times, for a performance report; results are too small to be moved about
 
 ENVIRONMENT, TRIM = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """What dask sets in the environment of our own processes; and of that, what makes them give back the memory of every array
-at once, which the kernel then clears for the next one. Where the run's own environment sets it, it holds."""
+at once, which the kernel then clears for the next one. It stays where workers have a limit of memory, at which dask stops them
+by what they hold; where the run's own environment sets it, it holds."""
 
 
 class Future(Protocol):
@@ -81,7 +82,9 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
         with contextlib.ExitStack() as stack:
             if is_ours and not compute.cluster:
-                kept = {name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != TRIM}
+                kept = {
+                    name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != TRIM or compute.memory_bytes
+                }
                 watching = UNWATCHED if compute.performance_report is None else {}
                 stack.enter_context(dask.config.set({ENVIRONMENT: kept, **watching}))
             found = stack.enter_context(clusters.connected(compute, client))

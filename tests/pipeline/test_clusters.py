@@ -188,6 +188,13 @@ def test_our_own_workers_do_not_give_back_memory_that_they_need_again():
         assert told == os.environ.get(TRIM)
 
 
+def test_workers_with_a_limit_of_memory_give_it_back():
+    """Dask stops a worker by the memory it holds, also that which is only kept for later."""
+    with launcher(Compute(executor="processes", workers=1, memory="2 GiB")):
+        told = Client.current().submit(os.environ.get, TRIM).result(timeout=60)
+    assert told == str(dask.config.get(ENVIRONMENT)[TRIM])
+
+
 def test_adaptive_workers_come_with_the_work_and_go_with_it(toys):
     compute = {"cluster": "distributed:LocalCluster", "options": INSIDE, "adapt": [0, 2], "workers": 2}
     assert toys.run(until=("total",), compute=compute).told["status"] == "done"

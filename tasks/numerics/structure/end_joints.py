@@ -112,7 +112,7 @@ def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple
     pairs = np.concatenate(
         [np.stack([span[:-1], span[1:]], axis=1) for span in (np.arange(count)[take] for take in takes or [slice(0, count)])]
     )
-    if count > most:
+    if count > most and len(pairs):
         pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
     return np.unique(pairs), pairs
 

@@ -64,6 +64,7 @@ def test_judged_frames_follow_each_other_within_a_take() -> None:
     assert pairs[0].tolist() == [0, 1]
     assert pairs[-1].tolist() == [498, 499]
     assert len(judged_frames(1, None, 40)[0]) == 0
+    assert len(judged_frames(41, [slice(i, i + 1) for i in range(41)], 40)[1]) == 0
 
 
 def test_turns_that_agree_count_and_noise_does_not() -> None:
