@@ -23,6 +23,7 @@ A task that names an artifact class as `among` gathers only the members that thi
 no key: what was gathered is, by its data.
 
 A task over some fan-out that takes `index: Index` is told which member it is; only then the index is part of its key.
+
 The decorated function stays the plain function it was: tests call it with values.
 """
 
