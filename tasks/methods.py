@@ -14,8 +14,8 @@ from kinetree.tasks.paper_2009 import LETTER_2009, PAPER_2009, SURFACE_2009
 from kinetree.tasks.paper_2014 import PAPER_2014, PAPER_2014_ALIGNED
 from kinetree.tasks.registration import ALIGNED, REGISTRATION
 from kinetree.tasks.registration.frame_confidence import frame_confidence
-from kinetree.tasks.results import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQUENCES, RESULTS
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.shelf import FIGURES, FIGURES_2009, FIGURES_2014, OVER_SEQUENCES, RESULTS
 from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.structure import STRUCTURE
 from kinetree.tasks.structure.error_bars import unknown_error_bars

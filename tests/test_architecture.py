@@ -34,7 +34,9 @@ SLOW = {"scipy.signal", "scipy.stats"}
 """Take as long to import as all else of scipy."""
 ROOMS = ("identity", "storage", "settings", "planning", "running", "inspection", "output", "dataset", "command_line")
 """Folders of the loom: one imports only from those before it."""
-OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name != "__init__.py"]
+LISTS = ("__init__.py", "shelf.py")
+"""Where a shelf lists its operations."""
+OPERATIONS = [p for shelf in SHELVES for p in sorted(ROOT.glob(f"tasks/{shelf}/*.py")) if p.name not in LISTS]
 PRODUCT = re.compile(
     r"\b(mesh|meshes|skeletons?|joints?|bones?|body|bodies|limbs?|scans?|vertex|vertices|geodesics?|kinematic|silhouettes?"
     r"|kinetree\.(tasks|configs|schemas\.(?!array|dims))|\.(ply|obj|off|stl|gltf|glb|bvh|npz))\b",
@@ -197,10 +199,11 @@ def test_every_schema_has_its_operation() -> None:
 
 @pytest.mark.parametrize("place", SHELVES)
 def test_a_shelf_lists_all_of_its_tasks(place: str) -> None:
-    listed = {m for m in imports(ROOT / "tasks" / place / "__init__.py") if m.startswith(f"kinetree.tasks.{place}.")}
+    lists = [path for name in LISTS if (path := ROOT / "tasks" / place / name).is_file()]
+    listed = {m for path in lists for m in imports(path) if m.startswith(f"kinetree.tasks.{place}.")}
     here = [p for p in OPERATIONS if p.parent.name == place]
     tasks = {module(p) for p in here if re.search(r"^@(task|origin)\(", p.read_text(), re.MULTILINE)}
-    assert tasks <= listed, f"tasks/{place}/__init__.py does not list {', '.join(sorted(tasks - listed))}"
+    assert tasks <= listed, f"tasks/{place} does not list {', '.join(sorted(tasks - listed))}"
 
 
 def test_every_numeric_file_is_tried_by_laws() -> None:
