@@ -8,7 +8,7 @@ import yaml
 
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations
-from kinetree.tasks.numerics.structure.anatomy import Motion
+from kinetree.tasks.numerics.structure.limb_motion import Motion
 
 FIGURES = files("kinetree.configs") / "figures"
 HUMAN = {"hips": "pelvis", "heel_l": None, "heel_r": None, "head_top": "head_end", "toe_l": "foot_end_l", "toe_r": "foot_end_r",

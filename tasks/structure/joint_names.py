@@ -8,7 +8,8 @@ from kinetree.schemas.structure.joint_names import JointNames, JointNamesParams
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.structure.anatomical_names import Named, anatomical_names
-from kinetree.tasks.numerics.structure.anatomy import Motion, anatomy
+from kinetree.tasks.numerics.structure.anatomy import anatomy
+from kinetree.tasks.numerics.structure.limb_motion import Motion
 from kinetree.tasks.numerics.structure.name_styles import styled_names
 
 

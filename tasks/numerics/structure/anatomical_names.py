@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags
-from kinetree.tasks.numerics.structure.anatomy import Anatomy, Motion
+from kinetree.tasks.numerics.structure.anatomy import Anatomy
+from kinetree.tasks.numerics.structure.limb_motion import Motion
 from kinetree.tasks.numerics.structure.limbs import Limb, ways
 
 Stations = tuple[tuple[str, float, float], ...]
