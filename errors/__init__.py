@@ -118,6 +118,9 @@ class DamagedArtifactError(KinetreeError):
 class LostWorkerError(KinetreeError):
     """The workers that computed a node died under it, several times."""
 
+    has_begun = True
+    """Whether the node was computed when the last of them died; False where it is known that it only waited there."""
+
 
 class LateNodeError(KinetreeError):
     """A node took longer than its task allows, every time it was tried."""

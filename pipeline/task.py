@@ -149,7 +149,7 @@ def task(
     on_request : whether a run leaves it out unless it is named, or something that reads it
     threads    : how many threads its libraries (BLAS, OpenMP, numba) use; more than one has a process to itself
     retries    : how often a node is tried again, alone, after dask gave it up because its workers died, or after `timeout`;
-                 an error of the task is never tried again
+                 an error of the task is never tried again. With 0 every node travels alone, not in a parcel with others
     timeout    : seconds that one node may take; its worker process is then ended and started anew. A thread of the run's own
                  process cannot be ended: it is given up and goes on. The executor `sync` has no limit
     memory     : bytes that one node needs; workers that declare a resource `memory` compute no more at a time than fits.

@@ -106,8 +106,8 @@ class Schedule:
         """How deep in the graph the next ready node stands, 0 to 1; None where no node is ready."""
         return self._ready.deepest()
 
-    def send(self, entry: Entry) -> list[Entry]:
-        """A ready node runs, and with it what travels with it as one piece of work (`together`).
+    def send(self, entry: Entry, *, is_alone: bool = False) -> list[Entry]:
+        """A ready node runs, and unless it goes alone what travels with it as one piece of work (`together`).
 
         An artifact of it that was found damaged is removed first, so that it is made again.
         returns : these nodes, each after those of them that it reads
@@ -115,7 +115,7 @@ class Schedule:
         if entry.damaged is not None:
             discard_damaged(self.store, entry, entry.damaged)
             entry.damaged = None
-        parcel = together(entry, self.graph, self.entries, self._dependents, self._unlisted)
+        parcel = [entry] if is_alone else together(entry, self.graph, self.entries, self._dependents, self._unlisted)
         for member in parcel:
             member.state = "running"
         return parcel

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 
-from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
 
@@ -20,15 +20,16 @@ def together(
 ) -> list[Entry]:
     """A ready node and the nodes that need nothing else: all of its own index, and the next ones of its own chain.
 
-    What little waits for does not travel with what much waits for, and a node whose task has a limit of time travels alone,
-    since time is taken of the whole piece. A chain that branches ends there, so that its branches go on side by side.
+    What little waits for does not travel with what much waits for. A node whose task has a limit of time travels alone, since
+    time is taken of the whole piece, and so does one that is never tried again: who killed a worker is then certain at once.
+    A chain that branches ends there, so that its branches go on side by side.
 
     dependents : the nodes that read a node or are laid out by it
     unlisted   : nodes of which it is not known yet what they read
     returns    : these nodes, each after those of them that it reads
     """
     parcel, inside = [first], {first.node}
-    if not first.node.at or first.task.timeout is not None:
+    if not first.node.at or is_alone(first.task):
         return parcel
 
     def waiting(member: Entry) -> Iterator[Entry]:
@@ -38,7 +39,7 @@ def together(
                 yield other
 
     def goes_along(other: Entry) -> bool:
-        is_here = other.node.at == first.node.at and other.task.over == first.task.over and other.task.timeout is None
+        is_here = other.node.at == first.node.at and other.task.over == first.task.over and not is_alone(other.task)
         return is_here and (other.task.name not in graph.aside or first.task.name in graph.aside)
 
     def add(other: Entry) -> None:
@@ -59,3 +60,8 @@ def together(
         (last,) = following
         add(last)
     return parcel
+
+
+def is_alone(task: AnyTask) -> bool:
+    """Whether nodes of a task travel alone: where the fate of the piece must be that of the node."""
+    return task.timeout is not None or not task.retries

@@ -198,18 +198,18 @@ def dashboard(client: Client) -> str:
 
 def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work: tuple[Any, ...]) -> "Remote":
     """Sends a parcel; raises ClusterError where the client has lost its scheduler for good."""
-    topic = "" if demand.seconds is None else begun_topic(client)
+    topic = begun_topic(client) if demand.tells else ""
     memory = workers.ask(key, demand.memory)
     options: dict[str, Any] = {"resources": {MEMORY: memory}} if memory else {}
     try:
         future = client.submit(computed, topic, *work, key=key, pure=False, **options)
     except (OSError, RuntimeError) as error:
         raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from error
-    return Remote.of(client, workers, future)
+    return Remote.of(client, workers, future, tells=demand.tells)
 
 
 def computed(topic: str, *work: Any) -> list[Result]:
-    """In a worker: computes a parcel; where it has a limit of time, the scheduler has heard before that it begins."""
+    """In a worker: computes a parcel; where there is a topic, the scheduler has heard under it before that it begins."""
     if topic:
         worker = get_worker()
         told = {"key": worker.get_current_task(), "worker": worker.address}
@@ -230,14 +230,16 @@ class Remote:
     outcome: "concurrent.futures.Future[Any]"
 
     @staticmethod
-    def of(client: Client, workers: LivingWorkers, future: Any) -> "Remote":
-        """For a future of a client."""
+    def of(client: Client, workers: LivingWorkers, future: Any, *, tells: bool) -> "Remote":
+        """For a future of a client; `tells` where its worker tells that it begins."""
 
         async def fetched() -> Any:
             try:
                 return await future
             except KilledWorker as error:
-                raise LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory") from None
+                lost = LostWorkerError(f"the worker was lost ({error}); perhaps it ran out of memory")
+                lost.has_begun = not tells or workers.is_begun(future.key, error.last_worker.address)
+                raise lost from None
             except OSError as error:  # of the network: what a task raises comes as a result
                 raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from None
 

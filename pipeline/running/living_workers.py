@@ -22,7 +22,7 @@ class LivingWorkers:
     memory: int = 0
     """The most bytes that one of them declares to have for nodes, or will declare; 0 where none does."""
     began: dict[str, tuple[float, str]] = field(default_factory=dict)
-    """By dask's key, when a parcel was begun that has a limit of time, and the address of the worker."""
+    """By dask's key, when a parcel that tells it was begun last, and the address of the worker."""
     is_known: bool = False
     """Whether the scheduler has answered once."""
     _answered: float = field(default_factory=time.monotonic)
@@ -44,6 +44,10 @@ class LivingWorkers:
         """A worker has begun a parcel."""
         _, told = event
         self.began[told["key"]] = (time.monotonic(), told["worker"])
+
+    def is_begun(self, key: str, worker: str) -> bool:
+        """Whether the worker at this address is the last that told that it begins a parcel."""
+        return key in self.began and self.began[key][1] == worker
 
     def ask(self, key: str, memory: int) -> int:
         """The bytes to ask for a parcel: no more than one of the workers has."""

@@ -17,11 +17,15 @@ class Demand:
     """Bytes; 0 where nobody knows."""
     seconds: float | None
     """How long it may take; None where there is no limit."""
+    tells: bool = False
+    """Whether the run hears when a worker begins it."""
 
     @staticmethod
     def of(parcel: list[Entry], needs: Needs) -> "Demand":
-        """Of a parcel; one that has a limit of time is a single node."""
-        return Demand(needs.bytes(entry.task for entry in parcel), parcel[0].task.timeout)
+        """Of a parcel; one that has a limit of time, or is never tried again, is a single node."""
+        task = parcel[0].task
+        needed = needs.bytes(entry.task for entry in parcel)
+        return Demand(needed, task.timeout, tells=task.timeout is not None or not task.retries)
 
 
 def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:

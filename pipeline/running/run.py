@@ -4,17 +4,12 @@ import itertools
 import queue
 import threading
 import time
-from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from functools import partial
 
-from kinetree.errors import (
-    ClusterError,
-    LateNodeError,
-    LostWorkerError,
-)
+from kinetree.errors import ClusterError, LateNodeError
 from kinetree.pipeline.graph_cache import import_functions
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import DONE, Entry
@@ -29,6 +24,7 @@ from kinetree.pipeline.running.launch import Future, Launcher
 from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.running.parcels import Demand, steps_of
 from kinetree.pipeline.running.sight import Sight
+from kinetree.pipeline.running.suspects import Suspects, finished
 from kinetree.pipeline.storage.store import Store
 
 LOOK_AGAIN = 0.1
@@ -88,9 +84,7 @@ class _Loop:
     _numbers: Iterator[int] = field(default_factory=itertools.count)
     _limits: dict[int, float] = field(default_factory=dict)
     """Seconds that a parcel may take."""
-    _suspects: "deque[tuple[Job, Entry]]" = field(default_factory=deque)
-    """Nodes whose workers died or whose time was over; each is tried again when nothing else is out."""
-    _lost: "Counter[tuple[Job, Node]]" = field(default_factory=Counter)
+    _suspects: Suspects = field(default_factory=Suspects)
     _look_at: float = 0.0
     _unseen: dict[int, float] = field(default_factory=dict)
     """Since when the results of a parcel are looked for in the store."""
@@ -109,10 +103,14 @@ class _Loop:
             if entry.key in self._twins:
                 self._twins[entry.key].append((job, entry.node))
                 continue
+            self._twins[entry.key or ""] = []
+            if self._suspects.losses(job, entry):
+                self._suspects.waiting += [(job, member) for member in job.schedule.send(entry, is_alone=True)]
+                continue
             self._send(job, entry)
             sent = True
-        if self._suspects and not self.out:
-            job, entry = self._suspects.popleft()
+        if self._suspects.waiting and not self.out:
+            job, entry = self._suspects.waiting.popleft()
             self._submit(job, [entry])
             return True
         return sent
@@ -181,22 +179,31 @@ class _Loop:
             refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
             what = future.give_up()
             self._forget(number)
-            tries = self._lost[job, parcel[0].node] + 1
+            tries = self._suspects.losses(job, parcel[0]) + 1
             times = f", each of {tries} times that it was tried" if tries > 1 else ""
             told = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
             self._lose(job, parcel, LateNodeError(told))
         return bool(late)
 
     def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:
-        """Nothing came back of a parcel. Its first node is tried again, alone, since another may have killed its workers."""
+        """Nothing came back of a parcel: what has a record is done, and the first node without one is tried again, alone."""
         first, *rest = parcel
         for entry in rest:
             job.schedule.put_back(entry.node)
-        self._lost[job, first.node] += 1
-        if isinstance(error, LostWorkerError | LateNodeError) and self._lost[job, first.node] <= first.task.retries:
-            self._suspects.append((job, first))
-        else:
-            self._tell_all(job, [first], [Result("failed", error=type(error).__name__, message=str(error) or repr(error))])
+        known = finished(job, first, self.store)
+        if known is not None:
+            self._tell_all(job, [first], [known])  # those behind it settle as far as they have records
+        suspect = first if known is None else next((entry for entry in rest if entry.state == "stale"), None)
+        if suspect is None:
+            return
+        is_tried_again = self._suspects.lose(job, suspect, rest, error, self.store)
+        failure = Result("failed", error=type(error).__name__, message=str(error) or repr(error))
+        if known is not None and not is_tried_again:
+            self._tell(job, suspect, failure)
+        elif known is None and is_tried_again:
+            self._suspects.waiting.append((job, suspect))
+        elif known is None:
+            self._tell_all(job, [suspect], [failure])
 
     def _tell_all(self, job: Job, parcel: list[Entry], results: list[Result]) -> None:
         twins = self._twins.pop(parcel[0].key or "", [])
@@ -231,7 +238,6 @@ class _Loop:
 
     def _send(self, job: Job, entry: Entry) -> None:
         parcel = job.schedule.send(entry)
-        self._twins[entry.key or ""] = []
         for member in parcel:
             job.watch.start(member)
         self._submit(job, parcel)

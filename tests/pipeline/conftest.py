@@ -212,7 +212,7 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "__main__.py").write_text(MAIN)
-    for file in ("toys.py", "toy_sums.py", "toy_passes.py", "toy_datasets.py"):
+    for file in ("toys.py", "toy_sums.py", "toy_passes.py", "toy_links.py", "toy_datasets.py"):
         shutil.copy(HERE / file, package / file)
     found = Toys(package.parent, name, tmp_path / "frames", tmp_path / "flags", tmp_path / "log", tmp_path / "out")
     found.frames.mkdir()
