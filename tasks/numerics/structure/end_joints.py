@@ -18,6 +18,7 @@ from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 
 FEWEST_PAIRS = 3
@@ -39,7 +40,7 @@ class EndJointsSettings(NamedTuple):
     better: float = 0.98
     """What is left with another turn to start from, share of what is left without, at most. Not recorded."""
     most_frames: int = 40
-    """Frames in which rings are judged, about, evenly spread runs of two; for time."""
+    """Frames of each take in which rings are judged, about, evenly spread runs of two; for time."""
     points: int = 250
     """Points of a part, about; for time."""
     sample: int = 6000
@@ -95,7 +96,7 @@ def end_joints(
     fits: list[dict[int, _Hinged]] = [{} for _ in cuts]
     judged, pairs = judged_frames(len(body.x), body.takes, chosen.most_frames)
     _fit(found, pieces, cuts, shown, surface, judged, fits, body.size, chosen)
-    kept = _evident(found, cuts, fits, pairs, chosen)
+    kept = _evident(body, found, cuts, fits, pairs, chosen)
     others = np.setdiff1d(np.arange(len(body.x)), judged)
     best = [k for k, _ in kept]
     some = [fits[k] for k in best]
@@ -107,14 +108,19 @@ def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple
     """Frames in which rings are judged, ascending · (pair, 2) which of them follow each other in one take.
 
     count : how many frames there are
-    most  : how many are judged, about; if there are more, runs of two
+    most  : how many of each take are judged, about; if it has more, runs of two
     """
-    pairs = np.concatenate(
-        [np.stack([span[:-1], span[1:]], axis=1) for span in (np.arange(count)[take] for take in takes or [slice(0, count)])]
-    )
-    if count > most and len(pairs):
-        pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
+    spans = [np.arange(count)[take] for take in takes or [slice(0, count)]]
+    pairs = np.concatenate([_neighbours(span, most) for span in spans])
     return np.unique(pairs), pairs
+
+
+def _neighbours(span: Ints, most: int) -> Ints:
+    """(pair, 2) frames of a take that follow each other, evenly spread if it has more than `most` frames."""
+    pairs = np.stack([span[:-1], span[1:]], axis=1)
+    if len(span) > most and len(pairs):
+        pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
+    return pairs
 
 
 def ring_score(one: Floats, two: Floats, w: Floats, v: Floats) -> tuple[float, float]:
@@ -196,30 +202,54 @@ def _nearest(known: dict[int, _Hinged], f: int) -> Floats | None:
     return known[min(known, key=lambda g: (abs(g - f), g))].pose.Q if known else None
 
 
+class _Evidence(NamedTuple):
+    """What a ring shows over some frames: see `ring_score`; how many times more is left as one piece; turns, degrees."""
+
+    score: float
+    gain: float
+    far: float
+    near: float
+
+
 def _evident(
+    body: MovingSurface,
     found: TreeJoints,
     cuts: Sequence[EndCut],
     fits: Sequence[dict[int, _Hinged]],
     pairs: Ints,
     chosen: EndJointsSettings,
 ) -> list[tuple[int, float]]:
-    """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score."""
-    best: dict[int, tuple[float, int, float]] = {}
+    """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score.
+
+    A part's rings are judged over all frames, or over those of the take in which one of them shows most.
+    """
+    spans, parents = score_spans(len(found.R), body.takes), found.left.part_tree.tree.parents
+    rings: dict[int, dict[int, list[_Evidence]]] = {}
     for k, (cut, fit) in enumerate(zip(cuts, fits, strict=True)):
-        both = np.array([(a, b) for a, b in pairs.tolist() if a in fit and b in fit], dtype=np.int64)
-        if len(both) < FEWEST_PAIRS:
-            continue
-        above = found.R[:, found.left.part_tree.tree.parents[cut.part]]
-        far = about_mean({f: hinged.pose.Q for f, hinged in fit.items()})
-        near = about_mean({f: above[f].T @ hinged.pose.R for f, hinged in fit.items()})
-        one, two = (np.array([getattr(h, name) for h in fit.values()]) for name in ("one", "two"))
-        score, degrees = ring_score(one, two, *(np.array([far[f] for f in side]) for side in both.T))
-        _, nearer = ring_score(one, two, *(np.array([near[f] for f in side]) for side in both.T))
-        turns = degrees >= chosen.degrees and nearer >= chosen.nearer
-        if score >= chosen.least_score:
-            mine = float(one.sum() / two.sum()), k, score if turns else 0.0
-            best[cut.part] = max(best.get(cut.part, mine), mine)
-    return [(k, score) for _, (_, k, score) in sorted(best.items()) if score > 0.0]
+        rings.setdefault(cut.part, {})[k] = [_evidence(found.R[:, parents[cut.part]], fit, pairs, span) for span in spans]
+    kept = []
+    for _, shown in sorted(rings.items()):
+        at = int(np.argmax([max(ring[s].score for ring in shown.values()) for s in range(len(spans))]))
+        enough = [(ring[at].gain, k) for k, ring in shown.items() if ring[at].score >= chosen.least_score]
+        if enough:
+            k = max(enough)[1]
+            turns = shown[k][at].far >= chosen.degrees and max(e.near for e in shown[k]) >= chosen.nearer
+            kept += [(k, shown[k][at].score)] if turns else []
+    return kept
+
+
+def _evidence(above: Floats, fit: dict[int, _Hinged], pairs: Ints, span: Ints) -> _Evidence:
+    """What a ring shows in the frames of a span; above (frame, 3, 3) the motion of the part above."""
+    mine = {f: hinged for f, hinged in fit.items() if span[0] <= f < span[1]}
+    both = np.array([(a, b) for a, b in pairs.tolist() if a in mine and b in mine], dtype=np.int64)
+    if len(both) < FEWEST_PAIRS:
+        return _Evidence(0.0, 0.0, 0.0, 0.0)
+    far = about_mean({f: hinged.pose.Q for f, hinged in mine.items()})
+    near = about_mean({f: above[f].T @ hinged.pose.R for f, hinged in mine.items()})
+    one, two = (np.array([getattr(h, name) for h in mine.values()]) for name in ("one", "two"))
+    score, degrees = ring_score(one, two, *(np.array([far[f] for f in side]) for side in both.T))
+    _, nearer = ring_score(one, two, *(np.array([near[f] for f in side]) for side in both.T))
+    return _Evidence(score, float(one.sum() / two.sum()), degrees, nearer)
 
 
 def about_mean(turn: dict[int, Floats]) -> dict[int, Floats]:

@@ -12,6 +12,14 @@ def found(degrees: float, noise: float = 0.0, settings: EndJointsSettings | None
     return end_joints(surface, tree, np.ones(surface.x.shape[:2]), Frames(turning(degrees), noise), settings)
 
 
+def found_in_takes(degrees: list[float], noise: float) -> list[EndJoint]:
+    """Takes of 24 frames, each with its own range of turning."""
+    turn = np.concatenate([turning(one) for one in degrees])
+    surface, tree = found_in(aligned(turn))
+    takes = [slice(24 * k, 24 * k + 24) for k in range(len(degrees))]
+    return end_joints(surface._replace(takes=takes), tree, np.ones(surface.x.shape[:2]), Frames(turn, noise))
+
+
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_joint_that_is_not_in_the_aligned_vertices_is_found(noise: float) -> None:
     (joint,) = found(25.0, noise)
@@ -65,6 +73,26 @@ def test_judged_frames_follow_each_other_within_a_take() -> None:
     assert pairs[-1].tolist() == [498, 499]
     assert len(judged_frames(1, None, 40)[0]) == 0
     assert len(judged_frames(41, [slice(i, i + 1) for i in range(41)], 40)[1]) == 0
+
+
+@pytest.mark.parametrize(("degrees", "noise"), [(4.0, 0.02), (6.0, 0.04)])
+def test_a_joint_that_one_take_turns_counts_as_much_as_in_that_take_alone(degrees: float, noise: float) -> None:
+    (alone,) = found(degrees, noise)
+    (joint,) = found_in_takes([degrees, 0.0, 0.0], noise)
+    assert joint.score == pytest.approx(alone.score, rel=0.01)
+    np.testing.assert_array_equal(joint.cut.far, alone.cut.far)
+    assert len(joint.R) == 72
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_no_take_has_a_joint_where_none_turns(noise: float) -> None:
+    assert found_in_takes([0.0, 0.0, 0.0], noise) == []
+
+
+def test_every_take_is_judged_in_as_many_frames_as_one_alone() -> None:
+    _, alone = judged_frames(100, None, 40)
+    _, pairs = judged_frames(200, [slice(0, 100), slice(100, 200)], 40)
+    np.testing.assert_array_equal(pairs, np.concatenate([alone, alone + 100]))
 
 
 def test_turns_that_agree_count_and_noise_does_not() -> None:
