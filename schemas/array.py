@@ -100,7 +100,7 @@ class Artifact(BaseModel):
     What people see of it and take away stands elsewhere, in functions registered for its class.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
     version: ClassVar[int] = 1
     opens: ClassVar[tuple[str, ...]] = ()
     orders: ClassVar[str] = ""
@@ -186,7 +186,7 @@ class Artifact(BaseModel):
 class Params(BaseModel):
     """The configuration one task may see: frozen, no unknown keys, every field with a default and one sentence."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     @classmethod
     def path_fields(cls) -> frozenset[tuple[str, ...]]:

@@ -204,7 +204,9 @@ def _read(argument: dict[str, Any]) -> str:
 
 
 def _task_row(task: Any) -> dict[str, Any]:
-    fields = task.params.model_fields if task.params else {}
+    from kinetree.pipeline.settings.sentences import sentences
+
+    fields, told = (task.params.model_fields, sentences(task.params)) if task.params else ({}, {})
     return {
         "task": task.name,
         "over": "/".join(task.over),
@@ -214,7 +216,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         ],
         "along": task.traversed,
         "writes": task.returns.__name__,
-        "params": {n: {"default": f.default, "what": f.description or ""} for n, f in fields.items()},
+        "params": {n: {"default": f.default, "what": told.get(n, "")} for n, f in fields.items()},
         "on_request": task.on_request,
         "paper": task.paper,
         "summary": task.summary,

@@ -37,7 +37,7 @@ INPUT = "{input}"
 class Retention(BaseModel):
     """What is deleted from the store at the end of a run; without any of the first three nothing is."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     keep_last: int | None = Field(default=None, ge=1)
     """Runs of each sequence whose results stay."""

@@ -10,6 +10,7 @@ from kinetree.errors import KinetreeError
 from kinetree.pipeline import views
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.snapshot import Snapshot
+from kinetree.pipeline.settings.sentences import sentences
 from kinetree.pipeline.storage.store import Record
 from kinetree.schemas.array import Array, Artifact
 
@@ -59,11 +60,11 @@ def statistics(array: NDArray[Any]) -> dict[str, Any]:
 
 
 def _schema(cls: type[Artifact]) -> dict[str, Any]:
-    arrays = cls.array_fields()
+    arrays, told = cls.array_fields(), sentences(cls)
     fields = {}
     for name, field in cls.model_fields.items():
         spec = arrays.get(name)
-        fields[name] = {"type": _type(spec) if spec else _type_name(field.annotation), "what": field.description or ""}
+        fields[name] = {"type": _type(spec) if spec else _type_name(field.annotation), "what": told.get(name, "")}
     return {"name": cls.__name__, "version": cls.version, "fields": fields}
 
 

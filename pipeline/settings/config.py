@@ -34,7 +34,7 @@ WAIT_SECONDS = 300.0
 class Compute(BaseModel):
     """Where and how wide a run is computed; never part of a key."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     executor: Literal["sync", "threads", "processes"] = "threads"
     """sync: in this thread, for debugging; threads: in this process; processes: worker processes of this machine."""

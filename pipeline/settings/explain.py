@@ -7,6 +7,7 @@ from pydantic import BaseModel
 
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.settings.config import Config
+from kinetree.pipeline.settings.sentences import sentences
 from kinetree.pipeline.settings.yaml_text import dumped
 
 WIDTH = 118
@@ -23,9 +24,9 @@ def explained(config: Config, graph: Graph) -> str:
 
 
 def _block(values: BaseModel, depth: int) -> Iterator[str]:
-    indent = "  " * depth
-    for name, field in type(values).model_fields.items():
-        meaning = " ".join((field.description or "").split())
+    indent, meanings = "  " * depth, sentences(type(values))
+    for name in type(values).model_fields:
+        meaning = " ".join(meanings.get(name, "").split())
         value = getattr(values, name)
         if isinstance(value, BaseModel):
             yield f"{indent}{name}:  # {meaning}"

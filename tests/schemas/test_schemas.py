@@ -8,6 +8,7 @@ import pytest
 from pydantic import BaseModel
 
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.settings.sentences import sentences
 from kinetree.schemas import dims
 from kinetree.schemas.array import Artifact, Params
 from kinetree.schemas.dims import Dim
@@ -42,7 +43,7 @@ def test_there_are_schemas():
 
 @pytest.mark.parametrize("model", MODELS, ids=named)
 def test_every_field_and_schema_has_a_sentence(model):
-    for name, told in [(model.__name__, model.__doc__), *((n, f.description) for n, f in model.model_fields.items())]:
+    for name, told in [(model.__name__, model.__doc__), *((n, sentences(model).get(n)) for n in model.model_fields)]:
         assert told, f"{model.__name__}.{name} has no docstring"
         assert told.strip().endswith("."), f"{model.__name__}.{name}: {told!r} is no sentence"
 
