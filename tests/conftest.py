@@ -1,5 +1,6 @@
 """Lets every test import helpers such as `shapes` and `results.rigged_bodies`; no example fails on a slow machine."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 from hypothesis import settings
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+os.environ["KINETREE_COMPILE_AHEAD"] = "0"  # tests fill the cores themselves
 pytest_plugins = ["s3_service"]
 settings.register_profile("any machine", deadline=None)
 settings.load_profile("any machine")
