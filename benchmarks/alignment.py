@@ -36,7 +36,16 @@ from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph, deformation_graph
+from kinetree.tasks.numerics.registration.first_fit import first_fit
 from kinetree.tasks.numerics.registration.frame_confidence import inliers, residuals
+from kinetree.tasks.numerics.registration.near_pose import (
+    NearPose,
+    distant_points,
+    is_lost,
+    near_pose,
+    thinned_body,
+    thinned_frame,
+)
 from kinetree.tasks.numerics.registration.recovery import recovery
 from kinetree.tasks.numerics.registration.reference import profile, reference
 from kinetree.tasks.numerics.registration.rigid_clusters import rigid_clusters
@@ -107,15 +116,22 @@ def chosen(meshes: list[Cleaned]) -> int:
     return reference(count, [m.euler for m in meshes], area, np.stack(poses), limbs).frame
 
 
-def chain(body: DeformationGraph, targets: list[Target], start: int) -> list[Tracking]:
-    """Tracking outwards from the reference in both directions."""
+def chain(body: DeformationGraph, meshes: list[Cleaned], targets: list[Target], start: int) -> list[Tracking]:
+    """Near poses outwards from the reference in both directions, and every frame fitted from its own."""
     out = [Tracking(at_rest(body), 0.0, 0)] * len(targets)
+    cloud = thinned_body(body)
     for step in (1, -1):
-        before, t, usual = None, start + step, 0.0
+        before, last, t, usual = None, at_rest(body), start + step, 0.0
         while 0 <= t < len(targets):
-            out[t] = tracking(body, before, out[t - step].pose, targets[t], FITTING, usual)
-            usual = out[t].uncovered if before is None else min(usual, out[t].uncovered)
-            before, t = out[t - step].pose, t + step
+            points = thinned_frame(meshes[t].V, meshes[t].F, body.size)
+            near = near_pose(cloud, last, points)
+            if targets[t].colour is not None or is_lost(near, usual):
+                out[t] = tracking(body, before, last, targets[t], FITTING, usual, distant=usual)
+                near = NearPose(out[t].pose, distant_points(cloud, out[t].pose, points))
+            else:
+                out[t] = first_fit(body, near.pose, targets[t], FITTING, usual)
+            usual = near.distant if before is None else min(usual, near.distant)
+            before, last, t = last, near.pose, t + step
     return out
 
 
@@ -125,7 +141,7 @@ def aligned(meshes: list[Cleaned], start: int, every: int) -> tuple[DeformationG
     fit(body, at_rest(body), Target.of(meshes[start].V, meshes[start].F, body.size), FITTING)
     begun = time.process_time()
     targets = [Target.of(m.V, m.F, body.size) for m in meshes]
-    chained = chain(body, targets, start)
+    chained = chain(body, meshes, targets, start)
     shares = np.array([frame.uncovered for frame in chained])
     again = recovery(body, shares, lambda t: chained[t].pose, targets.__getitem__, start, FITTING).recovered
     found = [again.get(t, frame) for t, frame in enumerate(chained)]

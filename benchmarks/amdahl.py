@@ -44,8 +44,8 @@ FRAME = "frame"
 
 @dataclass(frozen=True)
 class Job:
-    """One node: over which space its task runs, how deep that is in the graph, whether it is aside (`Graph.aside`), what it
-    takes and what it waits for.
+    """One node: over which space its task runs, how deep that is in the graph, chains before all others, whether it is aside
+    (`Graph.aside`), what it takes and what it waits for.
     """
 
     node: Node
@@ -119,7 +119,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
             found[parse(label, graph)] = record
     if not found:
         raise ValueError(f"{pipeline.config.output} holds no record; run it first")
-    depth = {task.name: number for number, task in enumerate(graph.tasks)}
+    depth = {task.name: number + len(graph.tasks) * task.is_chain for number, task in enumerate(graph.tasks)}
     jobs: Jobs = {}
     for node, record in found.items():
         task = graph.by_name[node.task]
@@ -204,20 +204,19 @@ def longest_path(jobs: Jobs) -> list[Job]:
 
 def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Node]], first: Node) -> list[Node]:
     """The nodes that travel together, by the rule of `together`."""
-    parcel = [first]
-    for member in parcel if first.at else ():
-        for node in after[member]:
-            is_here = node.at == first.at and jobs[node].space == jobs[first].space
-            goes_along = jobs[first].is_aside or not jobs[node].is_aside
-            if is_here and goes_along and node not in parcel and waits[node] <= set(parcel):
-                parcel.append(node)
-    last = first
+    parcel, last = [first], first
     for _ in range(STRETCH - 1):
         following = [n for n in after[last] if n.task == first.task and n not in parcel and waits[n] <= set(parcel)]
         if len(following) != 1:
             break
         (last,) = following
         parcel.append(last)
+    for member in parcel if first.at and len(parcel) == 1 else ():
+        for node in after[member]:
+            is_here = node.at == first.at and jobs[node].space == jobs[first].space
+            goes_along = jobs[first].is_aside or not jobs[node].is_aside
+            if is_here and goes_along and node not in parcel and waits[node] <= set(parcel):
+                parcel.append(node)
     return parcel
 
 

@@ -88,7 +88,7 @@ def aligned(meshes: list[Cleaned], start: int, colours: list[Floats] | None) -> 
     fit(body, at_rest(body), _target(body, meshes, start, start, colours), alignment.FITTING)
     begun = time.process_time()
     targets = [_target(body, meshes, t, start, colours) for t in range(len(meshes))]
-    chained = alignment.chain(body, targets, start)
+    chained = alignment.chain(body, meshes, targets, start)
     shares = np.array([frame.uncovered for frame in chained])
     again = recovery(body, shares, lambda t: chained[t].pose, targets.__getitem__, start, alignment.FITTING).recovered
     poses = [again.get(t, frame).pose for t, frame in enumerate(chained)]

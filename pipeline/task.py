@@ -113,6 +113,11 @@ class Task(Generic[P, R]):
         return (self.along.orders or self.over[-1]) if self.along else ""
 
     @property
+    def is_chain(self) -> bool:
+        """Whether its nodes wait for each other, one after the other."""
+        return self.along is not None and self.traversed == self.over[-1]
+
+    @property
     def module(self) -> str:
         """The module that defines the function; a worker imports it by this name."""
         return self.function.__module__

@@ -26,6 +26,7 @@ from kinetree.tasks.numerics.input.mesh import clean
 from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.registration.alignment import alignment
 from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.registration.projection import projection
 from kinetree.tasks.registration.recovery import recovery
@@ -124,7 +125,8 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         index=made.numbers,
         params=TrackingParams(),
     )
-    made.recovery = recovery(graph, made.take_entries, made.tracking, meshes)
+    made.first_fit = {t: first_fit(m, graph, made.tracking[t]) for t, m in meshes.items()}
+    made.recovery = recovery(graph, made.take_entries, made.first_fit, meshes)
     made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
     for number in graph.members("pass", ()):
         one_pass(made, number)
@@ -140,7 +142,7 @@ def one_pass(made: SimpleNamespace, number: int) -> None:
     graph, index = made.deformation_graph, (number,)
     before = made.refit[-1] if made.refit else {}
     earlier = (made.stiffness or [None])[-1], (made.roll or [None])[-1]
-    stiff = stiffness(graph, made.tracking, made.recovery, tuple(before.values()), earlier[0], index)
+    stiff = stiffness(graph, made.first_fit, made.recovery, tuple(before.values()), earlier[0], index)
     tried = {t: roll_candidates(m, graph, stiff, before.get(t), (number, t)) for t, m in made.mesh.items()}
     chosen = roll(graph, stiff, tried, tuple(before.values()), earlier[1], index)
     made.stiffness.append(stiff)
@@ -152,7 +154,7 @@ def one_pass(made: SimpleNamespace, number: int) -> None:
 def refitted(made: SimpleNamespace, number: int, frame: int, before: Any) -> Any:
     """One frame in one pass, from its pose of the pass before."""
     told = made.stiffness[number], made.roll_candidates[number][frame], made.roll[number]
-    here = made.mesh[frame], made.deformation_graph, made.tracking[frame], made.recovery
+    here = made.mesh[frame], made.deformation_graph, made.first_fit[frame], made.recovery
     return refit(*here, *told, before, (number, frame))
 
 

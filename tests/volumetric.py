@@ -53,6 +53,7 @@ from kinetree.tasks.paper_2009.reeb_graph import reeb_graph
 from kinetree.tasks.paper_2009.similarity import similarity
 from kinetree.tasks.registration.alignment import alignment
 from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.recovery import recovery
 from kinetree.tasks.registration.take_entries import take_entries
 from kinetree.tasks.registration.tracking_order import tracking_order
@@ -151,7 +152,8 @@ def aligned_by(
     reference: Reference, entries: TakeEntries, nodes: DeformationGraph, tracked: dict[int, Tracking], mesh: dict[int, Mesh]
 ) -> dict[int, Alignment]:
     """The surface as it was tracked, without the passes of the shelf registration."""
-    usual = recovery(nodes, entries, tracked, mesh)
+    fitted = {t: first_fit(mesh[t], nodes, at) for t, at in tracked.items()}
+    usual = recovery(nodes, entries, fitted, mesh)
     poses = {t: Refit(rotation=at.rotation, translation=at.translation) for t, at in tracked.items()}
     return {t: alignment(mesh[t], reference, nodes, usual, (at,)) for t, at in poses.items()}
 

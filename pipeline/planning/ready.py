@@ -1,4 +1,4 @@
-"""The nodes that may run now, the deepest first, so that a frame is finished before the next is begun."""
+"""The nodes that may run now: those of chains first, then the deepest, so that a frame is finished before the next is begun."""
 
 import heapq
 from collections.abc import Iterator, Mapping
@@ -10,12 +10,17 @@ from kinetree.schemas.array import Index
 
 
 class ReadyNodes:
-    """Stale nodes that wait for nothing, by how deep their tasks stand in the graph; what little waits for goes last."""
+    """Stale nodes that wait for nothing, by how deep their tasks stand in the graph.
+
+    What goes from one member to the next goes first, since the rest of its chain waits for it; what little waits for goes last.
+    """
 
     def __init__(self, graph: Graph, entries: Mapping[Node, Entry]) -> None:
         self._entries = entries
         self._rank = {task.name: n for n, task in enumerate(graph.tasks)}
-        self._depth = {name: n - len(graph.tasks) * (name in graph.aside) for name, n in self._rank.items()}
+        chains = {task.name for task in graph.tasks if task.is_chain}
+        sides = {name: -1 if name in graph.aside else int(name in chains) for name in self._rank}
+        self._depth = {name: n + len(graph.tasks) * sides[name] for name, n in self._rank.items()}
         self._waiting: list[tuple[int, Index, Node]] = []
 
     def add(self, node: Node) -> None:

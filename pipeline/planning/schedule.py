@@ -96,7 +96,8 @@ class Schedule:
     def ready(self) -> Iterator[Entry]:
         """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next.
 
-        What little waits for goes last: it fills the time in which nothing else is ready.
+        Chains go first, since much waits for their ends. What little waits for goes last: it fills the time in which nothing
+        else is ready.
         """
         for entry in self._ready.taken():
             entry.state = "running"

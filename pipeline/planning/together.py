@@ -18,11 +18,12 @@ def together(
     dependents: Mapping[Node, Collection[Node]],
     unlisted: Collection[Node],
 ) -> list[Entry]:
-    """A ready node and the nodes that need nothing else: all of its own index, and the next ones of its own chain.
+    """A ready node and the nodes that need nothing else: the next ones of its own chain, or else all of its own index.
 
-    What little waits for does not travel with what much waits for. A node whose task has a limit of time travels alone, since
-    time is taken of the whole piece, and so does one that is never tried again: who killed a worker is then certain at once.
-    A chain that branches ends there, so that its branches go on side by side.
+    A stretch of a chain takes nothing along, since the rest of the chain waits for it, and a chain that branches ends there, so
+    that its branches go on side by side. What little waits for does not travel with what much waits for. A node whose task has
+    a limit of time travels alone, since time is taken of the whole piece, and so does one that is never tried again: who killed
+    a worker is then certain at once.
 
     dependents : the nodes that read a node or are laid out by it
     unlisted   : nodes of which it is not known yet what they read
@@ -46,12 +47,6 @@ def together(
         inside.add(other.node)
         parcel.append(other)
 
-    for member in parcel:
-        for other in waiting(member):
-            if goes_along(other):
-                add(other)
-    rank = {task.name: n for n, task in enumerate(graph.tasks)}
-    parcel.sort(key=lambda e: rank[e.node.task])
     last = first
     for _ in range(STRETCH - 1 if first.task.along is not None else 0):
         following = [other for other in waiting(last) if other.task is first.task]
@@ -59,6 +54,14 @@ def together(
             break
         (last,) = following
         add(last)
+    if len(parcel) > 1:
+        return parcel
+    for member in parcel:
+        for other in waiting(member):
+            if goes_along(other):
+                add(other)
+    rank = {task.name: n for n, task in enumerate(graph.tasks)}
+    parcel.sort(key=lambda e: rank[e.node.task])
     return parcel
 
 

@@ -13,7 +13,10 @@ _Range = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
 
 
 class TrackingParams(Params):
-    """How the reference is fitted to a frame; of a pair, the first step takes the first value, the last the second."""
+    """How the reference is fitted to a frame; of a pair, the first step takes the first value, the last the second.
+
+    In the chain frames are fitted so where few points do not suffice; every frame then has the last six of ten such steps.
+    """
 
     steps: int = Field(default=10, ge=1, le=1000)
     """Gauss–Newton steps; of the pairs below the first step takes the first value and the last step the second."""
@@ -30,19 +33,19 @@ class TrackingParams(Params):
 
 
 class Tracking(Pose):
-    """A frame of the chain outwards from the reference, with what the next frame needs to start from."""
+    """A frame of the chain outwards from the reference: near enough for a fit, with what the next frame needs to start from."""
 
     steps: int
     """Frames between the reference and this one, in the order in which frames are reached; 0 for the reference."""
-    uncovered: float
-    """Share of the frame's surface that the body does not explain."""
+    unexplained: float
+    """Share of the frame that the body does not explain: of its few points, those far from the body."""
     usual: float
-    """Smallest share that any frame between the reference and this one leaves uncovered: holes of a capture."""
+    """Smallest such share of any frame between the reference and this one: holes of a capture."""
     attempt: int
-    """Which way of fitting was taken; 0 is the usual one."""
+    """How the frame was fitted: 0 by few points, else with all samples, 1 in the usual way, above 1 in another one."""
     earlier_rotation: Annotated[Floats, Array("float64", NODE, ROW, XYZ)]
     """R of the frame before in the chain, from which to predict the next."""
     earlier_translation: Annotated[Floats, Array("float64", NODE, XYZ, unit="length")]
     """p of the frame before."""
     fitting: TrackingParams = TrackingParams()
-    """How the frame was fitted; a frame that is tracked again is fitted alike."""
+    """How a frame is fitted with all samples; what fits frames later on does it alike."""

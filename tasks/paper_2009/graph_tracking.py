@@ -12,6 +12,7 @@ from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.tasks.numerics.paper_2009 import graph_tracking as numerics
 from kinetree.tasks.numerics.registration.deformation import at_rest
+from kinetree.tasks.numerics.registration.near_pose import NearPose
 from kinetree.tasks.numerics.registration.tracking import Tracking as Tracked
 from kinetree.tasks.registration.pose import fit_settings, graph, pose, stored_tracking, target
 
@@ -39,4 +40,5 @@ def graph_tracking(
         fitted = numerics.graph_tracking(body, carried, last, frame, fit_settings(params), previous.usual)
         usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
     earlier = last or fitted.pose
-    return stored_tracking(fitted, earlier, steps, usual, params)
+    near = NearPose(fitted.pose, fitted.uncovered)  # with all samples: what is uncovered is known
+    return stored_tracking(near, earlier, steps, usual, params, 1 + fitted.attempt)

@@ -3,6 +3,7 @@
 from kinetree.tasks.registration.alignment import alignment
 from kinetree.tasks.registration.colour_agreement import colour_agreement
 from kinetree.tasks.registration.deformation_graph import deformation_graph
+from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 from kinetree.tasks.registration.projection import projection
 from kinetree.tasks.registration.recovery import recovery
@@ -25,6 +26,7 @@ REGISTRATION = (
     take_entries,
     tracking_order,
     tracking,
+    first_fit,
     recovery,
     colour_agreement,
     stiffness,

@@ -9,19 +9,19 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.reference_colour import ReferenceColour
-from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration.colour_agreement import colour_agreement as measured
 from kinetree.tasks.numerics.registration.colour_agreement import suffices
-from kinetree.tasks.registration.pose import graph, target, tracked_pose
+from kinetree.tasks.registration.pose import first_pose, graph, target
 
 
 @task(among=Sequence)
 def colour_agreement(
     deformation_graph: DeformationGraph,
-    tracking: Mapping[int, Tracking],
+    first_fit: Mapping[int, FirstFit],
     recovery: Recovery,
     mesh: Mapping[int, Mesh],
     vertex_colour: Mapping[int, VertexColour],
@@ -35,7 +35,7 @@ def colour_agreement(
     share = np.empty(len(frames))
     for row, t in enumerate(frames):
         frame = target(mesh[t], deformation_graph, vertex_colour[t], reference_colour)
-        share[row] = measured(nodes, tracked_pose(tracking[t], recovery, t), frame)
+        share[row] = measured(nodes, first_pose(first_fit[t], recovery, t), frame)
     is_used = suffices(share)
     colour = reference_colour.colour if is_used else np.empty((0, 3), np.uint8)
     return ColourAgreement(frames=frames, share=share, is_used=is_used, colour=colour)

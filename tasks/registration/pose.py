@@ -9,6 +9,7 @@ from kinetree.schemas.array import Ints
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.schemas.registration.pose import Pose
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.reference_colour import ReferenceColour
@@ -17,10 +18,11 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.vertex_colour import VertexColour
-from kinetree.tasks.numerics.registration import deformation, roll_candidates, tracking
+from kinetree.tasks.numerics.registration import deformation, roll_candidates
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
 from kinetree.tasks.numerics.registration.colour_term import FrameColour
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.near_pose import NearPose
 
 NO_COLOUR, NO_REFERENCE_COLOUR, NO_AGREEMENT = VertexColour.none(), ReferenceColour.none(), ColourAgreement.none()
 """Of a frame, of the reference mesh and of all frames where files have no colours."""
@@ -31,11 +33,11 @@ def pose(stored: Pose) -> deformation.Pose:
     return deformation.Pose(np.array(stored.rotation), np.array(stored.translation))
 
 
-def tracked_pose(tracked: Tracking, recovery: Recovery, frame: int) -> deformation.Pose:
-    """The pose of a frame before the first pass: recovered where tracking failed, else tracked."""
+def first_pose(fitted: FirstFit, recovery: Recovery, frame: int) -> deformation.Pose:
+    """The pose of a frame before the first pass: recovered where its first fit failed, else as fitted."""
     row = recovery.row(frame)
     if row is None:
-        return pose(tracked)
+        return pose(fitted)
     return deformation.Pose(np.array(recovery.rotation[row]), np.array(recovery.translation[row]))
 
 
@@ -60,16 +62,16 @@ def fit_settings(params: TrackingParams) -> deformation.FitSettings:
 
 
 def stored_tracking(
-    fitted: tracking.Tracking, earlier: deformation.Pose, steps: int, usual: float, params: TrackingParams
+    near: NearPose, earlier: deformation.Pose, steps: int, usual: float, params: TrackingParams, attempt: int = 0
 ) -> Tracking:
-    """A fitted frame, with the pose before it, its place in the chain and how it was fitted."""
+    """A frame of the chain, with the pose before it, its place in the chain and how it is to be fitted."""
     return Tracking(
         steps=steps,
-        rotation=fitted.pose.rotation,
-        translation=fitted.pose.translation,
-        uncovered=fitted.uncovered,
+        rotation=near.pose.rotation,
+        translation=near.pose.translation,
+        unexplained=near.distant,
         usual=usual,
-        attempt=fitted.attempt,
+        attempt=attempt,
         fitting=params,
         earlier_rotation=earlier.rotation,
         earlier_translation=earlier.translation,

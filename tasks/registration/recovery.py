@@ -1,4 +1,4 @@
-"""Lost limbs found again: frames in which tracking failed, tracked again from the frame beyond them."""
+"""Lost limbs found again: frames in which the first fit failed, tracked again from the frame beyond them."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -9,10 +9,10 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
-from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import recovery as numerics
@@ -23,23 +23,23 @@ from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit
 def recovery(
     deformation_graph: DeformationGraph,
     take_entries: TakeEntries,
-    tracking: Mapping[int, Tracking],
+    first_fit: Mapping[int, FirstFit],
     mesh: Mapping[int, Mesh],
     vertex_colour: Mapping[int, VertexColour] = MappingProxyType({}),
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Recovery:
     """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
-    frames = tuple(tracking)
-    uncovered = np.array([t.uncovered for t in tracking.values()])
+    frames = tuple(first_fit)
+    uncovered = np.array([f.uncovered for f in first_fit.values()])
     roots = [frames.index(t) for t in (deformation_graph.frame, *take_entries.frames)]
     spans = [(span, next(t for t in roots if span.start <= t < span.stop)) for span in take_spans(frames)]
     outcome = numerics.recovery(
         graph(deformation_graph),
         uncovered,
-        lambda at: pose(tracking[frames[at]]),
+        lambda at: pose(first_fit[frames[at]]),
         lambda at: target(mesh[frames[at]], deformation_graph, vertex_colour.get(frames[at], NO_COLOUR), reference_colour),
         frames.index(deformation_graph.frame),
-        fit_settings(tracking[deformation_graph.frame].fitting),
+        fit_settings(first_fit[deformation_graph.frame].fitting),
         takes=spans,
     )
     recovered = sorted(outcome.recovered)

@@ -7,24 +7,24 @@ from kinetree.schemas.array import Index, Ints
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.colour_agreement import ColourAgreement
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll import Roll
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
-from kinetree.schemas.registration.tracking import Tracking
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration.deformation import fit
 from kinetree.tasks.numerics.registration.roll import frame_rolls
 from kinetree.tasks.numerics.registration.stiffness import refit_pass
-from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, graph, rolled_pose, target, tracked_pose
+from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, first_pose, graph, rolled_pose, target
 
 
 @task(over="pass/frame", along=DeformationGraph)
 def refit(
     mesh: Mesh,
     deformation_graph: DeformationGraph,
-    tracking: Tracking,
+    first_fit: FirstFit,
     recovery: Recovery,
     stiffness: Stiffness,
     candidates: RollCandidates,
@@ -38,7 +38,7 @@ def refit(
     number, frame = index
     nodes = graph(deformation_graph)
     if previous is None:
-        start = tracked_pose(tracking, recovery, frame)
+        start = first_pose(first_fit, recovery, frame)
     else:
         start = rolled_pose(nodes, previous, candidates, stiffness, _chosen(roll, candidates, frame))
     if frame != deformation_graph.frame:  # the reference stays what it is

@@ -1,4 +1,4 @@
-"""The reference bent onto one frame after the other, outwards in both directions."""
+"""The reference brought near one frame after the other, outwards in both directions."""
 
 import numpy as np
 
@@ -12,7 +12,17 @@ from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration import tracking as numerics
-from kinetree.tasks.numerics.registration.deformation import Pose, at_rest
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
+from kinetree.tasks.numerics.registration.near_pose import (
+    NearPose,
+    distant_points,
+    is_lost,
+    near_pose,
+    thinned_body,
+    thinned_frame,
+)
 from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, stored_tracking, target
 
 
@@ -27,22 +37,31 @@ def tracking(
     vertex_colour: VertexColour = NO_COLOUR,
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Tracking:
-    """Bends the reference onto a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
+    """Brings the reference near a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
     if previous is None:
-        rest = at_rest(body)
-        return stored_tracking(numerics.Tracking(rest, 0.0, 0), rest, 0, 0.0, params)
-    last = pose(previous)
+        return stored_tracking(NearPose(at_rest(body), 0.0), at_rest(body), 0, 0.0, params)
+    last, cloud = pose(previous), thinned_body(body)
+    points = thinned_frame(np.array(mesh.vertices), mesh.faces, body.size)
+    is_entry, has_colours = index[0] in take_entries.frames, len(vertex_colour.colour) > 0 and len(reference_colour.colour) > 0
+    # few points show too little of colours, and say nothing of where a body stands in another take
+    near, attempt = None if is_entry or has_colours else near_pose(cloud, last, points), 0
+    if near is None or is_lost(near, previous.usual):
+        starts = _moved(last, take_entries, index[0]) if is_entry else []
+        frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
+        fitted = _fitted(body, previous, starts, frame, fit_settings(params))
+        near, attempt = NearPose(fitted.pose, distant_points(cloud, fitted.pose, points)), 1 + fitted.attempt
+    # the reference is far from nothing, whatever the capture's holes
+    usual = near.distant if previous.steps == 0 else min(previous.usual, near.distant)
+    return stored_tracking(near, near.pose if is_entry else last, previous.steps + 1, usual, params, attempt)
+
+
+def _fitted(body: Nodes, previous: Tracking, starts: list[Pose], frame: Target, fitting: FitSettings) -> numerics.Tracking:
+    """A frame fitted with all samples; in another take, from wherever the body may stand."""
+    if starts:  # how the body moved before says nothing here
+        return numerics.entered(body, starts, frame, fitting, previous.usual)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    frame, fitting = target(mesh, deformation_graph, vertex_colour, reference_colour), fit_settings(params)
-    is_entry = index[0] in take_entries.frames
-    if is_entry:  # another take: the body stands elsewhere, and how it moved before says nothing
-        fitted = numerics.entered(body, _moved(last, take_entries, index[0]), frame, fitting, usual=previous.usual)
-    else:
-        fitted = numerics.tracking(body, earlier, last, frame, fitting, usual=previous.usual)
-    # the reference leaves nothing uncovered, whatever the capture's holes
-    usual = fitted.uncovered if previous.steps == 0 else min(previous.usual, fitted.uncovered)
-    return stored_tracking(fitted, fitted.pose if is_entry else last, previous.steps + 1, usual, params)
+    return numerics.tracking(body, earlier, pose(previous), frame, fitting, previous.usual, distant=previous.usual)
 
 
 def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:

@@ -27,4 +27,4 @@ def test_reference_is_left_as_it_is() -> None:
     here = volumetric()
     at = here.graph_tracking[here.integrated_structure.frame]
     assert np.array_equal(at.translation, graph(here.deformation_graph).g)
-    assert at.uncovered == 0.0
+    assert at.unexplained == 0.0

@@ -210,3 +210,28 @@ def test_a_long_chain_travels_in_stretches(toys):
     sent = [labels for name, labels in sent_by_run(toys.pipeline().schedule()) if name == "link"]
     assert [len(labels) for labels in sent] == [STRETCH, STRETCH, 3]
     assert [label for labels in sent for label in labels] == [f"link[frame={n}]" for n in range(2 * STRETCH + 3)]
+
+
+def test_a_chain_goes_first_and_takes_nothing_along(toys):
+    """What reads a link can wait, the next link cannot."""
+    read = '''
+
+class Mark(Artifact):
+    """Of a link."""
+
+    number: int
+    """The frame's."""
+
+
+@task(over="frame")
+def mark(link: Link) -> Mark:
+    return Mark(number=link.number)
+
+
+GRAPH = Graph.of((source, row, link, mark))
+'''
+    (toys.folder / toys.name / "chain.py").write_text(CHAIN.replace("range(2000)", f"range({2 * STRETCH})") + read)
+    toys.main = "chain"
+    sent = [labels for _, labels in sent_by_run(toys.pipeline().schedule())]
+    links = [[f"link[frame={n}]" for n in range(STRETCH * k, STRETCH * (k + 1))] for k in range(2)]
+    assert sent == [["row"], *links, *([f"mark[frame={n}]"] for n in range(2 * STRETCH))]

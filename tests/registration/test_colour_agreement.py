@@ -15,7 +15,7 @@ from kinetree.tasks.registration.refit import refit
 def agreed(colours: dict[int, VertexColour]) -> ColourAgreement:
     made = walk()
     reference = reference_colour(made.reference, colours)
-    return colour_agreement(made.deformation_graph, made.tracking, made.recovery, made.mesh, colours, reference)
+    return colour_agreement(made.deformation_graph, made.first_fit, made.recovery, made.mesh, colours, reference)
 
 
 def patterned() -> dict[int, VertexColour]:
@@ -56,7 +56,7 @@ def test_without_colours_nothing_is_measured_and_nothing_said() -> None:
 def test_pass_fits_by_colours_that_count_and_else_as_without() -> None:
     made = walk()
     t = next(t for t in made.mesh if t != made.reference.frame)
-    told = made.mesh[t], made.deformation_graph, made.tracking[t], made.recovery
+    told = made.mesh[t], made.deformation_graph, made.first_fit[t], made.recovery
     told = *told, made.stiffness[0], made.roll_candidates[0][t], made.roll[0], None, (0, t)
     without = refit(*told)
     painted, plain = patterned(), noise()

@@ -3,13 +3,13 @@
 import numpy as np
 from stepwise import walk
 
-from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.tasks.numerics.registration.deformation import shape
-from kinetree.tasks.registration.pose import graph, tracked_pose
+from kinetree.tasks.registration.pose import first_pose, graph
 from kinetree.tasks.registration.recovery import recovery
 
 
-def lost(tracked: Tracking, shift: float, uncovered: float) -> Tracking:
+def lost(tracked: FirstFit, shift: float, uncovered: float) -> FirstFit:
     moved = np.array(tracked.translation) + shift
     return tracked.model_copy(update={"translation": moved, "uncovered": uncovered})
 
@@ -18,8 +18,8 @@ def test_frame_in_which_tracking_did_not_fail_keeps_its_pose_bit_for_bit() -> No
     made = walk()
     assert not made.recovery.failed.any()
     assert not len(made.recovery.recovered)
-    for t, here in made.tracking.items():
-        pose = tracked_pose(here, made.recovery, t)
+    for t, here in made.first_fit.items():
+        pose = first_pose(here, made.recovery, t)
         assert np.array_equal(pose.rotation, here.rotation)
         assert np.array_equal(pose.translation, here.translation)
 
@@ -27,30 +27,30 @@ def test_frame_in_which_tracking_did_not_fail_keeps_its_pose_bit_for_bit() -> No
 def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     made = walk()
     body = graph(made.deformation_graph)
-    tracked = {**made.tracking, 3: lost(made.tracking[3], 0.5 * made.reference.size, 0.9)}
+    tracked = {**made.first_fit, 3: lost(made.first_fit[3], 0.5 * made.reference.size, 0.9)}
     found = recovery(made.deformation_graph, made.take_entries, tracked, made.mesh)
     assert found.recovered.tolist() == [3]
     assert found.failed.tolist() == [False, False, False, True, False]
     assert found.uncovered[3] == 0.9
     assert found.uncovered_after[0] < 0.02
-    again, true = tracked_pose(tracked[3], found, 3), tracked_pose(made.tracking[3], made.recovery, 3)
+    again, true = first_pose(tracked[3], found, 3), first_pose(made.first_fit[3], made.recovery, 3)
     assert np.linalg.norm(shape(body, again)[0] - shape(body, true)[0], axis=1).mean() < 0.01 * made.reference.size
 
 
 def test_lost_frame_beyond_is_no_help() -> None:
     made = walk()
-    gone, worse = (lost(made.tracking[t], 0.5 * made.reference.size, share) for t, share in ((3, 0.5), (4, 0.9)))
-    found = recovery(made.deformation_graph, made.take_entries, {**made.tracking, 3: gone, 4: worse}, made.mesh)
+    gone, worse = (lost(made.first_fit[t], 0.5 * made.reference.size, share) for t, share in ((3, 0.5), (4, 0.9)))
+    found = recovery(made.deformation_graph, made.take_entries, {**made.first_fit, 3: gone, 4: worse}, made.mesh)
     assert not len(found.recovered)
     assert found.failed[[3, 4]].all()
 
 
 def test_usual_share_is_the_smallest_but_for_the_reference() -> None:
     made = walk()
-    others = [t.uncovered for frame, t in made.tracking.items() if frame != made.reference.frame]
+    others = [t.uncovered for frame, t in made.first_fit.items() if frame != made.reference.frame]
     assert made.recovery.usual == min(others)
 
 
-def test_frame_that_nothing_is_learned_from_keeps_its_tracked_pose() -> None:
+def test_frame_that_nothing_is_learned_from_keeps_its_first_pose() -> None:
     made = walk()
     assert made.recovery.row(max(made.mesh) + 1) is None

@@ -25,7 +25,7 @@ def test_refitted_body_lies_closer_to_the_frames_than_the_tracked_one() -> None:
         x = {t: shape(body, pose(p))[0] for t, p in poses.items()}
         return np.mean([residuals(x[t], np.array(m.vertices), m.faces).mean() for t, m in made.mesh.items()])
 
-    assert residual(made.refit[-1]) < residual(made.tracking)
+    assert residual(made.refit[-1]) < residual(made.first_fit)
 
 
 def test_frame_is_fitted_by_itself() -> None:

@@ -18,14 +18,14 @@ def test_stiffness_is_above_nothing_and_at_most_one_and_some_edges_bend() -> Non
 def test_order_of_frames_does_not_matter() -> None:
     made = walk()
     mixed = tuple(made.refit[0][t] for t in (3, 0, 4, 1, 2))
-    again = stiffness(made.deformation_graph, made.tracking, made.recovery, mixed, made.stiffness[0], (1,))
+    again = stiffness(made.deformation_graph, made.first_fit, made.recovery, mixed, made.stiffness[0], (1,))
     assert again == made.stiffness[1]
 
 
 def test_body_that_never_moves_is_stiff_everywhere() -> None:
     made = walk()
     rest = made.refit[0][made.reference.frame]
-    still = stiffness(made.deformation_graph, made.tracking, made.recovery, (rest, rest), None, (0,))
+    still = stiffness(made.deformation_graph, made.first_fit, made.recovery, (rest, rest), None, (0,))
     assert np.allclose(still.stiffness, 1.0)
 
 

@@ -1,4 +1,4 @@
-"""Contract of tracking: at rest in the reference, on the body in every other frame, and a chain that goes on."""
+"""Contract of tracking: at rest in the reference, near the body in every other frame, and a chain that goes on."""
 
 from typing import Any
 
@@ -10,13 +10,16 @@ from shipped import FITTING
 from stepwise import along, walk
 
 from kinetree.schemas.registration.tracking import TrackingParams
+from kinetree.tasks.numerics.registration import first_fit as numeric_first_fit
 from kinetree.tasks.numerics.registration import recovery as numeric_recovery
 from kinetree.tasks.numerics.registration import tracking as numeric_tracking
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, shape
+from kinetree.tasks.numerics.registration.first_fit import last_steps
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
 from kinetree.tasks.numerics.registration.tracking import entered
-from kinetree.tasks.registration.pose import graph, pose
+from kinetree.tasks.registration.first_fit import first_fit
+from kinetree.tasks.registration.pose import fit_settings, graph, pose
 from kinetree.tasks.registration.recovery import recovery
 from kinetree.tasks.registration.tracking import tracking
 
@@ -24,7 +27,7 @@ from kinetree.tasks.registration.tracking import tracking
 def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbour() -> None:
     made = walk()
     rest = made.tracking[made.reference.frame]
-    assert (rest.steps, rest.uncovered, rest.attempt) == (0, 0.0, 0)
+    assert (rest.steps, rest.unexplained, rest.attempt) == (0, 0.0, 0)
     assert np.array_equal(rest.translation, made.deformation_graph.vertices[made.deformation_graph.nodes])
     for t, here in made.tracking.items():
         assert here.steps == abs(t - made.reference.frame)
@@ -34,20 +37,21 @@ def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbou
             assert np.array_equal(here.earlier_translation, before.translation)
 
 
-def test_body_lies_on_every_frame() -> None:
+def test_body_lies_near_every_frame_and_most_frames_need_few_points_alone() -> None:
     made = walk()
     body = graph(made.deformation_graph)
     for t, mesh in made.mesh.items():
         x, _ = shape(body, pose(made.tracking[t]))
-        assert residuals(x, np.array(mesh.vertices), mesh.faces).mean() < 0.01 * made.reference.size
+        assert residuals(x, np.array(mesh.vertices), mesh.faces).mean() < 0.015 * made.reference.size
+    assert sum(here.attempt > 0 for here in made.tracking.values()) < len(made.mesh) / 2
 
 
-def test_usual_is_the_least_uncovered_on_the_way_but_for_the_reference() -> None:
+def test_usual_is_the_x_on_the_way_but_for_the_reference() -> None:
     made = walk()
     for t, here in made.tracking.items():
         on_the_way, at = [], t
         while at != made.reference.frame:
-            on_the_way.append(made.tracking[at].uncovered)
+            on_the_way.append(made.tracking[at].unexplained)
             at = made.tracking_order.previous(at)
         assert here.usual == min(on_the_way, default=0.0)
 
@@ -69,8 +73,9 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
         index=made.numbers,
         params=TrackingParams(),
     )
-    assert again[strange].uncovered > 0.1
-    assert again[last].uncovered < 0.1
+    assert again[strange].attempt > 0, "few points show that a limb is lost, and all samples are asked"
+    assert again[strange].unexplained > 0.1
+    assert again[last].unexplained < 0.1
 
 
 OTHERS = TrackingParams(
@@ -78,36 +83,46 @@ OTHERS = TrackingParams(
 )
 
 
-def test_every_parameter_reaches_the_fit_and_the_fit_of_a_frame_that_is_tracked_again(
+def test_every_parameter_reaches_every_fit_with_all_samples(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     made = walk()
     fits: list[Any] = []
     fitted = numeric_tracking.tracking
 
-    def listening(body: Any, earlier: Any, neighbour: Any, target: Any, fitting: Any, **usual: float) -> Any:
+    def listening(body: Any, earlier: Any, neighbour: Any, target: Any, fitting: Any, *usual: Any, **distant: Any) -> Any:
         fits.append(fitting)
-        return fitted(body, earlier, neighbour, target, fitting, **usual)
+        return fitted(body, earlier, neighbour, target, fitting, *usual, **distant)
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
+    monkeypatch.setattr(numeric_first_fit, "tracking", listening)
     monkeypatch.setattr(numeric_recovery, "tracking", listening)
+    meshes = {**made.mesh, 1: made.mesh[1].model_copy(update={"vertices": made.mesh[1].vertices + 0.3 * made.reference.size})}
     first = along(
         tracking,
         made.tracking_order,
         [0, 1],
-        mesh=made.mesh,
+        mesh=meshes,
         deformation_graph=made.deformation_graph,
         take_entries=made.take_entries,
         index=made.numbers,
         params=OTHERS,
     )
-    assert not np.array_equal(first[0].translation, made.tracking[0].translation)
-    poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.tracking.items()}
-    count, poses[3] = len(fits), poses[3].model_copy(update={"uncovered": 0.9})
+    assert [values(fitting) for fitting in fits] == [OTHERS.model_dump()], "of a frame that few points lose"
+    near = first[0].model_copy(update={"attempt": 0})
+    fits.clear()
+    first_fit(made.mesh[0], made.deformation_graph, near)
+    assert [values(fitting) for fitting in fits] == [values(last_steps(fit_settings(OTHERS)))]
+    poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.first_fit.items()}
+    poses[3] = poses[3].model_copy(update={"uncovered": 0.9})
+    fits.clear()
     recovery(made.deformation_graph, made.take_entries, poses, made.mesh)
-    assert len(fits) > count > 0
-    for fitting in fits:
-        assert {name: getattr(fitting, name) for name in OTHERS.model_dump()} == OTHERS.model_dump()
+    assert [values(fitting) for fitting in fits] == [OTHERS.model_dump()]
+
+
+def values(fitting: Any) -> dict[str, Any]:
+    """What parameters set of a fit."""
+    return {name: getattr(fitting, name) for name in OTHERS.model_dump()}
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""One frame of the chain outwards from the reference: the graph fitted from its neighbour's pose, in several ways if needed.
+"""One frame fitted from its neighbour's pose with all samples, in several ways if needed.
 
 A paw that moves farther than the distance to the next paw is matched to the wrong leg, and every later frame inherits
 that. The share of the frame that the body leaves uncovered is then about ten times as large as in a good frame.
@@ -73,6 +73,8 @@ def tracking(
     fitting: FitSettings,
     usual: float = 0.0,
     settings: TrackingSettings | None = None,
+    *,
+    distant: float = 0.0,
 ) -> Tracking:
     """Fit a frame from its neighbour's pose; if a limb stays uncovered, try other ways and take what covers most (ours).
 
@@ -82,6 +84,7 @@ def tracking(
     target    : the frame
     fitting   : of the usual way
     usual     : smallest share that any frame between the reference and this one leaves uncovered: holes of a capture
+    distant   : smallest share of any such frame that is far from the body
     returns   : Tracking of the first way that leaves little uncovered, or little of the frame far from the body; where no way
                 does, of the one that covers most
     """
@@ -90,7 +93,7 @@ def tracking(
     best = _attempted(graph, neighbour, target, ways[0].settings, 0)
     for number, way in enumerate(ways[1:], start=1):
         is_covered = best.uncovered <= usual + settings.uncovered
-        if is_covered or distant_share(graph, best.pose, target, settings.distance) <= settings.distant:
+        if is_covered or distant_share(graph, best.pose, target, settings.distance) <= distant + settings.distant:
             break
         if way.predicted and earlier is None:
             continue

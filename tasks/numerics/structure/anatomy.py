@@ -124,9 +124,7 @@ def _votes(body: Motion, legs: tuple[Limb, ...], base: int, ahead: Floats, knees
             votes.append(2.0 / len(legs) * float(toes @ ahead) / max(float(np.linalg.norm(toes)), 1e-12))
     votes += [knees * vote for vote in _bends(body, legs, base, ahead, s)]
     way = np.diff(body.X[:, base], axis=0)
-    travelled = float(in_rest(body, base, np.concatenate([way, way[-1:]]) if len(way) else np.zeros((1, 3))) @ ahead) * len(
-        way
-    )
+    travelled = float(in_rest(body, base, np.concatenate([way, way[-1:]]) if len(way) else np.zeros((1, 3))) @ ahead) * len(way)
     return [*votes, float(np.clip(travelled / (s.travel * legs[0].length), -1.0, 1.0))]
 
 

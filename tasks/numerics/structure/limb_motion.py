@@ -11,7 +11,6 @@ APART = 0.05
 """Distance of two innermost joints from which on they say where left is, share of the length of both limbs."""
 
 
-
 class Motion(NamedTuple):
     """A skeleton over time.
 

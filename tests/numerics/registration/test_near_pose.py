@@ -1,0 +1,61 @@
+"""Laws of near poses: few points of both surfaces carry a pose from frame to frame, and show when a limb is lost."""
+
+import numpy as np
+from limbs import ANGLES, LENGTH, bent, tube
+
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
+from kinetree.tasks.numerics.registration.near_pose import (
+    NearPose,
+    NearPoseSettings,
+    distant_points,
+    is_lost,
+    near_pose,
+    thinned_body,
+    thinned_frame,
+)
+
+SETTINGS = NearPoseSettings()
+V, F = tube(around=29, along=57, start=0.07)
+
+
+def test_a_thinned_body_keeps_its_nodes_and_poses_its_points_as_the_body(body):
+    thin = thinned_body(body)
+    assert len(thin.V) < len(body.V)
+    np.testing.assert_array_equal(thin.g, body.g)
+    turned = Pose(at_rest(body).rotation, body.g + [1.0, 2.0, 3.0])
+    whole = shape(body, turned)[0]
+    assert all((np.abs(whole - x).max(axis=1) < 1e-12).any() for x in shape(thin, turned)[0])
+
+
+def test_a_thinned_frame_has_as_many_points_as_are_asked_for_and_each_is_its_own_neighbour(body):
+    frame = thinned_frame(V, F, body.size, SETTINGS._replace(samples=200))
+    assert len(frame.V) == 200
+    for point in range(200):
+        assert point in frame.ring[frame.start[point] : frame.start[point + 1]]
+    assert len(thinned_frame(V, F, body.size, SETTINGS._replace(samples=10**6)).V) == len(V)
+
+
+def test_near_poses_follow_a_limb_that_bends(body):
+    thin, last = thinned_body(body), at_rest(body)
+    for angle in ANGLES:
+        near = near_pose(thin, last, thinned_frame(bent(V, angle), F, body.size))
+        last = near.pose
+        assert not is_lost(near, 0.0)
+    error = np.linalg.norm(shape(body, last)[0] - bent(body.V, ANGLES[-1]), axis=1)
+    assert error.mean() < 0.02 * LENGTH
+
+
+def test_a_missing_half_is_lost_unless_it_is_usual(body):
+    longer = V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH]
+    near = near_pose(thinned_body(body), at_rest(body), thinned_frame(longer, F, body.size))
+    assert near.distant > 0.1
+    assert is_lost(near, 0.0)
+    assert not is_lost(near, near.distant)
+
+
+def test_the_distant_points_are_those_far_from_the_body(body):
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    rest = at_rest(body)
+    assert distant_points(thin, rest, frame) < SETTINGS.lost
+    assert distant_points(thin, Pose(rest.rotation, rest.translation + 10 * LENGTH), frame) == 1
+    assert is_lost(NearPose(rest, 1.0), 0.0)
