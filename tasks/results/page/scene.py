@@ -101,9 +101,7 @@ def scene(
     selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
     vertices = np.concatenate([m.vertices for m in shown]) @ axes
-    new_faces = [m.faces for m in shown if len(m.faces)]
-    points = [positions.reshape(-1, 3), vertices]
-    low, high = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
+    low, high = _corners(positions.reshape(-1, 3), vertices)
     lattice = Lattice.around(low, high)
     arrays: dict[str, NDArray[Any]] = {
         "positions": lattice.levels(positions),
@@ -111,10 +109,7 @@ def scene(
         "label": skeleton.label[selected].astype(np.int16),
         "joints": (skeleton.positions[selected_frames] @ axes).astype(np.float32),
         "input_vertices": lattice.levels(vertices),
-        "input_faces": np.concatenate(new_faces).astype(np.uint32),
-        "input_label": np.concatenate([_label(skeleton, m) for m in shown]).astype(np.int16),
-        "input_vertex_offsets": _offsets([len(m.vertices) for m in shown]),
-        "input_face_spans": _spans([len(m.faces) for m in shown]),
+        **_input(skeleton, shown),
     }
     if len(leaves.positions):
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
@@ -142,6 +137,21 @@ def scene(
         "arrays": layout,
     }
     return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
+
+
+def _corners(*points: Floats) -> tuple[Floats, Floats]:
+    """The lowest and the highest corner of the box around all points."""
+    return np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
+
+
+def _input(skeleton: Skeleton, shown: Sequence[CoarseMesh]) -> dict[str, NDArray[Any]]:
+    """Faces and parts of the input meshes, one after the other, and where each begins."""
+    return {
+        "input_faces": np.concatenate([m.faces for m in shown if len(m.faces)]).astype(np.uint32),
+        "input_label": np.concatenate([_label(skeleton, m) for m in shown]).astype(np.int16),
+        "input_vertex_offsets": _offsets([len(m.vertices) for m in shown]),
+        "input_face_spans": _spans([len(m.faces) for m in shown]),
+    }
 
 
 def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict[str, NDArray[Any]]:
