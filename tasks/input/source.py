@@ -18,7 +18,7 @@ from kinetree.tasks.numerics.input.bad_frames import (
     refuse_other_bodies,
 )
 from kinetree.tasks.numerics.input.frame_numbers import TAKE, selected_frames
-from kinetree.tasks.numerics.input.same_surfaces import have_same_measures, have_same_vertices
+from kinetree.tasks.numerics.input.same_surfaces import have_same_frames, have_same_measures, surface_distance
 
 
 @origin(over="frame")
@@ -82,7 +82,14 @@ def _are_same(
         return True
     if not have_same_measures(measures, other_measures) or any(files.is_remote(f.path) for pair in pairs for f in pair):
         return False
-    return all(have_same_vertices(*surface(a), *surface(b)) for a, b in pairs)
+
+    def apart(t: int, u: int) -> float:
+        return surface_distance(*surface(pairs[t][0]), *surface(pairs[u][1]))
+
+    def changed(t: int, u: int) -> float:
+        return surface_distance(*surface(pairs[t][0]), *surface(pairs[u][0]))
+
+    return have_same_frames(len(pairs), apart, changed)
 
 
 def _usable(sources: Mapping[int, Source], params: SourceParams, files: Files) -> dict[int, Source]:

@@ -431,6 +431,25 @@ def test_takes_that_differ_by_one_vertex_are_two(files, tmp_path):
     assert len(source(SourceParams(takes=takes), files)) == 6
 
 
+def test_a_body_that_stands_still_twice_is_two_takes_and_a_copy_of_one_is_not(files, tmp_path):
+    egg = trimesh.creation.icosphere(subdivisions=3)
+    egg.vertices *= (1.0, 2.0, 3.0)
+    for take, seed in (("a", 0), ("b", 1)):
+        rng = np.random.default_rng(seed)
+        (tmp_path / take).mkdir()
+        for t in range(6):
+            moved = egg.vertices + rng.normal(scale=2e-4, size=egg.vertices.shape)
+            trimesh.Trimesh(moved, egg.faces, process=False).export(tmp_path / take / f"frame_{t}.ply")
+    copy = tmp_path / "copy"
+    copy.mkdir()
+    for file in (tmp_path / "b").iterdir():
+        trimesh.load(file, process=False).export(copy / f"{file.stem}.obj")
+    takes = [{"name": n, "input": str(tmp_path / n)} for n in ("a", "b", "copy")]
+    assert len(source(SourceParams(takes=takes[:2]), files)) == 12
+    with pytest.raises(SourceError, match="b and copy have the same frames"):
+        source(SourceParams(takes=takes), files)
+
+
 def test_takes_of_other_measures_are_not_read_again(files, tmp_path, monkeypatch):
     takes = [{"name": n, "input": moving(tmp_path / n, "ply", width=w)} for n, w in (("a", 1.0), ("b", 1.05))]
     monkeypatch.setattr("kinetree.tasks.input.source.surface", lambda _: pytest.fail("it is read"))
