@@ -43,6 +43,7 @@ class Graph:
         _one_writer_each(unordered.tasks)
         _every_edge_has_a_writer(unordered)
         _every_space_is_opened_once(unordered)
+        _blocks_are_those_of_tasks(unordered)
         ordered = Graph(_ordered(unordered))
         for task in ordered.tasks:
             for argument in task.arguments:
@@ -247,6 +248,16 @@ def _every_edge_has_a_writer(graph: Graph) -> None:
                 raise MissingWriterError(
                     f"{task.name} ({task.where}): {what} is {artifact.__name__} ({artifact.__module__}), which no task writes"
                 )
+
+
+def _blocks_are_those_of_tasks(graph: Graph) -> None:
+    for task in graph.tasks:
+        owner = graph.by_name.get(task.block)
+        if task.params is not None and (owner is None or owner.params is not task.params):
+            raise GraphError(
+                f"{task.name} ({task.where}): is set by the block {task.block}, but there is no task of that name"
+                f" with {task.params.__name__}"
+            )
 
 
 def _every_space_is_opened_once(graph: Graph) -> None:

@@ -23,7 +23,7 @@ from kinetree.schemas.array import Artifact, Params
 
 DECLARING = ("task", "graph", "graph_cache")
 """Modules of this folder that decide what a signature says."""
-PLAIN = ("name", "is_origin", "on_request", "asks_index", "threads", "retries", "timeout", "memory", "is_linked")
+PLAIN = ("name", "is_origin", "on_request", "asks_index", "threads", "retries", "timeout", "memory", "block", "is_linked")
 CLASSES = ("params", "returns", "along", "among")
 REMEDY = "delete the folder kinetree/graphs of the user's cache"
 Row = Mapping[str, Any]

@@ -94,6 +94,8 @@ class Task(Generic[P, R]):
     """Seconds that one node may take on a worker; None sets no limit."""
     memory: int | None = None
     """Bytes that one node needs while it is computed; None takes what earlier nodes of the task needed."""
+    block: str = ""
+    """The block of the configuration that sets it: its own name, or that of another task with the same parameters."""
     is_linked: bool = False
     """Whether its artifacts were made by another graph and are read from the store by digest."""
 
@@ -145,6 +147,7 @@ def task(
     retries: int = 1,
     timeout: float | None = None,
     memory: int | None = None,
+    block: str | None = None,
 ) -> Callable[[Callable[P, R]], Task[P, R]]:
     """Declares a function as a task; see the module's docstring for what its signature says.
 
@@ -159,6 +162,7 @@ def task(
                  process cannot be ended: it is given up and goes on. The executor `sync` has no limit
     memory     : bytes that one node needs; workers that declare a resource `memory` compute no more at a time than fits.
                  None takes the most that a node of the task was measured to need
+    block      : the block of the configuration that sets `params`, where that is another task's with the same class of params
     raises     : GraphError, at import, where the signature does not say enough
     """
 
@@ -171,7 +175,10 @@ def task(
             raise GraphError(f"{place}: timeout is {timeout} and memory is {memory}; expected more than 0 seconds and bytes")
         if among is not None and not among.selects:
             raise GraphError(f"{place}: is among {among.__name__}, which selects nothing")
+        if block is not None and declared.params is None:
+            raise GraphError(f"{place}: is set by the block {block}, but takes no params")
         limited = replace(declared, threads=threads, retries=retries, timeout=timeout, memory=memory)
+        limited = replace(limited, block=block or declared.name)
         return replace(limited, among=among, on_request=on_request)
 
     return declare
@@ -250,7 +257,7 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
     _refuse_bad_traversal(made, place)
     if asks_index and not over:
         raise GraphError(f"{place}: asks for its index, but runs once and has none; say over what it runs")
-    return replace(made, asks_index=asks_index)
+    return replace(made, asks_index=asks_index, block=made.name)
 
 
 def _refuse_bad_traversal(task: Task[..., Any], place: str) -> None:

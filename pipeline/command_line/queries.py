@@ -206,7 +206,7 @@ def _read(argument: dict[str, Any]) -> str:
 def _task_row(task: Any) -> dict[str, Any]:
     from kinetree.pipeline.settings.sentences import sentences
 
-    fields, told = (task.params.model_fields, sentences(task.params)) if task.params else ({}, {})
+    fields, told = (task.params.model_fields, sentences(task.params)) if task.params and task.block == task.name else ({}, {})
     return {
         "task": task.name,
         "over": "/".join(task.over),

@@ -73,7 +73,7 @@ class Freshness:
             for argument, nodes in entry.inputs or ()
         ]
         return Work(
-            self.params.get(entry.node.task, {}),
+            self.params.get(entry.task.block, {}),
             code_parts(entry.task.module, entry.task.name),
             inputs,
             asked_index(entry),

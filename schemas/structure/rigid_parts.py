@@ -1,11 +1,10 @@
 """The rigid parts of the body, and the cut that they were made from (2014, Sec. 6.1 and 6.2)."""
 
-from collections.abc import Sequence
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
 from kinetree.schemas.dims import ANNULUS, CONE, FRAME, PART, REMOVAL, ROW, VERTEX, XYZ
 
 
@@ -26,14 +25,9 @@ class RigidParts(Artifact):
     """Which vertex of the reference mesh belongs to which rigid part, how the parts move, and how they were found.
 
     A reference mesh of more than 14,000 vertices is cut at a sample of them: every other vertex has the values of the nearest
-    vertex of the sample. Each frame in whose pose the body is cut once more is a member of "cut".
+    vertex of the sample.
     """
 
-    opens: ClassVar[tuple[str, ...]] = ("cut",)
-    further: tuple[int, ...] = ()
-    """Source frame numbers of the poses in which the body is cut once more, in the order in which they were chosen."""
-    settings: RigidPartsParams = RigidPartsParams()
-    """How it was cut; further cuts are made alike."""
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     label: Annotated[Ints, Array("int32", VERTEX)]
@@ -68,7 +62,3 @@ class RigidParts(Artifact):
     """Cost from which on a part stays; above the parameter where the body is soft or badly aligned."""
     origin: Annotated[Ints, Array("int32", PART)]
     """Part of the first cut that each rigid part has grown from; parts that are in neither list lost all their vertices."""
-
-    def members(self, space: str, index: Index) -> Sequence[int]:
-        """The frames of further cuts."""
-        return sorted(self.further)

@@ -1,5 +1,6 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
+from kinetree.tasks.structure.cut_poses import cut_poses
 from kinetree.tasks.structure.error_bars import error_bars
 from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.further_pose import further_pose
@@ -11,6 +12,7 @@ from kinetree.tasks.structure.skeleton import skeleton
 
 STRUCTURE = (
     rigid_parts,
+    cut_poses,
     further_cut,
     kinematic_tree,
     pose_refinement,

@@ -9,8 +9,8 @@ from kinetree.schemas.array import Index
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
@@ -21,7 +21,7 @@ from kinetree.tasks.structure.rigid_parts import parts_settings
 
 @task(over="cut", among=Sequence)
 def further_cut(
-    rigid_parts: RigidParts, reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, index: Index
+    cut_poses: CutPoses, reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, index: Index
 ) -> FurtherCut:
     """Divides the surface as it lies in another frame, by the settings of `rigid_parts` (ours)."""
     (frame,) = index
@@ -32,7 +32,7 @@ def further_cut(
         np.stack([a.vertices for a in aligned]),
         limited_confidence(np.stack([a.confidence for a in aligned])),
         leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
-        settings=parts_settings(rigid_parts.settings),
+        settings=parts_settings(cut_poses.settings),
         takes=take_spans(tuple(alignment)),
     )
     return FurtherCut(frame=frame, label=parts.label, rotation=parts.R, translation=parts.t, residual=parts.residual)

@@ -14,7 +14,6 @@ from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
-from kinetree.tasks.numerics.structure.further_cut import distinct_poses
 from kinetree.tasks.numerics.structure.given_correspondence import limited_confidence
 from kinetree.tasks.numerics.structure.oversegmentation import OversegmentationSettings
 
@@ -36,11 +35,8 @@ def rigid_parts(
         settings=parts_settings(params),
         takes=take_spans(frames),
     )
-    further = distinct_poses(x, confidence, frames.index(reference.frame), params.cuts - 1)
     return RigidParts(
         frames=frames,
-        further=tuple(frames[t] for t in further),
-        settings=params,
         label=parts.label,
         rigid=parts.rigid,
         rotation=parts.R,

@@ -235,3 +235,28 @@ GRAPH = Graph.of((source, row, link, mark))
     sent = [labels for _, labels in sent_by_run(toys.pipeline().schedule())]
     links = [[f"link[frame={n}]" for n in range(STRETCH * k, STRETCH * (k + 1))] for k in range(2)]
     assert sent == [["row"], *links, *([f"mark[frame={n}]"] for n in range(2 * STRETCH))]
+
+
+def test_a_task_may_be_set_by_the_block_of_another(toys):
+    marked = '''
+
+class Mark(Artifact):
+    """What the block of the row says."""
+
+    first: int
+    """Frame number."""
+
+
+@task(block="row")
+def mark(link: tuple[Link, ...], params: RowParams) -> Mark:
+    return Mark(first=params.first)
+
+
+GRAPH = Graph.of((source, row, link, mark))
+'''
+    (toys.folder / toys.name / "chain.py").write_text(CHAIN.replace("range(2000)", "range(3)") + marked)
+    toys.main = "chain"
+    toys.run()
+    assert "mark" not in toys.pipeline().config.params
+    assert "mark" in toys.run(row={"first": 2}).counts
+    assert toys.pipeline(row={"first": 2}).artifact("mark").first == 2

@@ -172,6 +172,18 @@ def test_traversal_that_no_task_writes_is_refused():
     assert told == f"vine ({vine.where}): the traversal it goes along is Order ({__name__}), which no task writes"
 
 
+def test_a_block_that_no_task_with_these_params_has_is_refused():
+    @task(block="seeds")
+    def sown(seed: Seed, params: SeedParams) -> Fruit:
+        """Grows."""
+        return Fruit()
+
+    told = refusal(GraphError, seed, sown)
+    assert told == f"sown ({sown.where}): is set by the block seeds, but there is no task of that name with SeedParams"
+    with pytest.raises(GraphError, match="is set by the block seed, but takes no params"):
+        task(over="day", block="seed")(leaf.function)
+
+
 def test_cycle_is_refused_naming_every_place():
     @task()
     def egg(harvest: Harvest) -> Order:

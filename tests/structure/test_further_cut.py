@@ -4,17 +4,17 @@ import numpy as np
 from aligned_body import FIRST, given
 from articulated import three_arms
 
+from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.rigid_parts import RigidPartsParams
 from kinetree.tasks.structure.further_cut import further_cut
-from kinetree.tasks.structure.rigid_parts import rigid_parts
 
 
 def cut(frame: int, **params: float) -> FurtherCut:
     body = three_arms()
     reference, aligned, leaves = given(body.V, body.F, body.x)
-    first = rigid_parts(reference, aligned, leaves, RigidPartsParams(**params))
-    return further_cut(first, reference, aligned, leaves, (frame,))
+    poses = CutPoses(frames=(frame,), settings=RigidPartsParams(**params))
+    return further_cut(poses, reference, aligned, leaves, (frame,))
 
 
 def test_parts_are_carried_from_the_pose_of_the_cut() -> None:

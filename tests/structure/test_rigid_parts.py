@@ -46,13 +46,3 @@ def test_a_stiff_sequence_is_one_part() -> None:
 def test_a_bar_out_of_reach_leaves_one_part() -> None:
     body = three_arms()
     assert told(body.V, body.F, body.x, removal_cost=10.0).rotation.shape[1] == 1
-
-
-def test_further_cuts_are_in_other_poses_and_one_cut_has_none() -> None:
-    body = three_arms()
-    found, alone = told(body.V, body.F, body.x, cuts=3), told(body.V, body.F, body.x, cuts=1)
-    assert len(set(found.further) - {FIRST + 2}) == 2
-    assert found.members("cut", ()) == sorted(found.further)
-    assert alone.further == ()
-    for name in RigidParts.array_fields():
-        np.testing.assert_array_equal(getattr(found, name), getattr(alone, name))
