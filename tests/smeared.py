@@ -2,6 +2,7 @@
 
 import numpy as np
 from articulated import Known, chain, moved, swings
+from limbs import rotation
 from shipped import EVIDENCE, TREE
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
@@ -20,11 +21,13 @@ def turning(degrees: float = 25.0) -> Floats:
     return turn
 
 
-def aligned(turn: Floats) -> Known:
-    """The body as aligned: the last part goes with the middle one."""
+def aligned(turn: Floats, bent: float = 0.0) -> Known:
+    """The body as aligned: the last part goes with the middle one; the reference shows it bent by so many degrees."""
     body, still = chain((0.0, END), turn, along=60), turn.copy()
     still[:, 0] = still[:, 2] = np.eye(3)
-    return moved(body.V, body.F, body.W, body.joints, body.parents, still)
+    V, hinge, far = body.V.copy(), np.array([0.0, 0.0, END]), body.V[:, 2] > END
+    V[far] = (V[far] - hinge) @ rotation((1.0, 0.0, 0.0), np.radians(bent)).T + hinge
+    return moved(V, body.F, body.W, body.joints, body.parents, still)
 
 
 def found_in(body: Known) -> tuple[MovingSurface, TreeJoints]:

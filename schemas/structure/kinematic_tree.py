@@ -74,6 +74,8 @@ class KinematicTree(ArticulatedBody):
     """Cuts that have each joint; 0 for root and leaves."""
     joint_residual: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Root mean square of what the motions of the joint's two parts leave unexplained; 0 for root and leaves."""
+    end_joints: tuple[int, ...] = ()
+    """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
 
     @property
     def length_variation(self) -> Floats:

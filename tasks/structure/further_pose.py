@@ -1,6 +1,7 @@
 """The finished body posed in a frame that it was not learned from."""
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -29,12 +30,13 @@ def further_pose(kinematic_tree: KinematicTree, mesh: Mapping[int, Mesh], alignm
     x, confidence = np.array(aligned.vertices), np.array(aligned.confidence)
     known = KnownPoses(tree.rotation[:, moving], tree.confidence[:, moving])
     distance = np.abs(np.array(tree.frames) - frame)
-    found = numerics.further_pose(body, x, limited_confidence(confidence), known, distance)
+    surface = cache(lambda: Target.of(np.array(here.vertices), here.faces, body.size, SAMPLE))
+    ends = part[list(tree.end_joints)].tolist()
+    found = numerics.further_pose(body, x, limited_confidence(confidence), known, distance, ends, surface)
     pose, sure, moved = found.pose, found.confidence, False
     if not is_given(confidence, np.array(aligned.residual)) and needs_refinement(sure):
-        target = Target.of(np.array(here.vertices), here.faces, body.size, SAMPLE)
         among = KnownPoses(np.concatenate([known.R, pose.R[None]]), np.concatenate([known.confidence, sure[None]]))
-        fit = refined_pose(body, pose, target, x, confidence, among, len(known.R))
+        fit = refined_pose(body, pose, surface(), x, confidence, among, len(known.R))
         pose, sure, moved = fit.pose, fit.confidence, fit.moved
     return FurtherPose(
         frame=frame,

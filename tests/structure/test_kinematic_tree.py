@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from articulated import Known, chain, swings, three_arms
 from pydantic import ValidationError
-from smeared import Frames, aligned, turning
+from smeared import END, Frames, aligned, turning
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
@@ -128,6 +128,9 @@ def test_joints_at_ends_are_looked_for_where_connectivity_changes_and_only_if_as
     two = body._replace(label=(body.V[:, 2] > 0.0).astype(np.int64), R=body.R[:, :2], t=body.t[:, :2])
     asked, not_asked = (told(two, confidence, shown=true, end_joints=flag) for flag in (True, False))
     assert asked.kinds.count("joint") == 2
+    (end,) = asked.end_joints
+    assert asked.rest[end, 2] == pytest.approx(END, abs=0.4)
+    assert not_asked.end_joints == ()
     assert not_asked.kinds.count("joint") == 1
 
 

@@ -36,14 +36,25 @@ class EndCut(NamedTuple):
     centre : (xyz,) of the ring in the reference, mesh unit
     radius : of the ring, mesh unit
     own    : (own,) vertices of the part
-    far    : (own,) whether each lies beyond the ring
+    beyond : (own,) how far each lies beyond the ring along the surface, negative before it, mesh unit
     """
 
     part: int
     centre: Floats
     radius: float
     own: Ints
-    far: Flags
+    beyond: Floats
+
+    @property
+    def far(self) -> Flags:
+        """(own,) whether each vertex lies beyond the ring."""
+        return np.asarray(self.beyond >= 0.0)
+
+    @property
+    def share(self) -> Floats:
+        """(own,) of each vertex that the piece beyond carries: skin blends over half a radius on either side of the ring."""
+        s = np.clip(0.5 + self.beyond / self.radius, 0.0, 1.0)
+        return np.asarray(s * s * (3.0 - 2.0 * s))
 
 
 def end_cuts(
@@ -78,7 +89,7 @@ def _ring(V: Floats, part: int, own: Ints, distance: Floats, inside: Ints, level
     middle = (V[a] + V[b]) / 2
     centre = middle.mean(axis=0)
     radius = float(np.sqrt(((middle - centre) ** 2).sum(axis=1).mean()))
-    return EndCut(part, centre, radius, own, distance[own] >= level)
+    return EndCut(part, centre, radius, own, distance[own] - level)
 
 
 def _is_wide(cut: EndCut, area: Floats, joint: Floats, chosen: EndCutsSettings) -> bool:

@@ -5,7 +5,7 @@ can find it. The frames show it: with one more hinge the last part of the limb l
 surface of its own, so the hinge's turn in one frame agrees with that in the next only where something turns.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,45 +16,49 @@ from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
+from kinetree.tasks.numerics.structure.hinged_piece import (
+    SAMPLE,
+    HingedFit,
+    laid_as_one,
+    laid_hinged,
+    motions,
+    sampled_piece,
+)
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
+from kinetree.tasks.numerics.structure.ring_evidence import RingEvidence, judged_frames, ring_evidence
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 
-FEWEST_PAIRS = 3
-"""Pairs of frames that follow each other, below which nothing is said of a ring."""
-
 
 class EndJointsSettings(NamedTuple):
-    """What makes a joint. Chosen on wave, dance, ballet, wolf, people 0, 1, 5, 6, 7, four-legged 5, 6 and random trees 1, 6."""
+    """What makes a joint.
 
-    least_score: float = 0.026
-    """Score of a ring (`ring_score`), at least. Of 15 true joints of these bodies 12 had more, up to 0.19; of rings where
-    nothing turns one, a paw with 18 vertices on one side."""
+    Turns were chosen on wave, dance, ballet, wolf, people 0, 1, 5, 6, 7, four-legged 5, 6 and random trees 1, 6.
+    """
+
+    least_score: float = 0.015
+    """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf and people 0, 1, 5, 6, 7, some at half
+    and a quarter of their frame rate: of 13 true joints 12 had 0.016 to 0.087, rings where nothing turns 0.010 at most."""
     nearer: float = 4.0
     """Root mean square turn of the nearer piece against the part above, degrees, as `degrees`, at least: where it turns less it
     belongs to the part above, and the joint that is there lies at a wrong place. There it was 3.4° at most, at true joints
     6.1° or more."""
     degrees: float = 2.0
     """Root mean square turn that agrees from frame to frame, at least: that of a swing over 6°, which other joints need."""
-    better: float = 0.98
-    """What is left with another turn to start from, share of what is left without, at most. Not recorded."""
     most_frames: int = 40
     """Frames of each take in which rings are judged, about, evenly spread runs of two; for time."""
-    points: int = 250
-    """Points of a part, about; for time."""
-    sample: int = 6000
-    """Vertices that stand for a frame's surface; for time."""
 
 
 class EndJoint(NamedTuple):
     """A joint within the last part of a limb, and how the piece beyond it moves.
 
     cut      : where it lies
-    R, t     : (frame, 3, 3) · (frame, xyz) of the piece beyond, from the reference; of the whole part where it is not seen
+    R, t     : (frame, 2, 3, 3) · (frame, 2, xyz) of the nearer piece and of that beyond, from the reference; of the whole part
+               where it is not seen
     residual : (frame,) root mean square distance from the surface, mesh unit
     shown    : (frame,) whether the frame's surface shows the part
-    score    : see `ring_score`
+    score    : see `ring_evidence`
     """
 
     cut: EndCut
@@ -65,12 +69,41 @@ class EndJoint(NamedTuple):
     score: float
 
 
-class _Hinged(NamedTuple):
-    """A ring in one frame: what is left of the part as one piece, and with the hinge, mesh unit² · the latter."""
+class _Ring(NamedTuple):
+    """A ring, points of its part, and how the part lies in the frames so far."""
 
-    one: float
-    two: float
-    pose: PiecePose
+    cut: EndCut
+    piece: Piece
+    fits: dict[int, HingedFit]
+
+    def within(self, span: Ints) -> "_Ring":
+        """The same with the frames from the first to before the last of a span alone."""
+        return self._replace(fits={f: fit for f, fit in self.fits.items() if span[0] <= f < span[1]})
+
+
+class _Frames(NamedTuple):
+    """The tree, which frames show its parts (frame, part), their surfaces as in `end_joints`, the size of the body."""
+
+    found: TreeJoints
+    shown: Flags
+    surface: Callable[[int], tuple[Floats, Ints]]
+    size: float
+
+    def above(self, part: int) -> int:
+        """The part on which a part hangs."""
+        return int(self.found.left.part_tree.tree.parents[part])
+
+    def goal(self, f: int, ring: _Ring) -> Floats:
+        """(xyz,) where the rest of the body has the joint of a ring's part, mesh unit."""
+        p = self.above(ring.cut.part)
+        return np.asarray(self.found.R[f, p] @ ring.piece.joint + self.found.t[f, p])
+
+    def showing(self, which: Iterable[int], rings: Sequence[_Ring]) -> Iterator[tuple[int, Target, list[int]]]:
+        """Frames that show some of the rings' parts, their surfaces, and which rings these are."""
+        for f in map(int, which):
+            there = [k for k, ring in enumerate(rings) if self.shown[f, ring.cut.part]]
+            if there:
+                yield f, Target.of(*self.surface(f), self.size, SAMPLE), there
 
 
 def end_joints(
@@ -87,183 +120,95 @@ def end_joints(
     """
     chosen = settings or EndJointsSettings()
     parents = found.left.part_tree.tree.parents
-    cuts = list(end_cuts(body, found.label, parents, found.rest))
-    if not cuts:
-        return []
+    rings = _rings(body, found, list(end_cuts(body, found.label, parents, found.rest)))
     share = confident_share(found.label, body.area, confidence, len(body.x), len(parents))
     shown = np.minimum(share, share[:, np.maximum(parents, 0)]) >= FramePosesSettings().seen
-    pieces = _pieces(body, found, cuts, chosen.points)
-    fits: list[dict[int, _Hinged]] = [{} for _ in cuts]
+    frames = _Frames(found, shown, surface, body.size)
     judged, pairs = judged_frames(len(body.x), body.takes, chosen.most_frames)
-    _fit(found, pieces, cuts, shown, surface, judged, fits, body.size, chosen)
-    kept = _evident(body, found, cuts, fits, pairs, chosen)
-    others = np.setdiff1d(np.arange(len(body.x)), judged)
-    best = [k for k, _ in kept]
-    some = [fits[k] for k in best]
-    _fit(found, [pieces[k] for k in best], [cuts[k] for k in best], shown, surface, others, some, body.size, chosen)
-    return [_joint(found, cuts[k], fits[k], score) for k, score in kept]
+    _lay(frames, judged, rings)
+    evident = _evident(frames, rings, pairs, score_spans(len(body.x), body.takes), chosen)
+    _lay(frames, np.setdiff1d(np.arange(len(body.x)), judged), [ring for ring, _ in evident])
+    return [_joint(found, ring, score) for ring, score in evident]
 
 
-def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple[Ints, Ints]:
-    """Frames in which rings are judged, ascending · (pair, 2) which of them follow each other in one take.
-
-    count : how many frames there are
-    most  : how many of each take are judged, about; if it has more, runs of two
-    """
-    spans = [np.arange(count)[take] for take in takes or [slice(0, count)]]
-    pairs = np.concatenate([_neighbours(span, most) for span in spans])
-    return np.unique(pairs), pairs
+def _rings(body: MovingSurface, found: TreeJoints, cuts: Sequence[EndCut]) -> list[_Ring]:
+    """The rings with points of their parts."""
+    N = smoothed_normals(body.V, body.F)
+    return [
+        _Ring(c, sampled_piece(body.V[c.own], N[c.own], found.W[c.own, c.part], c.far, c.centre, found.rest[c.part]), {})
+        for c in cuts
+    ]
 
 
-def _neighbours(span: Ints, most: int) -> Ints:
-    """(pair, 2) frames of a take that follow each other, evenly spread if it has more than `most` frames."""
-    pairs = np.stack([span[:-1], span[1:]], axis=1)
-    if len(span) > most and len(pairs):
-        pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
-    return pairs
+def _lay(frames: _Frames, which: Ints, rings: Sequence[_Ring]) -> None:
+    """Adds how the pieces lie in some frames, frame by frame, so that each begins where it was last."""
+    R, t = frames.found.R, frames.found.t
+    for f, target, there in frames.showing(which, rings):
+        whole: dict[int, PieceFit] = {}
+        for cut, piece, fits in (rings[k] for k in there):
+            goal = frames.goal(f, _Ring(cut, piece, fits))
+            if cut.part not in whole:
+                start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
+                whole[cut.part] = laid_as_one(piece, start, goal, target)
+            fits[f] = laid_hinged(piece, whole[cut.part], goal, target, _nearest(fits, f))
 
 
-def ring_score(one: Floats, two: Floats, w: Floats, v: Floats) -> tuple[float, float]:
-    """How clearly a hinge shows, and its root mean square turn that agrees from frame to frame, degrees.
-
-    The score is by how much farther the part lies from the surfaces as one piece than with the hinge, share of the latter,
-    times the correlation of the hinge's turn with that of the next frame: 1 for a slow turn, 0 for noise.
-
-    one, two : (frame,) mean squared distance as one piece, with the hinge
-    w, v     : (pair, xyz) turns about their mean in two frames that follow each other, radian
-    """
-    agreeing = max(float((w * v).sum(axis=1).mean()), 0.0)
-    alike = agreeing / max(float((w**2 + v**2).sum(axis=1).mean()) / 2.0, 1e-300)
-    gain = np.sqrt(one.sum() / max(two.sum(), 1e-300)) - 1.0
-    return float(gain * alike), float(np.degrees(np.sqrt(agreeing)))
-
-
-def _pieces(body: MovingSurface, found: TreeJoints, cuts: Sequence[EndCut], points: int) -> list[Piece]:
-    """Points of every cut's part, those that follow it most with most weight."""
-    N, pieces = smoothed_normals(body.V, body.F), []
-    for cut in cuts:
-        at = slice(None, None, max(len(cut.own) // points, 1))
-        v = cut.own[at]
-        mass = np.maximum(found.W[v, cut.part], 1e-3) ** 2
-        pieces.append(Piece(body.V[v], N[v], mass, cut.far[at], cut.centre, found.rest[cut.part]))
-    return pieces
-
-
-def _fit(
-    found: TreeJoints,
-    pieces: Sequence[Piece],
-    cuts: Sequence[EndCut],
-    shown: Flags,
-    surface: Callable[[int], tuple[Floats, Ints]],
-    frames: Ints,
-    fits: Sequence[dict[int, _Hinged]],
-    size: float,
-    chosen: EndJointsSettings,
-) -> None:
-    """Adds how the pieces lie in some frames to `fits`, frame by frame, so that each begins where it was last."""
-    parents = found.left.part_tree.tree.parents
-    for f in frames:
-        if not any(shown[f, cut.part] for cut in cuts):
-            continue
-        V, F = surface(int(f))
-        target, whole = Target.of(V, F, size, chosen.sample), {}
-        for piece, cut, known in zip(pieces, cuts, fits, strict=True):
-            p = cut.part
-            if not shown[f, p]:
-                continue
-            goal = found.R[f, parents[p]] @ piece.joint + found.t[f, parents[p]]
-            if p not in whole:
-                whole[p] = _as_one(piece, PiecePose(found.R[f, p], found.t[f, p], np.eye(3)), goal, target)
-            known[int(f)] = _hinged(piece, whole[p], goal, target, _nearest(known, int(f)), chosen)
-
-
-def _as_one(piece: Piece, start: PiecePose, goal: Floats, target: Target) -> PieceFit:
-    """The part as one piece."""
-    y, n, _ = placed_piece(piece, start)
-    return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=False)
-
-
-def _hinged(
-    piece: Piece, one: PieceFit, goal: Floats, target: Target, turn: Floats | None, chosen: EndJointsSettings
-) -> _Hinged:
-    """The part with the hinge, from where it lies as one piece, and with the turn of another frame if that is better."""
-    best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
-    if turn is not None:
-        start = one.pose._replace(Q=turn)
-        y, n, _ = placed_piece(piece, start)
-        other = piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=True)
-        if other.cost(piece.mass) < chosen.better * best.cost(piece.mass):
-            best = other
-    return _Hinged(one.cost(piece.mass), best.cost(piece.mass), best.pose)
-
-
-def _nearest(known: dict[int, _Hinged], f: int) -> Floats | None:
+def _nearest(known: dict[int, HingedFit], f: int) -> Floats | None:
     """(3, 3) the turn in the nearest frame that is known; None where none is."""
     return known[min(known, key=lambda g: (abs(g - f), g))].pose.Q if known else None
 
 
-class _Evidence(NamedTuple):
-    """What a ring shows over some frames: see `ring_score`; how many times more is left as one piece; turns, degrees."""
-
-    score: float
-    gain: float
-    far: float
-    near: float
-
-
 def _evident(
-    body: MovingSurface,
-    found: TreeJoints,
-    cuts: Sequence[EndCut],
-    fits: Sequence[dict[int, _Hinged]],
-    pairs: Ints,
-    chosen: EndJointsSettings,
-) -> list[tuple[int, float]]:
+    frames: _Frames, rings: Sequence[_Ring], pairs: Ints, spans: Ints, chosen: EndJointsSettings
+) -> list[tuple[_Ring, float]]:
     """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score.
 
     A part's rings are judged over all frames, or over those of the take in which one of them shows most.
     """
-    spans, parents = score_spans(len(found.R), body.takes), found.left.part_tree.tree.parents
-    rings: dict[int, dict[int, list[_Evidence]]] = {}
-    for k, (cut, fit) in enumerate(zip(cuts, fits, strict=True)):
-        rings.setdefault(cut.part, {})[k] = [_evidence(found.R[:, parents[cut.part]], fit, pairs, span) for span in spans]
-    kept = []
-    for _, shown in sorted(rings.items()):
-        at = int(np.argmax([max(ring[s].score for ring in shown.values()) for s in range(len(spans))]))
-        enough = [(ring[at].gain, k) for k, ring in shown.items() if ring[at].score >= chosen.least_score]
-        if enough:
-            k = max(enough)[1]
-            turns = shown[k][at].far >= chosen.degrees and max(e.near for e in shown[k]) >= chosen.nearer
-            kept += [(k, shown[k][at].score)] if turns else []
+    table, kept = [_judged(frames, rings, pairs, span, chosen.least_score) for span in spans], []
+    for part in sorted({ring.cut.part for ring in rings}):
+        own = [k for k, ring in enumerate(rings) if ring.cut.part == part]
+        best = table[int(np.argmax([max(row[k].score for k in own) for row in table]))]
+        enough = [(best[k].gain, k) for k in own if best[k].score >= chosen.least_score]
+        k = max(enough)[1] if enough else own[0]
+        if enough and best[k].far >= chosen.degrees and max(row[k].near for row in table) >= chosen.nearer:
+            kept.append((rings[k], best[k].score))
     return kept
 
 
-def _evidence(above: Floats, fit: dict[int, _Hinged], pairs: Ints, span: Ints) -> _Evidence:
-    """What a ring shows in the frames of a span; above (frame, 3, 3) the motion of the part above."""
-    mine = {f: hinged for f, hinged in fit.items() if span[0] <= f < span[1]}
-    both = np.array([(a, b) for a, b in pairs.tolist() if a in mine and b in mine], dtype=np.int64)
-    if len(both) < FEWEST_PAIRS:
-        return _Evidence(0.0, 0.0, 0.0, 0.0)
-    far = about_mean({f: hinged.pose.Q for f, hinged in mine.items()})
-    near = about_mean({f: above[f].T @ hinged.pose.R for f, hinged in mine.items()})
-    one, two = (np.array([getattr(h, name) for h in mine.values()]) for name in ("one", "two"))
-    score, degrees = ring_score(one, two, *(np.array([far[f] for f in side]) for side in both.T))
-    _, nearer = ring_score(one, two, *(np.array([near[f] for f in side]) for side in both.T))
-    return _Evidence(score, float(one.sum() / two.sum()), degrees, nearer)
+def _judged(frames: _Frames, rings: Sequence[_Ring], pairs: Ints, span: Ints, least: float) -> list[RingEvidence]:
+    """What every ring shows in the frames of a span; its hinge is held where it scores enough even against one piece."""
+    within = [ring.within(span) for ring in rings]
+    above = [frames.found.R[:, frames.above(ring.cut.part)] for ring in rings]
+    told = [
+        ring_evidence(R, ring.fits, {f: fit.one for f, fit in ring.fits.items()}, pairs)
+        for R, ring in zip(above, within, strict=True)
+    ]
+    likely = [k for k, evidence in enumerate(told) if evidence.score >= least]
+    for k, steady in zip(likely, _held(frames, [within[k] for k in likely]), strict=True):
+        told[k] = ring_evidence(above[k], within[k].fits, steady, pairs)
+    return told
 
 
-def about_mean(turn: dict[int, Floats]) -> dict[int, Floats]:
-    """By frame, rotations (3, 3) against their mean as vectors (xyz,), radian."""
-    Q = Rotation.from_matrix(list(turn.values()))
-    return dict(zip(turn, (Q.mean().inv() * Q).as_rotvec(), strict=True))
+def _held(frames: _Frames, rings: Sequence[_Ring]) -> list[dict[int, float]]:
+    """By ring and frame, what is left of the part with the hinge held at its mean turn, mesh unit²."""
+    mean = [Rotation.from_matrix([fit.pose.Q for fit in ring.fits.values()]).mean().as_matrix() for ring in rings]
+    left: list[dict[int, float]] = [{} for _ in rings]
+    for f, target, there in frames.showing(sorted({f for ring in rings for f in ring.fits}), rings):
+        for k in there:
+            ring = rings[k]
+            start = ring.fits[f].pose._replace(Q=mean[k])
+            left[k][f] = laid_as_one(ring.piece, start, frames.goal(f, ring), target).cost(ring.piece.mass)
+    return left
 
 
-def _joint(found: TreeJoints, cut: EndCut, fit: dict[int, _Hinged], score: float) -> EndJoint:
-    """The motion of the piece beyond a ring in all frames."""
-    R, t, T = found.R[:, cut.part].copy(), found.t[:, cut.part].copy(), len(found.R)
-    residual, shown = found.left.parts.residual[:, found.left.part_tree.tree.order[cut.part]].copy(), np.zeros(T, np.bool_)
-    for f, hinged in fit.items():
-        pose = hinged.pose
-        R[f], shown[f], residual[f] = pose.R @ pose.Q, True, np.sqrt(hinged.two)
-        t[f] = pose.R @ cut.centre + pose.t - R[f] @ cut.centre
+def _joint(found: TreeJoints, ring: _Ring, score: float) -> EndJoint:
+    """The motion of the pieces on both sides of a ring in all frames."""
+    cut = ring.cut
+    R, t = (np.repeat(a[:, cut.part, None], 2, axis=1) for a in (found.R, found.t))
+    residual = found.left.parts.residual[:, found.left.part_tree.tree.order[cut.part]].copy()
+    shown = np.zeros(len(R), np.bool_)
+    for f, hinged in ring.fits.items():
+        shown[f], residual[f] = True, np.sqrt(hinged.two)
+        R[f], t[f] = motions(hinged.pose, cut.centre)
     return EndJoint(cut, R, t, residual, shown, score)

@@ -7,6 +7,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
+from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
@@ -31,9 +32,9 @@ def inserted_ends(
         return body, found
     x = body.x.copy()
     for end in ends:
-        v = end.cut.own[end.cut.far]
-        moved = body.V[v] @ end.R.transpose(0, 2, 1) + end.t[:, None]
-        x[:, v] = np.where(end.shown[:, None, None], moved, x[:, v])
+        v, weight = end.cut.own, found.W[end.cut.own, end.cut.part]
+        for f in np.flatnonzero(end.shown):
+            x[f, v] = on_pieces(body.V[v], x[f, v], weight, end.cut.share, end.R[f], end.t[f])
     body = body._replace(x=x)
     return body, _extended(body, found, ends, confidence, noise)
 
@@ -45,11 +46,10 @@ def _extended(body: MovingSurface, found: TreeJoints, ends: Sequence[EndJoint], 
     label, number = found.label.copy(), parts.label.copy()
     for k, end in enumerate(ends, start=len(found.rest)):
         label[end.cut.own[end.cut.far]] = number[end.cut.own[end.cut.far]] = k
-    R, t = (
-        np.concatenate([mine, np.stack([getattr(end, name) for end in ends], axis=1)], axis=1)
-        for mine, name in ((found.R, "R"), (found.t, "t"))
-    )
-    residual = np.concatenate([parts.residual, np.stack([end.residual for end in ends], axis=1)], axis=1)
+    R, t = (_with_pieces(mine, [getattr(end, name) for end in ends], ends) for mine, name in ((found.R, "R"), (found.t, "t")))
+    nearer, beyond = tree.order[[end.cut.part for end in ends]], [end.residual for end in ends]
+    residual = np.concatenate([parts.residual, np.stack(beyond, axis=1)], axis=1)
+    residual[:, nearer] = np.stack(beyond, axis=1)
     by_number = np.argsort(tree.order)
     share = confident_share(number, body.area, confidence, len(R), len(tree.order))
     moving = MovingParts(number, R[:, by_number], t[:, by_number], residual, share)
@@ -65,6 +65,14 @@ def _extended(body: MovingSurface, found: TreeJoints, ends: Sequence[EndJoint], 
     rest, drifts = np.concatenate([found.rest, centre]), np.concatenate([found.drift, off])
     both = both_residuals(residual[:, tree.order], tree.parents)
     return TreeJoints(left, found.used, label, W, np.ascontiguousarray(R), np.ascontiguousarray(t), rest, drifts, both)
+
+
+def _with_pieces(mine: Floats, pieces: Sequence[Floats], ends: Sequence[EndJoint]) -> Floats:
+    """(frame, part, …) what the pieces nearer to the body have in place of their part's, and those beyond after all others."""
+    out = np.concatenate([mine, np.stack([piece[:, 1] for piece in pieces], axis=1)], axis=1)
+    for piece, end in zip(pieces, ends, strict=True):
+        out[:, end.cut.part] = piece[:, 0]
+    return out
 
 
 def _extended_tree(old: PartTree, ends: Sequence[EndJoint]) -> RootedTree:

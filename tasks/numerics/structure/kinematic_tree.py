@@ -70,6 +70,7 @@ class Derivation(NamedTuple):
                      alone has the joint, and where it is none
     agreeing       : (joint,) cuts that have it; 0 for the root and ends of bones
     joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
+    end_joints     : joints that the frames' surfaces alone show, see `inserted_ends`
     """
 
     pair: Ints
@@ -83,6 +84,7 @@ class Derivation(NamedTuple):
     spread: Floats
     agreeing: Ints
     joint_residual: Floats
+    end_joints: tuple[int, ...] = ()
 
 
 def kinematic_tree(
@@ -122,9 +124,10 @@ def kinematic_tree(
     given = R.shape[1]
     found = _with_hidden_bones(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
     alike = chosen._replace(hidden_bones=bool((found.left.origin == NO_PART).any()))
+    others, before = [_trajectories(body, cut, leaves, confidence, alike) for cut in further], len(found.rest)
     if chosen.end_joints and evidence is not None and confidence is not None:
         body, found = inserted_ends(body, found, confidence, evidence, chosen.noise * body.size)
-    agreed = _agreed(found, [_trajectories(body, cut, leaves, confidence, alike) for cut in further], body.size)
+    agreed = _agreed(found, others, body.size)
     F, x, tree, label, W, R, t = body.F, body.x, found.left.part_tree.tree, found.label, found.W, found.R, found.t
     rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
@@ -136,7 +139,7 @@ def kinematic_tree(
     ends = end_effectors(V, F, label, tree.parents, leaves)
     spans = score_spans(len(x), takes)
     made, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, off, support, spans, chosen)
-    return made, _derivation(found, agreed, given, made, order)
+    return made, _derivation(found, agreed, given, before, made, order)
 
 
 def _with_hidden_bones(
@@ -213,11 +216,14 @@ def _assembled(
     return body, order
 
 
-def _derivation(found: TreeJoints, agreed: JointConsensus, given: int, body: KinematicTree, order: Ints) -> Derivation:
+def _derivation(
+    found: TreeJoints, agreed: JointConsensus, given: int, before: int, body: KinematicTree, order: Ints
+) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    given : how many parts there were
-    order : (joint,) part in the tree's order, or beyond them an end effector
+    given  : how many parts there were
+    before : how many of the tree's parts are not those beyond end joints
+    order  : (joint,) part in the tree's order, or beyond them an end effector
     """
     left, used, parts = found.left, found.used, len(found.rest)
     joint_of_part = np.full(given, -1)
@@ -237,6 +243,7 @@ def _derivation(found: TreeJoints, agreed: JointConsensus, given: int, body: Kin
         spread=np.where(is_part, agreed.spread[part], np.nan),
         agreeing=np.where(is_part, agreed.agreeing[part], 0),
         joint_residual=np.where(is_part, found.residual[part], 0.0),
+        end_joints=tuple(np.argsort(order)[before:parts].tolist()),
     )
 
 

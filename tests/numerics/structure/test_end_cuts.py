@@ -19,6 +19,16 @@ def test_rings_lie_at_their_shares_of_the_part() -> None:
         assert z[~cut.far].max() < z[cut.far].min() + 0.3
 
 
+def test_skin_blends_over_a_radius_about_the_ring() -> None:
+    body = chain((0.0,), along=80)
+    for cut in end_cuts(moving(body), body.label, body.parents, body.joints):
+        np.testing.assert_array_equal(cut.share >= 0.5, cut.far)
+        assert (cut.share[cut.beyond >= cut.radius / 2] == 1.0).all()
+        assert (cut.share[cut.beyond <= -cut.radius / 2] == 0.0).all()
+        assert ((cut.share > 0.0) & (cut.share < 1.0)).any()
+        assert (np.diff(cut.share[np.argsort(cut.beyond)]) >= 0.0).all()
+
+
 def test_no_ring_is_proposed_at_the_joint_that_is_there() -> None:
     body = chain((0.0,), along=80)
     for cut in end_cuts(moving(body), body.label, body.parents, body.joints):

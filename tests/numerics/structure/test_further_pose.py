@@ -1,8 +1,12 @@
 """Laws of the pose in one frame by itself."""
 
 import numpy as np
+import pytest
 from fitting import FRAMES, arms, true
+from smeared import END, Frames, aligned, turning
 
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.articulated_frame import SkinnedBody
 from kinetree.tasks.numerics.structure.further_pose import further_pose
 from kinetree.tasks.numerics.structure.pose_refinement import KnownPoses
 
@@ -35,3 +39,34 @@ def test_a_part_that_is_not_seen_is_held_as_in_the_nearest_frame_that_saw_it() -
     held = KNOWN.R[12, 0] @ KNOWN.R[8, 0].T @ KNOWN.R[8, 2]  # frame 9 did not see it
     assert degrees(found.pose.R, np.stack([*KNOWN.R[12, :2], held, KNOWN.R[12, 3]])).max() < 1.0
     assert found.confidence[2] < 0.01 < 0.99 < found.confidence[1]
+
+
+@pytest.mark.parametrize("certain", [1.0, 0.1])
+def test_an_end_that_the_alignment_smears_turns_as_its_surface_does(certain: float) -> None:
+    smeared, frames = aligned(turning()), Frames(turning())
+    part = (smeared.V[:, 2] > 0.0).astype(int) + (smeared.V[:, 2] > END)
+    bound, weight = np.zeros((len(part), 4), np.int64), np.tile(np.eye(4)[0], (len(part), 1))
+    bound[:, 0] = part
+    body = SkinnedBody.of(smeared.V, smeared.F, bound, weight, frames.true.joints, np.array([-1, 0, 1]))
+    known, confidence = KnownPoses(frames.true.R[:8], np.ones((8, 3))), np.where(part > 0, certain, 1.0)
+    asked = []
+
+    def surface(frame: int) -> Target:
+        asked.append(frame)
+        return Target.of(*frames(frame), body.size)
+
+    off = []
+    for frame in (11, 17, 22):
+        behind = frame - np.arange(8)
+        for ends in ((), (2,)):
+            found = further_pose(body, smeared.x[frame], confidence, known, behind, ends, lambda f=frame: surface(f))  # type: ignore[misc]
+            axis = found.pose.R[2, :, 2] @ frames.true.R[frame, 2, :, 2]
+            off.append(np.degrees(np.arccos(min(axis, 1.0))))
+    without, with_end = np.reshape(off, (3, 2)).T
+    if certain == 1.0:
+        assert asked == [11, 17, 22]
+        assert without.max() > 12.0
+        assert with_end.max() < 3.0
+    else:
+        assert asked == []
+        np.testing.assert_array_equal(without, with_end)

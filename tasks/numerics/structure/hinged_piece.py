@@ -1,0 +1,78 @@
+"""The last part of a limb as one piece and with a hinge on the surface of a frame, and the skin that goes with it (ours)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece
+
+BETTER = 0.98
+"""What is left with another turn to start from, share of what is left without, at most. Not recorded."""
+POINTS = 250
+"""Points of a part, about; for time."""
+SAMPLE = 6000
+"""Vertices that stand for a frame's surface; for time."""
+
+
+class HingedFit(NamedTuple):
+    """A part in one frame.
+
+    one, two : mean squared distance from the surface as one piece, and with the hinge, mesh unit²
+    pose     : with the hinge
+    """
+
+    one: float
+    two: float
+    pose: PiecePose
+
+
+def sampled_piece(V: Floats, N: Floats, weight: Floats, far: Flags, hinge: Floats, joint: Floats) -> Piece:
+    """Points of a part, those that follow it most with most mass.
+
+    V, N   : (vertex, xyz) of the part in the reference, mesh unit · (vertex, xyz) unit normals
+    weight : (vertex,) how much each follows the part, 0 to 1
+    far    : (vertex,) whether each lies beyond the hinge
+    hinge, joint : see `Piece`
+    """
+    at = slice(None, None, max(len(V) // POINTS, 1))
+    return Piece(V[at], N[at], np.maximum(weight[at], 1e-3) ** 2, far[at], hinge, joint)
+
+
+def laid_as_one(piece: Piece, start: PiecePose, goal: Floats, target: Target) -> PieceFit:
+    """The part as one piece from where it is; goal (xyz,) is where the rest of the body has its joint, mesh unit."""
+    y, n, _ = placed_piece(piece, start)
+    return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=False)
+
+
+def laid_hinged(piece: Piece, one: PieceFit, goal: Floats, target: Target, turn: Floats | None) -> HingedFit:
+    """The part with the hinge, from where it lies as one piece, and with the turn of another frame if that is better."""
+    best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
+    if turn is not None:
+        start = one.pose._replace(Q=turn)
+        y, n, _ = placed_piece(piece, start)
+        other = piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=True)
+        if other.cost(piece.mass) < BETTER * best.cost(piece.mass):
+            best = other
+    return HingedFit(one.cost(piece.mass), best.cost(piece.mass), best.pose)
+
+
+def motions(pose: PiecePose, hinge: Floats) -> tuple[Floats, Floats]:
+    """(2, 3, 3) · (2, xyz) of the nearer piece and of the farther one, from the reference; hinge (xyz,) mesh unit."""
+    R = np.stack([pose.R, pose.R @ pose.Q])
+    return R, np.stack([pose.t, pose.R @ hinge + pose.t - R[1] @ hinge])
+
+
+def on_pieces(V: Floats, x: Floats, weight: Floats, share: Floats, R: Floats, t: Floats) -> Floats:
+    """Aligned vertices put where the two pieces carry them, each by how much it follows these.
+
+    V, x    : (vertex, xyz) in the reference, in a frame, mesh unit
+    weight  : (vertex,) how much each follows the two pieces, 0 to 1
+    share   : (vertex,) of it that the farther one has
+    R, t    : see `motions`
+    returns : (vertex, xyz) mesh unit
+    """
+    near, far = (V @ Q.T + u for Q, u in zip(R, t, strict=True))
+    carried = near + share[:, None] * (far - near)
+    return np.asarray(x + weight[:, None] * (carried - x))

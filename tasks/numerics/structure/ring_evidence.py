@@ -1,0 +1,90 @@
+"""What frames show of a hinge at a ring across the last part of a limb (ours, see `end_joints`)."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.hinged_piece import HingedFit
+
+FEWEST_PAIRS = 3
+"""Pairs of frames that follow each other, below which nothing is said of a ring."""
+
+
+class RingEvidence(NamedTuple):
+    """What a ring shows over some frames.
+
+    score     : see `ring_score`
+    gain      : how many times more is left of the part as one piece than with the hinge
+    far, near : root mean square turn that agrees from frame to frame, of the hinge, and of the nearer piece against the part
+                above, degrees
+    """
+
+    score: float
+    gain: float
+    far: float
+    near: float
+
+
+def ring_evidence(above: Floats, fits: Mapping[int, HingedFit], steady: Mapping[int, float], pairs: Ints) -> RingEvidence:
+    """What a ring shows; nothing in few frames.
+
+    above  : (frame, 3, 3) the motion of the part above, from the reference
+    fits   : by frame, how the part lies
+    steady : by frame, mean squared distance of the part with its hinge held, mesh unit²
+    pairs  : (pair, 2) frames that follow each other
+    """
+    both = np.array([(a, b) for a, b in pairs.tolist() if a in fits and b in fits], dtype=np.int64)
+    if len(both) < FEWEST_PAIRS:
+        return RingEvidence(0.0, 0.0, 0.0, 0.0)
+    far = about_mean({f: fit.pose.Q for f, fit in fits.items()})
+    near = about_mean({f: above[f].T @ fit.pose.R for f, fit in fits.items()})
+    held, two = np.array([steady[f] for f in fits]), np.array([fit.two for fit in fits.values()])
+    score, degrees = ring_score(held, two, *(np.array([far[f] for f in side]) for side in both.T))
+    _, nearer = ring_score(held, two, *(np.array([near[f] for f in side]) for side in both.T))
+    gain = sum(fit.one for fit in fits.values()) / max(float(two.sum()), 1e-300)
+    return RingEvidence(score, float(gain), degrees, nearer)
+
+
+def ring_score(steady: Floats, two: Floats, w: Floats, v: Floats) -> tuple[float, float]:
+    """How clearly a hinge shows, and its root mean square turn that agrees from frame to frame, degrees.
+
+    The score is by how much farther the part lies from the surfaces with the hinge held at its mean turn than with the hinge
+    free, share of the latter, times the correlation of the hinge's turn with that of the next frame (1 for a slow turn, 0 for
+    noise), less the standard error that noise about one axis has in so many pairs. Held and not straight: a reference whose
+    shape is wrong beyond the ring is bent in all frames, but does not turn.
+
+    steady, two : (frame,) mean squared distance with the hinge held, free
+    w, v        : (pair, xyz) turns about their mean in two frames that follow each other, radian
+    """
+    agreeing = max(float((w * v).sum(axis=1).mean()), 0.0)
+    alike = agreeing / max(float((w**2 + v**2).sum(axis=1).mean()) / 2.0, 1e-300)
+    gain = np.sqrt(steady.sum() / max(two.sum(), 1e-300)) - 1.0
+    return float(gain * max(alike - 1.0 / np.sqrt(len(w)), 0.0)), float(np.degrees(np.sqrt(agreeing)))
+
+
+def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple[Ints, Ints]:
+    """Frames in which rings are judged, ascending · (pair, 2) which of them follow each other in one take.
+
+    count : how many frames there are
+    most  : how many of each take are judged, about; if it has more, runs of two
+    """
+    spans = [np.arange(count)[take] for take in takes or [slice(0, count)]]
+    pairs = np.concatenate([_neighbours(span, most) for span in spans])
+    return np.unique(pairs), pairs
+
+
+def _neighbours(span: Ints, most: int) -> Ints:
+    """(pair, 2) frames of a take that follow each other, evenly spread if it has more than `most` frames."""
+    pairs = np.stack([span[:-1], span[1:]], axis=1)
+    if len(span) > most and len(pairs):
+        pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
+    return pairs
+
+
+def about_mean(turn: dict[int, Floats]) -> dict[int, Floats]:
+    """By frame, rotations (3, 3) against their mean as vectors (xyz,), radian."""
+    Q = Rotation.from_matrix(list(turn.values()))
+    return dict(zip(turn, (Q.mean().inv() * Q).as_rotvec(), strict=True))

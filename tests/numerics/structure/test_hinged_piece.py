@@ -1,0 +1,44 @@
+"""Laws of a limb's last part in two pieces: the hinge holds them together, and skin goes with those that it follows."""
+
+import numpy as np
+from limbs import rotation
+
+from kinetree.tasks.numerics.structure.hinged_piece import POINTS, motions, on_pieces, sampled_piece
+from kinetree.tasks.numerics.structure.piece_fit import PiecePose
+
+V = np.random.default_rng(0).normal(size=(40, 3))
+HINGE = np.array([0.1, -0.4, 0.3])
+POSE = PiecePose(rotation((1.0, 2.0, 0.0), 0.7), np.array([3.0, 1.0, -2.0]), rotation((0.0, 1.0, 1.0), 0.5))
+R, T = motions(POSE, HINGE)
+ONES = np.ones(len(V))
+
+
+def test_both_pieces_carry_the_hinge_to_one_place() -> None:
+    near, far = (R[k] @ HINGE + T[k] for k in (0, 1))
+    np.testing.assert_allclose(near, far, atol=1e-12)
+    np.testing.assert_allclose(R[0].T @ R[1], POSE.Q, atol=1e-12)
+
+
+def test_skin_goes_with_the_piece_that_has_it() -> None:
+    x = np.full_like(V, 9.0)
+    np.testing.assert_allclose(on_pieces(V, x, ONES, 0 * ONES, R, T), V @ R[0].T + T[0], atol=1e-12)
+    np.testing.assert_allclose(on_pieces(V, x, ONES, ONES, R, T), V @ R[1].T + T[1], atol=1e-12)
+
+
+def test_skin_that_does_not_follow_the_part_stays_where_it_is_aligned() -> None:
+    x = V + 0.5
+    np.testing.assert_array_equal(on_pieces(V, x, 0 * ONES, ONES, R, T), x)
+
+
+def test_between_the_pieces_skin_lies_between() -> None:
+    x = np.full_like(V, 9.0)
+    ends = [on_pieces(V, x, ONES, s * ONES, R, T) for s in (0.0, 1.0)]
+    np.testing.assert_allclose(on_pieces(V, x, ONES, 0.25 * ONES, R, T), 0.75 * ends[0] + 0.25 * ends[1], atol=1e-12)
+
+
+def test_a_large_part_is_sampled_and_its_points_weigh_by_the_square_of_what_they_follow() -> None:
+    many, weight = np.tile(V, (50, 1)), np.linspace(0.0, 1.0, 50 * len(V))
+    piece = sampled_piece(many, many, weight, weight > 0.5, HINGE, HINGE)
+    assert POINTS <= len(piece.V) < 2 * POINTS
+    np.testing.assert_allclose(piece.mass[1:], weight[:: len(many) // POINTS][1:] ** 2)
+    assert len(sampled_piece(V, V, ONES, ONES > 0.5, HINGE, HINGE).V) == len(V)

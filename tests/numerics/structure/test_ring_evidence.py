@@ -1,0 +1,61 @@
+"""A turn that goes on from frame to frame is evidence; noise, a constant bend and few frames are none."""
+
+import numpy as np
+import pytest
+from limbs import rotation
+
+from kinetree.tasks.numerics.structure.hinged_piece import HingedFit
+from kinetree.tasks.numerics.structure.piece_fit import PiecePose
+from kinetree.tasks.numerics.structure.ring_evidence import judged_frames, ring_evidence, ring_score
+
+
+def test_judged_frames_follow_each_other_within_a_take() -> None:
+    frames, pairs = judged_frames(10, [slice(0, 4), slice(4, 10)], 40)
+    assert frames.tolist() == list(range(10))
+    assert (np.diff(pairs, axis=1) == 1).all()
+    assert [3, 4] not in pairs.tolist()
+    frames, pairs = judged_frames(500, None, 40)
+    assert len(pairs) == 20
+    assert len(frames) <= 40
+    assert pairs[0].tolist() == [0, 1]
+    assert pairs[-1].tolist() == [498, 499]
+    assert len(judged_frames(1, None, 40)[0]) == 0
+    assert len(judged_frames(41, [slice(i, i + 1) for i in range(41)], 40)[1]) == 0
+
+
+def test_every_take_is_judged_in_as_many_frames_as_one_alone() -> None:
+    _, alone = judged_frames(100, None, 40)
+    _, pairs = judged_frames(200, [slice(0, 100), slice(100, 200)], 40)
+    np.testing.assert_array_equal(pairs, np.concatenate([alone, alone + 100]))
+
+
+def test_turns_that_agree_count_and_noise_does_not() -> None:
+    slow = np.stack([np.sin(np.arange(40) / 5), np.zeros(40), np.zeros(40)], axis=1)
+    noise = np.random.default_rng(0).normal(size=(400, 3))
+    one, two = np.full(40, 4.0), np.full(40, 1.0)
+    assert ring_score(one, two, slow[:-1], slow[1:])[0] == pytest.approx(0.98 - 1 / np.sqrt(39), abs=0.02)
+    assert ring_score(one, two, noise[:-1], noise[1:])[0] < 0.1
+    assert ring_score(one, one, slow[:-1], slow[1:])[0] == 0.0
+    assert ring_score(one, two, 0 * slow[1:], 0 * slow[1:]) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("frames", [9, 18, 36])
+def test_noise_scores_by_chance_no_more_often_in_few_frames(frames: int) -> None:
+    one, two, rng = np.full(frames, 4.0), np.full(frames, 1.0), np.random.default_rng(1)
+    turns = rng.normal(size=(1000, frames, 1)) * np.array([1.0, 0.0, 0.0])
+    turns -= turns.mean(axis=1, keepdims=True)
+    by_chance = [ring_score(one, two, w[:-1], w[1:])[0] > 0.0 for w in turns]
+    assert np.mean(by_chance) < 0.17  # the upper end of a normal distribution beyond one standard error
+
+
+def test_a_hinge_that_does_no_better_than_held_shows_nothing() -> None:
+    turn = [rotation((1.0, 0.0, 0.0), 0.3 * np.sin(f / 3)) for f in range(20)]
+    fits = {f: HingedFit(4.0, 1.0, PiecePose(np.eye(3), np.zeros(3), turn[f])) for f in range(20)}
+    above, (_, pairs) = np.tile(np.eye(3), (20, 1, 1)), judged_frames(20, None, 40)
+    told = [ring_evidence(above, fits, dict.fromkeys(fits, held), pairs) for held in (1.0, 4.0)]
+    assert told[0].score == 0.0
+    assert told[1].score > 0.5
+    assert told[0].gain == told[1].gain == 4.0
+    assert told[1].near == 0.0
+    assert told[1].far == pytest.approx(np.degrees(0.3 / np.sqrt(2)), rel=0.1)
+    assert ring_evidence(above, {f: fits[f] for f in range(3)}, dict.fromkeys(fits, 4.0), pairs).score == 0.0
