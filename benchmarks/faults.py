@@ -7,6 +7,8 @@ called itself done and every artifact equals that of a run nobody disturbed, or 
 killed) and one more run made it so. It is wrong if a run was called done and was not, if it ended in any other way, or if
 it was not over within BOUND seconds. The command exits with 1 if any try was wrong.
 
+The toy graph has a chain of 24 frames, which travel in stretches, gathers and a fan-out that depends on data.
+
 A full disk (a tmpfs) and a worker with another folder under the store's path (a mount namespace) need root; without it these
 cells are left out and the table says so.
 """
@@ -58,6 +60,13 @@ class First(Artifact):
 class Second(Artifact):
     x: Annotated[Floats, Array("float64", VERTEX)]
 
+class Row(Artifact):
+    def previous(self, member: int) -> int | None:
+        return member - 1 if member else None
+
+class Link(Artifact):
+    x: Annotated[Floats, Array("float64", VERTEX)]
+
 class Groups(Artifact):
     opens: ClassVar[tuple[str, ...]] = ("interval",)
     count: int
@@ -87,6 +96,14 @@ def second(first: First) -> Second:
     return Second(x=first.x + 1.0)
 
 @task()
+def row(source: tuple[Source, ...]) -> Row:
+    return Row()
+
+@task(over="frame", along=Row)
+def link(first: First, before: Link | None) -> Link:
+    return Link(x=worked(int(first.x.sum() + (before.x.sum() if before else 0.0))))
+
+@task()
 def groups(second: tuple[Second, ...]) -> Groups:
     return Groups(count=4 + int(sum(s.x.sum() for s in second)) % 3)
 
@@ -95,10 +112,10 @@ def part(groups: Groups, first: tuple[First, ...], index: Index) -> Part:
     return Part(x=worked(index[0]) + sum(f.x for f in first))
 
 @task()
-def total(part: tuple[Part, ...]) -> Total:
-    return Total(value=float(sum(p.x.sum() for p in part)))
+def total(part: tuple[Part, ...], link: tuple[Link, ...]) -> Total:
+    return Total(value=float(sum(p.x.sum() for p in (*part, *link))))
 
-GRAPH = Graph.of((source, first, second, groups, part, total))
+GRAPH = Graph.of((source, first, second, row, link, groups, part, total))
 COMMANDS = tuple(map(built_in, ("run", "plan")))
 APPLICATION = Application("faulty", "A graph to disturb.", lambda: {"toy": GRAPH}, sections=(Section("All", COMMANDS),))
 """

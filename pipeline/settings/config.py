@@ -65,7 +65,7 @@ class Compute(BaseModel):
     @field_validator("memory")
     @classmethod
     def _is_a_size(cls, size: str | None) -> str | None:
-        if size is not None and not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?([kMGT]i?)?B", size):
+        if size is not None and not re.fullmatch(r"[0-9]{1,15}(\.[0-9]{1,15})? ?([kMGT]i?)?B", size):
             raise ValueError("expected a size such as 4GB or 512MiB")
         return size
 

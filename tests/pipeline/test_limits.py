@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from distributed import Client, LocalCluster
 
-from kinetree.errors import ClusterError, GraphError
+from kinetree.errors import ClusterError, ConfigError, GraphError
 from kinetree.pipeline.running.memory import Needs, measured
 from kinetree.pipeline.running.pool import Pool
 from kinetree.pipeline.settings.config import Compute
@@ -139,6 +139,13 @@ def test_our_own_workers_declare_their_memory():
         (worker,) = client.scheduler_info()["workers"].values()
     assert worker["resources"] == {"memory": 3 * 2**30}
     assert worker["memory_limit"] == 3 * 2**30
+
+
+@pytest.mark.parametrize("memory", ["0GB", "0.5B", "50MB"])
+def test_memory_with_which_no_worker_can_start_is_refused(toys, memory):
+    """A worker that is over its limit when it begins would be ended and started again for ever."""
+    with pytest.raises(ConfigError, match=f"compute.memory {memory}: a worker process holds 256 MB before it computes"):
+        toys.run(compute={"executor": "processes", "workers": 1, "memory": memory})
 
 
 def test_memory_of_a_node_is_measured_where_it_is_computed_alone(toys):
