@@ -171,7 +171,7 @@ def _evident(
         best = table[int(np.argmax([max(row[k].score for k in own) for row in table]))]
         enough = [(best[k].gain, k) for k in own if best[k].score >= chosen.least_score]
         k = max(enough)[1] if enough else own[0]
-        if enough and best[k].far >= chosen.degrees and max(row[k].near for row in table) >= chosen.nearer:
+        if enough and best[k].far >= chosen.degrees and best[k].near >= chosen.nearer:
             kept.append((rings[k], best[k].score))
     return kept
 

@@ -1,9 +1,12 @@
 """A joint near the end of a limb that the alignment does not show is found on the frames; none where nothing turns."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from smeared import END, Frames, aligned, found_in, turning
 
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints
 
 
@@ -12,9 +15,9 @@ def found(degrees: float, noise: float = 0.0, settings: EndJointsSettings | None
     return end_joints(surface, tree, np.ones(surface.x.shape[:2]), Frames(turning(degrees), noise), settings)
 
 
-def found_in_takes(degrees: list[float], noise: float) -> list[EndJoint]:
-    """Takes of 24 frames, each with its own range of turning."""
-    turn = np.concatenate([turning(one) for one in degrees])
+def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJoint]:
+    """Takes of 24 frames, each with its own range of turning, or with these turns."""
+    turn = np.concatenate([turning(one) if isinstance(one, float) else one for one in degrees])
     surface, tree = found_in(aligned(turn))
     takes = [slice(24 * k, 24 * k + 24) for k in range(len(degrees))]
     return end_joints(surface._replace(takes=takes), tree, np.ones(surface.x.shape[:2]), Frames(turn, noise))
@@ -75,6 +78,13 @@ def test_a_joint_that_one_take_turns_counts_as_much_as_in_that_take_alone(degree
     assert joint.score == pytest.approx(alone.score, rel=0.01)
     np.testing.assert_array_equal(joint.cut.far, alone.cut.far)
     assert len(joint.R) == 72
+
+
+def test_the_part_must_turn_in_the_take_that_shows_the_joint() -> None:
+    still = turning(6.0)
+    still[:, 1] = np.eye(3)
+    assert found_in_takes([0.0, still, 0.0], 0.02) == []
+    assert len(found_in_takes([0.0, 6.0, 0.0], 0.02)) == 1
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05])

@@ -5,13 +5,16 @@ import pytest
 from articulated import Known, chain, moved, swings, three_arms
 from shipped import PRUNING
 
+from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
 
 
-def of(body: Known, leaves: tuple[int, ...] = ()) -> Pruned:
+def of(body: Known, leaves: tuple[int, ...] = (), takes: list[slice] | None = None) -> Pruned:
     parts = MovingParts(body.label, body.R, body.t, body.residual)
-    return pruned(MovingSurface(body.V, body.F, body.x, body.area), parts, np.array(leaves, dtype=np.int64), settings=PRUNING)
+    return pruned(
+        MovingSurface(body.V, body.F, body.x, body.area, takes), parts, np.array(leaves, dtype=np.int64), settings=PRUNING
+    )
 
 
 @pytest.mark.parametrize("body", [chain((-2.0, 2.0)), chain((0.0,)), three_arms()], ids=["three links", "two links", "arms"])
@@ -34,6 +37,24 @@ def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
     assert found.origin.tolist() == [0, 2]
     assert len(found.before.borders.pair) == 2
     assert found.part_tree.joints.rest[found.part_tree.tree.border[1]][2] == pytest.approx(0, abs=0.2)
+
+
+@pytest.mark.parametrize(("half_length", "dropped"), [(0.3, (Dropped(1, FLESH),)), (0.55, ())])
+def test_of_several_takes_a_part_must_follow_the_less_the_shorter_it_is_to_be_flesh(
+    half_length: float, dropped: tuple[Dropped, ...]
+) -> None:
+    """The middle turns by half of the joint's turn and by itself, and slides a little."""
+    hinge, own = swings(24, 1, 20, axes=1)[:, 0], swings(24, 2, 14, axes=1, seed=3)[:, 1]
+    turn = np.stack([np.broadcast_to(np.eye(3), (24, 3, 3)), hinge @ own, hinge @ own.transpose(0, 2, 1)], axis=1)
+    assert in_between(turn[:, 1], turn[:, 1] @ turn[:, 2]) == pytest.approx(0.67, abs=0.02)
+    body = chain((-half_length, half_length), turn)
+    slide = 0.03 * np.random.default_rng(2).normal(size=(24, 3))
+    t, x = body.t.copy(), body.x.copy()
+    t[:, 1] += slide
+    x[:, body.label == 1] += slide[:, None]
+    body = body._replace(t=t, x=x)
+    assert of(body, takes=[slice(0, 12), slice(12, 24)]).dropped == dropped
+    assert of(body).dropped == of(body, takes=[slice(0, 24)]).dropped == ()
 
 
 def test_parts_that_do_not_turn_are_one() -> None:
