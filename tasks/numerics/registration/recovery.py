@@ -1,6 +1,7 @@
-"""Frames in which tracking failed, tracked again from the frame beyond them, inwards to the reference (ours).
+"""Frames in which tracking failed, tracked again: from the frame beyond them, and predicted from the two before them (ours).
 
-A chain of frames that lost a limb does not find it by going on; entered from its other end, it often does.
+A chain of frames that lost a limb does not find it by going on; entered from its other end, it often does. The last frame of a
+chain has no other end; but its neighbours have been fitted with all samples since, and predict it better than near poses did.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -47,7 +48,9 @@ def recovery(
     settings: RecoverySettings | None = None,
     takes: Sequence[tuple[slice, int]] | None = None,
 ) -> Recovery:
-    """Track failed frames again, each from the frame beyond it, the outermost first, and keep what covers more (ours).
+    """Track failed frames again and keep what covers more (ours).
+
+    Each from the frame beyond it, the outermost first; what still fails, from the two frames before it, outwards.
 
     graph     : of the reference mesh
     uncovered : (frame,) share of each frame that the tracked body leaves uncovered
@@ -62,12 +65,21 @@ def recovery(
     failed = failures(uncovered, settings) & others
     usual = float(uncovered[others].min(initial=1.0))
     recovered: dict[int, Tracking] = {}
-    for at, beyond in _inwards(failed, takes or [(slice(0, len(failed)), reference)]):
-        there = recovered.get(beyond)
-        if (there.uncovered if there else uncovered[beyond]) >= uncovered[at]:
+    spans = takes or [(slice(0, len(failed)), reference)]
+    ways = [*((at, beyond, None) for at, beyond in _inwards(failed, spans)), *_outwards(failed, spans)]
+
+    def here(at: int) -> Pose:
+        return recovered[at].pose if at in recovered else pose(at)
+
+    def share(at: int) -> float:
+        return recovered[at].uncovered if at in recovered else float(uncovered[at])
+
+    for at, beside, earlier in ways:
+        if share(beside) >= share(at) or (earlier is not None and not _still_fails(at, share(at), uncovered, settings)):
             continue
-        again = tracking(graph, None, there.pose if there else pose(beyond), target(at), fitting, usual=usual)
-        if again.uncovered < uncovered[at]:
+        before = None if earlier is None else here(earlier)
+        again = tracking(graph, before, here(beside), target(at), fitting, usual=usual)
+        if again.uncovered < share(at):
             recovered[at] = again
     return Recovery(failed, usual, recovered)
 
@@ -91,3 +103,17 @@ def _inwards(failed: Flags, takes: Sequence[tuple[slice, int]]) -> Iterator[tupl
     for span, first in takes:
         yield from ((at, at - 1) for at in range(span.start + 1, first) if failed[at])
         yield from ((at, at + 1) for at in range(span.stop - 2, first, -1) if failed[at])
+
+
+def _outwards(failed: Flags, takes: Sequence[tuple[slice, int]]) -> Iterator[tuple[int, int, int]]:
+    """(failed frame, the frame before it, the one before that) from the frame of every take that is reached first outwards."""
+    for span, first in takes:
+        yield from ((at, at - 1, at - 2) for at in range(first + 2, span.stop) if failed[at])
+        yield from ((at, at + 1, at + 2) for at in range(first - 2, span.start - 1, -1) if failed[at])
+
+
+def _still_fails(at: int, share: float, uncovered: Floats, settings: RecoverySettings | None) -> bool:
+    """Whether a frame would stand out with this share uncovered."""
+    now = uncovered.copy()
+    now[at] = share
+    return bool(failures(now, settings)[at])

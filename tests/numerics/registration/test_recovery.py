@@ -1,9 +1,10 @@
 """Laws of finding frames in which tracking failed and of tracking them again from the frame beyond, on tubes."""
 
 import numpy as np
-from limbs import ANGLES, LENGTH, bent, rotation
+from limbs import ANGLES, LENGTH, bent, rotation, tube
 from shipped import FITTING
 
+from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.recovery import failures, recovery
 from kinetree.tasks.numerics.registration.tracking import TrackingSettings, tracking
@@ -31,6 +32,17 @@ def test_a_lost_frame_is_found_again_from_the_frame_beyond_it(body, targets):
     assert found.recovered[3].uncovered <= SETTINGS.uncovered
     true = bent(body.V, ANGLES[3])
     assert np.linalg.norm(shape(body, found.recovered[3].pose)[0] - true, axis=1).mean() < 0.01 * LENGTH
+
+
+def test_the_last_frame_of_a_chain_is_found_again_from_the_two_before_it(body):
+    V, F = tube(around=29, along=57, start=0.07)
+    turned = [rotation((1, 0, 0), k * 0.9) for k in range(5)]
+    frames = [Target.of(V @ R.T, F, body.size) for R in turned]
+    good = [Pose(np.tile(R, (len(body.node), 1, 1)), body.g @ R.T) for R in turned]
+    share = np.array([0.0, 0.001, 0.001, 0.001, 0.3])
+    found = recovery(body, share, [*good[:4], at_rest(body)].__getitem__, frames.__getitem__, 0, FITTING)
+    assert list(found.recovered) == [4]
+    assert np.linalg.norm(shape(body, found.recovered[4].pose)[0] - body.V @ turned[4].T, axis=1).mean() < 0.01 * LENGTH
 
 
 def test_good_frames_and_the_reference_are_left_alone(body):
