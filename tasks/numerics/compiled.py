@@ -21,6 +21,7 @@ from numba.core import event
 from numba.core.caching import UserProvidedCacheLocator
 
 from kinetree.tasks.numerics.compiled_ahead import start_ahead
+from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 PACKAGE = "kinetree.tasks.numerics"
@@ -75,10 +76,7 @@ def _configured(**values: str) -> Iterator[None]:
 @cache
 def _kept_at(module: str) -> str:
     """A folder of the user's own cache; "" where none can be written, and code is compiled anew in every process."""
-    root = os.environ.get("NUMBA_CACHE_DIR") or os.path.join(  # noqa: PTH118 - a path given by the environment stays as it is
-        os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "kinetree"
-    )
-    folder = Path(root) / _digest(module)
+    folder = kernel_folder() / _digest(module)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:

@@ -9,6 +9,7 @@ A line that no longer fits the code costs time alone. `KINETREE_COMPILE_AHEAD=0`
 
 import atexit
 import contextlib
+import fcntl
 import importlib
 import json
 import os
@@ -24,6 +25,8 @@ import numba
 import numpy as np
 from numba.core.errors import NumbaError
 from numba.np.numpy_support import as_dtype, from_dtype
+
+from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 LIST = Path(__file__).with_name("kernels.jsonl")
 SWITCH = "KINETREE_COMPILE_AHEAD"
@@ -121,14 +124,16 @@ def _stop(process: "subprocess.Popen[bytes]") -> None:
 
 
 def main(parent: str | None = None) -> None:
-    """Compiles the list: from its end and as long as the parent lives, or, without one, all of it."""
+    """Compiles all of the list; for a parent from its end, as long as that lives and no other process is at it."""
     os.environ[SWITCH] = "0"
     if parent is None:
         every = lines()
         print(f"{compile_all(every, lambda: True)} of {len(every)} kernels are ready")
         return
-    os.nice(NICENESS)
-    compile_all(reversed(lines()), lambda: os.getppid() == int(parent))
+    with contextlib.suppress(OSError), (kernel_folder() / "ahead.lock").open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # OSError: the process of another worker is at it
+        os.nice(NICENESS)
+        compile_all(reversed(lines()), lambda: os.getppid() == int(parent))
 
 
 if __name__ == "__main__":

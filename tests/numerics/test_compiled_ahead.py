@@ -1,5 +1,6 @@
 """Laws of compiling ahead: the list fits the code, and the process is started where it helps and ends with who started it."""
 
+import fcntl
 import importlib
 import inspect
 import os
@@ -11,6 +12,7 @@ import numba
 import numpy as np
 import pytest
 
+from kinetree.tasks.numerics import compiled_ahead
 from kinetree.tasks.numerics.compiled_ahead import SWITCH, compile_all, lines, text_of, type_of
 from kinetree.tasks.numerics.input.synth.implicit import Cones
 
@@ -92,3 +94,17 @@ def test_without_its_parent_the_process_compiles_nothing(tmp_path: Path):
     command = [sys.executable, "-m", "kinetree.tasks.numerics.compiled_ahead", "1"]
     subprocess.run(command, env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}, check=True)
     assert not [*tmp_path.rglob("*.nbc")]
+
+
+def test_one_process_at_a_time_compiles_ahead(tmp_path: Path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    compiled = []
+    monkeypatch.setattr(compiled_ahead, "compile_all", lambda which, _: compiled.append(list(which)))
+    monkeypatch.setattr(os, "nice", lambda _: None)
+    monkeypatch.setenv(SWITCH, "0")
+    with (tmp_path / "ahead.lock").open("a") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        compiled_ahead.main(str(os.getppid()))
+        assert compiled == []
+    compiled_ahead.main(str(os.getppid()))
+    assert compiled == [lines()[::-1]]
