@@ -37,7 +37,8 @@ def sampled_piece(V: Floats, N: Floats, weight: Floats, far: Flags, hinge: Float
     hinge, joint : see `Piece`
     """
     at = slice(None, None, max(len(V) // POINTS, 1))
-    return Piece(V[at], N[at], np.maximum(weight[at], 1e-3) ** 2, far[at], hinge, joint)
+    points, normals, beyond = np.ascontiguousarray(V[at]), np.ascontiguousarray(N[at]), np.ascontiguousarray(far[at])
+    return Piece(points, normals, np.maximum(weight[at], 1e-3) ** 2, beyond, hinge, joint)
 
 
 def laid_as_one(piece: Piece, start: PiecePose, goal: Floats, target: Target) -> PieceFit:

@@ -2,7 +2,8 @@
 
 By Gauss–Newton over the motion of the piece and, if it is two, the rotation of the far one against the other about the hinge:
 E = Σ w [(n · d)² + along |d|²] + anchor M |joint − goal|² + hold |Q − I|² / 2, from wide to narrow; d leads to the matched
-vertex of the frame, n is its normal, and M the whole weight.
+vertex of the frame, n is its normal, and M the whole weight. All steps of a fit run in one compiled function: a piece has a few
+hundred points, and calls of array functions took most of the time.
 """
 
 from typing import NamedTuple
@@ -11,8 +12,8 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
+from kinetree.tasks.numerics.geometry.small_matrices import product, rotation, solved
 from kinetree.tasks.numerics.registration.correspondence import Target, local_matches
-from kinetree.tasks.numerics.structure.articulated_fit import rotations
 
 
 class PieceFitSettings(NamedTuple):
@@ -89,6 +90,17 @@ class PieceFit(NamedTuple):
         return float(mass @ self.square / mass.sum())
 
 
+class _Surface(NamedTuple):
+    """What matches are sought on, see `Target`."""
+
+    V: Floats
+    N: Floats
+    start: Ints
+    ring: Ints
+    beta: float
+    size: float
+
+
 def piece_fit(
     piece: Piece, start: PiecePose, goal: Floats, target: Target, match: Ints, *, hinged: bool,
     settings: PieceFitSettings | None = None,
@@ -99,93 +111,155 @@ def piece_fit(
     match  : (point,) vertices of the frame near the points
     hinged : whether the far piece turns by itself; if not it keeps the turn that it has
     """
-    chosen, pose = settings or PieceFitSettings(), start
-    free = 9 if hinged else 6
-    for scale in chosen.scales:
-        y, n, C = placed_piece(piece, pose)
-        match = local_matches(y, n, match, target.V, target.N, target.start, target.ring, target.beta)
-        H, g = np.zeros((9, 9)), np.zeros(9)
-        limits = ((scale * target.size) ** 2, chosen.least_cosine, chosen.weighed_along, chosen.along)
-        _add_matches(H, g, y, n, target.V[match], target.N[match], piece.mass, piece.far, C, *limits)
-        _add_holds(H, g, piece, pose, y - C, C, goal, chosen)
-        step = np.zeros(9)
-        step[:free] = np.linalg.solve(H[:free, :free], g[:free])
-        pose = _moved(pose, step, C, piece.hinge, chosen.longest_step)
-    y, n, _ = placed_piece(piece, pose)
-    match = local_matches(y, n, match, target.V, target.N, target.start, target.ring, target.beta)
-    d, m = target.V[match] - y, target.N[match]
-    square = np.einsum("px,px->p", d, m) ** 2 + chosen.left_along * (d**2).sum(axis=1)
-    off = (chosen.most_left * target.size) ** 2
-    alike = np.einsum("px,px->p", n, m) > chosen.least_cosine
-    return PieceFit(pose, np.where(alike, np.minimum(square, off), off), match)
+    surface = _Surface(target.V, target.N, target.start, target.ring, float(target.beta), float(target.size))
+    R, t, Q, square, match = _fitted(piece, start, goal, surface, match, hinged, settings or PieceFitSettings())
+    return PieceFit(PiecePose(R, t, Q), square, match)
 
 
+@compiled
 def placed_piece(piece: Piece, pose: PiecePose) -> tuple[Floats, Floats, Floats]:
     """(point, xyz) the points, mesh unit · (point, xyz) their unit normals · (xyz,) the hinge."""
-    C = pose.R @ piece.hinge + pose.t
-    y, n, turn = piece.V @ pose.R.T + pose.t, piece.N @ pose.R.T, (pose.R @ pose.Q).T
-    y[piece.far], n[piece.far] = (piece.V[piece.far] - piece.hinge) @ turn + C, piece.N[piece.far] @ turn
+    y, n, C, near, hinge = np.empty(piece.V.shape), np.empty(piece.V.shape), np.empty(3), pose.R, piece.hinge
+    beyond = product(near, pose.Q)
+    for x in range(3):
+        C[x] = near[x, 0] * hinge[0] + near[x, 1] * hinge[1] + near[x, 2] * hinge[2] + pose.t[x]
+    for i in range(len(y)):
+        R = beyond if piece.far[i] else near
+        a, b, c = piece.V[i, 0] - hinge[0], piece.V[i, 1] - hinge[1], piece.V[i, 2] - hinge[2]
+        for x in range(3):
+            y[i, x] = R[x, 0] * a + R[x, 1] * b + R[x, 2] * c + C[x]
+            n[i, x] = R[x, 0] * piece.N[i, 0] + R[x, 1] * piece.N[i, 1] + R[x, 2] * piece.N[i, 2]
     return y, n, C
 
 
-def _moved(pose: PiecePose, step: Floats, C: Floats, hinge: Floats, longest: float) -> PiecePose:
-    """The pose after a step: turn of the piece, shift of its hinge at C, turn of the far piece in space."""
-    turn, own = (rotations(_limited(w, longest)[None])[0] for w in (step[:3], step[6:]))
-    R = turn @ pose.R
-    return PiecePose(R, C + step[3:6] - R @ hinge, pose.R.T @ own @ pose.R @ pose.Q)
+@compiled
+def _fitted(
+    piece: Piece, start: PiecePose, goal: Floats, on: _Surface, match: Ints, hinged: bool, chosen: PieceFitSettings
+) -> tuple[Floats, Floats, Floats, Floats, Ints]:
+    """Rotation, shift and turn of the far piece after all steps, and squares and matches of `PieceFit`."""
+    R, t, Q, turning = start.R.copy(), start.t.copy(), start.Q.copy(), 9 if hinged else 6
+    inertia = _inertia(piece)
+    for scale in chosen.scales:
+        y, n, C = placed_piece(piece, PiecePose(R, t, Q))
+        match = local_matches(y, n, match, on.V, on.N, on.start, on.ring, on.beta)
+        H, g = np.zeros((9, 9)), np.zeros(9)
+        _add_matches(H, g, y, n, match, piece, on, C, (scale * on.size) ** 2, chosen)
+        _add_holds(H, g, piece, R, Q, C, goal, inertia, chosen)
+        step = solved(H, g, turning)
+        before, R = R, product(rotation(step[:3], chosen.longest_step), R)
+        for x in range(3):
+            t[x] = C[x] + step[3 + x] - (R[x, 0] * piece.hinge[0] + R[x, 1] * piece.hinge[1] + R[x, 2] * piece.hinge[2])
+        if hinged:
+            own = product(rotation(step[6:], chosen.longest_step), before)
+            Q = product(product(before.T, own), Q)
+    y, n, C = placed_piece(piece, PiecePose(R, t, Q))
+    match = local_matches(y, n, match, on.V, on.N, on.start, on.ring, on.beta)
+    return R, t, Q, _squares(y, n, match, on, chosen), match
 
 
-def _limited(w: Floats, longest: float) -> Floats:
-    return w * min(1.0, longest / max(float(np.linalg.norm(w)), 1e-12))
+@compiled
+def _squares(y: Floats, n: Floats, match: Ints, on: _Surface, chosen: PieceFitSettings) -> Floats:
+    """(point,) squared distance to the surface, mesh unit²; see `left_along` and `most_left`."""
+    out, off = np.empty(len(y)), (chosen.most_left * on.size) ** 2
+    for i in range(len(y)):
+        cosine, across, square = _met(y, n, i, on, match[i])
+        out[i] = min(across * across + chosen.left_along * square, off) if cosine > chosen.least_cosine else off
+    return out
 
 
-def _add_holds(
-    H: Floats, g: Floats, piece: Piece, pose: PiecePose, r: Floats, C: Floats, goal: Floats, chosen: PieceFitSettings
-) -> None:
-    """Adds the joint's anchor, and what keeps free turns from running away; r (point, xyz) from the hinge."""
-    q = pose.R @ (piece.joint - piece.hinge)
-    K = np.array([[0, q[2], -q[1], 1, 0, 0], [-q[2], 0, q[0], 0, 1, 0], [q[1], -q[0], 0, 0, 0, 1]])
-    firm = chosen.anchor * piece.mass.sum()
-    H[:6, :6] += firm * K.T @ K
-    g[:6] += firm * K.T @ (goal - C - q)
-    inertia = piece.mass * np.einsum("px,px->p", r, r)
-    hold = chosen.hold * inertia[piece.far].sum()
-    Q = pose.Q
-    g[6:] -= hold / 2 * (pose.R @ np.array([Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]]))
-    H[np.arange(9), np.arange(9)] += np.repeat([1e-6 * inertia.sum(), 1e-9 * piece.mass.sum(), hold + 1e-12 * inertia.sum()], 3)
+@compiled
+def _met(y: Floats, n: Floats, i: int, on: _Surface, u: int) -> tuple[float, float, float]:
+    """Cosine of the normals of point i and vertex u, distance along the latter's, squared distance."""
+    cosine, across, square = 0.0, 0.0, 0.0
+    for x in range(3):
+        d = on.V[u, x] - y[i, x]
+        cosine += n[i, x] * on.N[u, x]
+        across += d * on.N[u, x]
+        square += d * d
+    return cosine, across, square
 
 
 @compiled
 def _add_matches(
-    H: Floats, g: Floats, y: Floats, n: Floats, V: Floats, N: Floats, mass: Floats, far: Flags, C: Floats, scale2: float,
-    least_cosine: float, weighed_along: float, along: float,
+    H: Floats, g: Floats, y: Floats, n: Floats, match: Ints, piece: Piece, on: _Surface, C: Floats, scale2: float,
+    chosen: PieceFitSettings,
 ) -> None:  # fmt: skip
     """Adds the equations of all matches: turn about the hinge and shift of all points, turn of the far ones.
 
-    y, n : (point, xyz) mesh unit · unit normals, V, N : (point, xyz) their matches
+    y, n : (point, xyz) mesh unit · unit normals, C : (xyz,) the hinge
     """
-    J, K = np.zeros(9), np.zeros((3, 9))
+    G, h, J, r, f = np.zeros((2, 6, 6)), np.zeros((2, 6)), np.empty(6), np.empty(3), np.empty(3)
     for i in range(len(y)):
-        cosine, off, square = 0.0, 0.0, 0.0
-        for x in range(3):
-            d = V[i, x] - y[i, x]
-            cosine += n[i, x] * N[i, x]
-            off += d * N[i, x]
-            square += d * d
-        if cosine <= least_cosine:
+        u = match[i]
+        cosine, across, square = _met(y, n, i, on, u)
+        if cosine <= chosen.least_cosine:
             continue
-        w = mass[i] * cosine / (1.0 + (off * off + weighed_along * square) / scale2) ** 2
+        w = piece.mass[i] * cosine / (1.0 + (across * across + chosen.weighed_along * square) / scale2) ** 2
+        side = 1 if piece.far[i] else 0
+        for x in range(3):
+            r[x] = y[i, x] - C[x]
+            f[x] = w * (across * on.N[u, x] + chosen.along * (on.V[u, x] - y[i, x]))
         for x in range(3):
             a, b = (x + 1) % 3, (x + 2) % 3
-            J[x] = (y[i, a] - C[a]) * N[i, b] - (y[i, b] - C[b]) * N[i, a]
-            J[3 + x] = N[i, x]
-            J[6 + x] = J[x] if far[i] else 0.0
-            K[x, 3 + x] = 1.0
-            K[x, a], K[x, b] = y[i, b] - C[b], C[a] - y[i, a]
-            K[x, 6 + a], K[x, 6 + b] = (K[x, a], K[x, b]) if far[i] else (0.0, 0.0)
-        for p in range(9):
-            g[p] += w * off * J[p]
-            for x in range(3):
-                g[p] += w * along * (V[i, x] - y[i, x]) * K[x, p]
-            for q in range(9):
-                H[p, q] += w * (J[p] * J[q] + along * (K[0, p] * K[0, q] + K[1, p] * K[1, q] + K[2, p] * K[2, q]))
+            J[x], J[3 + x] = r[a] * on.N[u, b] - r[b] * on.N[u, a], on.N[u, x]
+        for p in range(6):
+            for q in range(p, 6):
+                G[side, p, q] += w * J[p] * J[q]
+        _add_pull(G[side], h[side], r, f, w * chosen.along)
+    for p in range(6):
+        g[p] += h[0, p] + h[1, p]
+        for q in range(p, 6):
+            H[p, q] += G[0, p, q] + G[1, p, q]
+        for q in range(3):
+            H[p, 6 + q] += G[1, min(p, q), max(p, q)]
+    for p in range(3):
+        g[6 + p] += h[1, p]
+        for q in range(p, 3):
+            H[6 + p, 6 + q] += G[1, p, q]
+
+
+@compiled
+def _add_pull(G: Floats, h: Floats, r: Floats, f: Floats, w: float) -> None:
+    """Adds w |ω × r + s|² / 2 − f · (ω × r + s) to the equations of a turn ω and a shift s, above the diagonal alone."""
+    for x in range(3):
+        a, b = (x + 1) % 3, (x + 2) % 3
+        h[x] += r[a] * f[b] - r[b] * f[a]
+        h[3 + x] += f[x]
+        G[x, x] += w * (r[a] * r[a] + r[b] * r[b])
+        G[min(x, a), max(x, a)] -= w * r[x] * r[a]
+        G[x, 3 + a] -= w * r[b]
+        G[x, 3 + b] += w * r[a]
+        G[3 + x, 3 + x] += w
+
+
+@compiled
+def _add_holds(
+    H: Floats, g: Floats, piece: Piece, R: Floats, Q: Floats, C: Floats, goal: Floats, inertia: Floats, chosen: PieceFitSettings
+) -> None:
+    """Adds the joint's anchor, and what keeps free turns from running away; inertia (2,) of the near and the far piece."""
+    lever, pull, axis, mass = np.zeros(3), np.empty(3), np.empty(3), 0.0
+    for i in range(len(piece.mass)):
+        mass += piece.mass[i]
+    firm, hold, damping = chosen.anchor * mass, chosen.hold * inertia[1], inertia[0] + inertia[1]
+    for x in range(3):
+        a, b = (x + 1) % 3, (x + 2) % 3
+        for k in range(3):
+            lever[x] += R[x, k] * (piece.joint[k] - piece.hinge[k])
+        pull[x] = firm * (goal[x] - C[x] - lever[x])
+        axis[x] = Q[b, a] - Q[a, b]
+    _add_pull(H, g, lever, pull, firm)
+    for x in range(3):
+        g[6 + x] -= hold / 2.0 * (R[x, 0] * axis[0] + R[x, 1] * axis[1] + R[x, 2] * axis[2])
+        H[x, x] += 1e-6 * damping
+        H[3 + x, 3 + x] += 1e-9 * mass
+        H[6 + x, 6 + x] += hold + 1e-12 * damping
+
+
+@compiled
+def _inertia(piece: Piece) -> Floats:
+    """(2,) of the near and the far piece about the hinge, mesh unit² times mass."""
+    out = np.zeros(2)
+    for i in range(len(piece.V)):
+        for x in range(3):
+            out[1 if piece.far[i] else 0] += piece.mass[i] * (piece.V[i, x] - piece.hinge[x]) ** 2
+    return out

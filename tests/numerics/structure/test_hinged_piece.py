@@ -42,3 +42,9 @@ def test_a_large_part_is_sampled_and_its_points_weigh_by_the_square_of_what_they
     assert POINTS <= len(piece.V) < 2 * POINTS
     np.testing.assert_allclose(piece.mass[1:], weight[:: len(many) // POINTS][1:] ** 2)
     assert len(sampled_piece(V, V, ONES, ONES > 0.5, HINGE, HINGE).V) == len(V)
+
+
+def test_points_of_a_sample_lie_one_after_the_other() -> None:
+    many = np.tile(V, (50, 1))
+    piece = sampled_piece(many, many, np.ones(len(many)), np.ones(len(many), np.bool_), HINGE, HINGE)
+    assert all(a.flags.c_contiguous for a in (piece.V, piece.N, piece.mass, piece.far))  # one type for what is compiled
