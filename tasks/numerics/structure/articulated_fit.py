@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.compiled import compiled
 
 DAMPING = 1e-7
 """Added to the diagonal of the normal equations, share of its mean: keeps them solvable."""
@@ -75,12 +76,10 @@ def sums(V: Floats, x: Floats, W: Floats, parents: Ints, tau: Floats) -> Sums:
         weighted = tau[:, None] * phi
         rows = np.ascontiguousarray(x.transpose(0, 2, 1)).reshape(-1, len(V))
         return Sums((phi.T @ weighted)[None], (rows @ weighted).reshape(len(x), 3, -1))
-    G, C = [], []
-    for row, at in zip(tau, x, strict=True):
-        weighted = row[:, None] * phi
-        G.append(phi.T @ weighted)
-        C.append(at.T @ weighted)
-    return Sums(np.stack(G), np.stack(C))
+    row, place = np.nonzero(phi)
+    start = np.searchsorted(row, np.arange(len(phi) + 1))
+    x, tau, value = np.ascontiguousarray(x), np.ascontiguousarray(tau), phi[row, place]
+    return Sums(*_sums(start, np.ascontiguousarray(place), value, x, tau, phi.shape[1]))
 
 
 def fitted(s: Sums, start: Motion, parents: Ints, expected: PosePrior | None = None, *, rounds: int = 10) -> Motion:
@@ -149,6 +148,27 @@ def _normal_equations(s: Sums, motion: Motion, parents: Ints, levers: Floats) ->
     H[:, -3:, -3:] = s.G[:, 3 * P, 3 * P, None, None] * np.eye(3)
     torque = _axial((Z @ error.transpose(0, 2, 1)).reshape(T, P, 3, 3))
     return H, np.concatenate([torque.reshape(T, -1), error[:, :, 3 * P]], axis=1)
+
+
+@compiled
+def _sums(start: Ints, place: Ints, value: Floats, x: Floats, tau: Floats, size: int) -> tuple[Floats, Floats]:
+    """(frame, n, n) · (frame, xyz, n) as in `Sums`: a vertex follows few parts, so that most of its φ is 0.
+
+    start, place, value : (vertex + 1,) · (entry,) · (entry,) what of φ is not 0, vertex by vertex
+    """
+    G, C = np.zeros((len(x), size, size)), np.zeros((len(x), 3, size))
+    for f in range(len(x)):
+        for v in range(len(start) - 1):
+            for a in range(start[v], start[v + 1]):
+                p, weighted = place[a], tau[f, v] * value[a]
+                for k in range(3):
+                    C[f, k, p] += weighted * x[f, v, k]
+                for b in range(a, start[v + 1]):
+                    G[f, p, place[b]] += weighted * value[b]
+        for p in range(size):
+            for q in range(p):
+                G[f, p, q] = G[f, q, p]
+    return G, C
 
 
 def _levers(rest: Floats, parents: Ints) -> Floats:

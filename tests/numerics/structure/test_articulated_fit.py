@@ -42,6 +42,15 @@ def test_equal_trust_in_all_frames_is_no_trust() -> None:
     assert np.abs(other.R - one.R).max() < 1e-9
 
 
+def test_sums_are_those_of_every_vertex_in_every_frame() -> None:
+    body, rng = three_arms(), np.random.default_rng(2)
+    tau, W = rng.random(body.x.shape[:2]), rng.random(body.W.shape) * (body.W > 0)
+    found = sums(body.V, body.x, W, body.parents, tau)
+    phi = np.concatenate([(W[:, :, None] * body.V[:, None]).reshape(len(body.V), -1), W @ beyond(body.parents).T], axis=1)
+    np.testing.assert_allclose(found.G, np.einsum("tv,va,vb->tab", tau, phi, phi, optimize=True), atol=1e-9)
+    np.testing.assert_allclose(found.C, np.einsum("tv,tvx,va->txa", tau, body.x, phi, optimize=True), atol=1e-9)
+
+
 def test_part_without_evidence_turns_as_expected() -> None:
     body = chain((0.1,), swings(6, 2))
     tau = np.tile(body.area, (6, 1))
