@@ -21,7 +21,8 @@ from typing import Any
 
 from numba.core import event
 
-from kinetree.tasks.numerics.compiled_ahead import LIST, SWITCH, text_of
+from kinetree.tasks.compiled_ahead import SWITCH
+from kinetree.tasks.numerics.kernel_list import LIST, text_of
 
 
 def main() -> None:

@@ -81,6 +81,9 @@ class Application:
     every sequence that was computed; one origin, whose params have the field `sequences`, lists what became of all."""
     renamed: Mapping[str, str] = field(default_factory=dict)
     """What blocks and parameters (as task.name) of earlier versions are called now; what refuses the old name says so."""
+    beside: str | None = None
+    """What helps a run that computes on this machine from the side, as module:function: gives a context manager that lasts as
+    long as the run and changes no result."""
     first_steps: tuple[tuple[str, str], ...] = ()
     """Command lines to begin with and what each does; printed where no command is named."""
 
@@ -108,6 +111,12 @@ def current() -> Application:
     raises : ConfigError where not exactly one is installed
     """
     return _active.get() or _installed()
+
+
+def helped(place: str | None) -> contextlib.AbstractContextManager[None]:
+    """What an application has beside a run (`Application.beside`); nothing for None."""
+    helper: contextlib.AbstractContextManager[None] = _imported(place)() if place else contextlib.nullcontext()
+    return helper
 
 
 def _installed() -> Application:

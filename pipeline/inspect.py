@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from kinetree.errors import NodesFailedError, ReadOnlyStoreError, StoreFullError, UnknownNodeError
-from kinetree.pipeline.application import Application, current
+from kinetree.pipeline.application import Application, current, helped
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
 from kinetree.pipeline.inspection.diff import difference
@@ -53,6 +53,8 @@ class Pipeline:
     config: Config
     tasks: Graph
     store: Store = field(repr=False)
+    beside: str | None = field(default=None, repr=False, compare=False)
+    """See `Application.beside`."""
 
     @staticmethod
     def of(
@@ -75,7 +77,7 @@ class Pipeline:
             product = replace(product, methods=lambda: graphs)
         checked = config if isinstance(config, Config) else configuration.load(config, product, sets)
         graph = replace(product.methods()[checked.method], renamed=product.renamed)
-        return Pipeline(checked, graph, Store.at(checked.store))
+        return Pipeline(checked, graph, Store.at(checked.store), product.beside)
 
     def __repr__(self) -> str:
         """What it runs on and where it leaves things."""
@@ -270,9 +272,9 @@ class Pipeline:
         from kinetree.pipeline.running.launch import launcher
         from kinetree.pipeline.running.run import run, take_back_lost
 
-        is_whole = False
+        is_whole, beside = False, self.beside if client is None and self.config.compute.is_here else None
         while not is_whole:
-            with launcher(self.config.compute, client) as launch:
+            with helped(beside), launcher(self.config.compute, client) as launch:
                 run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))
             # to end workers takes seconds, in which somebody may have removed what was there
             is_whole = not launch.is_elsewhere or not take_back_lost(Job(schedule, watch), schedule.store)

@@ -183,6 +183,7 @@ APPLICATION = Application(
         "tips": "extrema",
         "upright": "up_direction",
     },
+    beside="kinetree.tasks.compiled_ahead:compiling_ahead",
     first_steps=(
         ("kinetree demo", "compute an example, in a few minutes"),
         ("kinetree run --input FOLDER --output OUT", "compute your own sequence: a folder of meshes, one per frame"),

@@ -70,6 +70,11 @@ class Compute(BaseModel):
         return size
 
     @property
+    def is_here(self) -> bool:
+        """Whether this machine computes, in this process or in processes of its own."""
+        return self.scheduler is None and self.scheduler_file is None and self.cluster is None
+
+    @property
     def memory_bytes(self) -> int | None:
         """The memory limit of one worker process in bytes."""
         if self.memory is None:

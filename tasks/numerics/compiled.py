@@ -17,10 +17,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
-from numba.core import event
 from numba.core.caching import UserProvidedCacheLocator
 
-from kinetree.tasks.numerics.compiled_ahead import start_ahead
 from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -35,21 +33,6 @@ class SharedCacheLocator(UserProvidedCacheLocator):  # type: ignore[misc]
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
         """The folder below `CACHE_DIR`; numba's own is named by the path of the source, which a copy does not share."""
         return Path(py_file).stem
-
-
-class _Cold(event.Listener):  # type: ignore[misc]
-    """Hears of every kernel that was not found on disk."""
-
-    def on_start(self, event: Any) -> None:
-        """Has others compiled beside it."""
-        function = event.data["dispatcher"].py_func
-        start_ahead(f"{function.__module__}.{function.__qualname__}")
-
-    def on_end(self, event: Any) -> None:
-        """Nothing to do."""
-
-
-event.register("numba:compile", _Cold())
 
 
 def compiled(function: Function) -> Function:

@@ -1,23 +1,13 @@
-"""Compiles kernels in a process of its own while a first run computes: numba compiles one function at a time in a process.
+"""The kernels of a run, in the order of their first call, with the types of their arguments: what can be compiled beforehand.
 
-`kernels.jsonl` lists the kernels of a run, in the order of their first call, with the types of their arguments. The process
-begins at the end of the list and the run at its beginning, so that they meet in the middle. What was compiled is found on disk.
-A line that no longer fits the code costs time alone. `KINETREE_COMPILE_AHEAD=0` leaves the process out.
-
-    python -m kinetree.tasks.numerics.compiled_ahead      compiles the whole list and returns, to prepare a machine or an image
+`kernels.jsonl` has a line for each. A line that no longer fits the code is passed over.
 """
 
-import atexit
 import contextlib
-import fcntl
 import importlib
 import json
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Callable, Iterable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -26,23 +16,9 @@ import numpy as np
 from numba.core.errors import NumbaError
 from numba.np.numpy_support import as_dtype, from_dtype
 
-from kinetree.tasks.numerics.kernel_folder import kernel_folder
-
 LIST = Path(__file__).with_name("kernels.jsonl")
-SWITCH = "KINETREE_COMPILE_AHEAD"
-NICENESS = 10
-"""The run comes first where cores are few."""
 Line = tuple[str, list[Any]]
 _ARRAY = re.compile(r"(\w+)\[(\d)([ACF])\](!?)")
-
-
-def start_ahead(kernel: str) -> None:
-    """Starts the process, once, when a kernel of the list had to be compiled and a second core is there for it.
-
-    kernel : its module and name
-    """
-    if os.environ.get(SWITCH) != "0" and kernel in _listed() and len(os.sched_getaffinity(0)) > 1 and sys.executable:
-        _start()
 
 
 def lines() -> list[Line]:
@@ -103,38 +79,3 @@ def type_of(text: Any) -> Any:
 def _form(array: Any) -> str:
     """Dimensions and layout of an array, and whether it is written to."""
     return f"{array.ndim}{array.layout}]{'' if array.mutable else '!'}"
-
-
-@cache
-def _listed() -> frozenset[str]:
-    return frozenset(name for name, _ in lines())
-
-
-@cache
-def _start() -> None:
-    quiet: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
-    with contextlib.suppress(OSError):
-        process = subprocess.Popen([sys.executable, "-m", __name__, str(os.getpid())], **quiet)
-        atexit.register(_stop, process)
-
-
-def _stop(process: "subprocess.Popen[bytes]") -> None:
-    process.terminate()
-    process.wait()
-
-
-def main(parent: str | None = None) -> None:
-    """Compiles all of the list; for a parent from its end, as long as that lives and no other process is at it."""
-    os.environ[SWITCH] = "0"
-    if parent is None:
-        every = lines()
-        print(f"{compile_all(every, lambda: True)} of {len(every)} kernels are ready")
-        return
-    with contextlib.suppress(OSError), (kernel_folder() / "ahead.lock").open("a") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # OSError: the process of another worker is at it
-        os.nice(NICENESS)
-        compile_all(reversed(lines()), lambda: os.getppid() == int(parent))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
