@@ -17,6 +17,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parent.parent
+SHIPPED = (".py", ".yaml", ".js", ".css", ".html", ".jsonl", ".LICENSE")
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +34,7 @@ def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) ->
     held = set(zipfile.ZipFile(wheel).namelist())
     for folder in ("pipeline", "tasks", "schemas", "configs"):
         for file in (ROOT / folder).rglob("*"):
-            if file.suffix in (".py", ".yaml", ".js", ".css", ".html", ".jsonl", ".LICENSE") and "__pycache__" not in file.parts:
+            if file.suffix in SHIPPED and "__pycache__" not in file.parts:
                 assert f"kinetree/{file.relative_to(ROOT)}" in held
     assert {name.split("/")[0] for name in held if ".dist-info" not in name} == {"kinetree"}
 
