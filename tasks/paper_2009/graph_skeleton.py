@@ -11,7 +11,7 @@ from kinetree.schemas.paper_2009.graph_skeleton import GraphSkeletonParams
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.paper_2009.edge_joints import NodeMotion, edge_joints
 from kinetree.tasks.numerics.paper_2009.node_clusters import part_motions, rigid_clusters
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
@@ -53,7 +53,7 @@ def _centres(
     """Joints where clusters turn about each other: the nodes' pieces of the aligned surface that move as one (ours)."""
     V, F, aligned, frames = np.array(s.vertices), np.array(s.faces), list(alignment.values()), tuple(alignment)
     x, confidence = np.stack([a.vertices for a in aligned]), np.stack([a.confidence for a in aligned])
-    area = Surface.of(V, F).area
+    area = surface_areas(V, F)
     evidence = FrameEvidence.of(
         confidence,
         np.stack([a.residual for a in aligned]),

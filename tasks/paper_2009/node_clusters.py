@@ -10,7 +10,7 @@ from kinetree.schemas.paper_2009.graph_deformation import GraphDeformation
 from kinetree.schemas.paper_2009.initial_model import InitialModel
 from kinetree.schemas.paper_2009.node_clusters import NodeClusters, NodeClustersParams
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.paper_2009 import node_clusters as numerics
 
 
@@ -43,7 +43,7 @@ def _rigid(model: InitialModel, moved: list[GraphDeformation], removal_cost: flo
     """(vertex,) clusters by what each is needed for."""
     V, F = np.array(model.vertices), np.array(model.faces)
     x, confidence = np.stack([d.vertices for d in moved]), np.stack([d.confidence for d in moved])
-    area: Floats = Surface.of(V, F).area
+    area: Floats = surface_areas(V, F)
     return numerics.rigid_clusters(V, F, x, confidence, area, np.array(model.label), removal_cost)
 
 

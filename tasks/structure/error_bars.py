@@ -7,7 +7,7 @@ from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import error_bars as numerics
 
 
@@ -56,7 +56,7 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
 def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numerics.JointFeatures:
     """What is known of all joints, root and leaves among them."""
     tree = kinematic_tree
-    size = float(np.sqrt(Surface.of(skeleton.vertices, skeleton.faces).area.sum()))
+    size = float(np.sqrt(surface_areas(skeleton.vertices, skeleton.faces).sum()))
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths)
     drift, spread, residual, degrees, length = (np.array(a) for a in of_joints)
     return numerics.JointFeatures(drift, spread, residual, degrees, length, np.array(skeleton.confidence), size)

@@ -13,7 +13,7 @@ from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import JointParams, KinematicTree, KinematicTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
@@ -48,7 +48,7 @@ def kinematic_tree(
         V,
         np.asarray(F, dtype=np.int64),
         np.stack([a.vertices for a in aligned]),
-        Surface.of(V, F).area,
+        surface_areas(V, F),
         np.asarray(rigid_parts.label, dtype=np.int64),
         rigid_parts.rotation,
         rigid_parts.translation,

@@ -58,12 +58,7 @@ class Surface:
         V : (vertex, xyz) finite, mesh unit
         F : (face, corner) three different vertices each; vertices in no face are allowed and reached by nothing
         """
-        order = morton_order(V)
-        rank = np.empty_like(order)
-        rank[order] = np.arange(len(order))
-        corners: Ints = rank[F].reshape(-1, 3)
-        corners = corners[np.argsort(corners.min(axis=1, initial=len(V)), kind="stable")]
-        P = np.ascontiguousarray(V[order], dtype=np.float64)
+        order, P, corners = _along_curve(V, F)
         corners, twin, edges = _agreeing(corners, len(P))
         tail, head, apex = corners.ravel(), corners[:, [1, 2, 0]].ravel(), corners[:, [2, 0, 1]].ravel()
         length = np.linalg.norm(P[head] - P[tail], axis=1)
@@ -72,8 +67,7 @@ class Surface:
         start = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=len(P)))])
         ring_start, kind, edge = _rings(start, corner, twin)
         inside = kind > 0
-        area = np.zeros(len(P))
-        area[order] = vertex_areas(P, corners)
+        area = _areas(order, P, corners)
         free = np.zeros(len(P), np.uint8)
         free[tail[twin >= NON_MANIFOLD]] = free[head[twin >= NON_MANIFOLD]] = 1
         free[np.bincount(np.repeat(np.arange(len(P)), np.diff(ring_start)), ~inside, len(P)) > 1] = 1
@@ -102,6 +96,29 @@ class Surface:
             position=np.ascontiguousarray(V, dtype=np.float64),
             edge=float(length.mean()) if len(length) else 1.0,
         )
+
+
+def surface_areas(V: Floats, F: npt.NDArray[np.integer[Any]]) -> Floats:
+    """(vertex,) the area of `Surface.of(V, F)` alone, to the last bit, in a tenth of the time; mesh unit²."""
+    order, P, corners = _along_curve(V, F)
+    return _areas(order, P, _agreeing(corners, len(P))[0])
+
+
+def _along_curve(V: Floats, F: npt.NDArray[np.integer[Any]]) -> tuple[Ints, Floats, Ints]:
+    """The vertices' order along a Morton curve · (vertex, xyz) · (face, corner) in it."""
+    order = morton_order(V)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    corners: Ints = rank[F].reshape(-1, 3)
+    corners = corners[np.argsort(corners.min(axis=1, initial=len(V)), kind="stable")]
+    return order, np.ascontiguousarray(V[order], dtype=np.float64), corners
+
+
+def _areas(order: Ints, P: Floats, corners: Ints) -> Floats:
+    """(vertex,) in the input's numbering."""
+    area = np.zeros(len(P))
+    area[order] = vertex_areas(P, corners)
+    return area
 
 
 def _before(edge: Ints) -> Ints:

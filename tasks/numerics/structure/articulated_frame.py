@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.compiled import compiled
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.registration.graph_kinematics import deformed, turned
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.frame_poses import fit_sample
@@ -60,7 +60,7 @@ class SkinnedBody(NamedTuple):
     ) -> "SkinnedBody":  # fmt: skip
         """A skinned mesh; see the class for the arrays."""
         V, rest, faces = np.array(V, dtype=np.float64), np.array(rest, dtype=np.float64), F.astype(np.int64)
-        area = Surface.of(V, faces).area
+        area = surface_areas(V, faces)
         label = bound[:, 0].astype(np.int64)
         count = len(parents)
         sample, mass = fit_sample(label, area, count)

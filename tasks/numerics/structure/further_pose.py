@@ -7,7 +7,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 from kinetree.tasks.numerics.structure.articulated_frame import FramePose, SkinnedBody, relative_rotations
@@ -45,7 +45,7 @@ def further_pose(
     surface    : gives the frame's surface, which is asked for where there are such parts; None leaves them as aligned
     """
     parts = len(body.parents)
-    area = Surface.of(body.V, body.F).area
+    area = surface_areas(body.V, body.F)
     W = np.zeros((len(body.V), parts))
     np.add.at(W, (np.arange(len(W))[:, None], body.bound), body.weight)
     weight = np.ones(len(x)) if confidence is None else np.maximum(confidence, 1e-6)

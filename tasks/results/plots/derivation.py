@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
-from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.results.majority import centroids, labels_of_rings
 from kinetree.tasks.results.formats.colours import pale_part_colours
 from kinetree.tasks.results.plots.drawing import COLOURS, LABEL_BOX, Fetch, blank, graded, surface, view, words
@@ -52,7 +52,7 @@ def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     shades = pale_part_colours(skeleton.label, skeleton.faces)
     if not count:
         return words(NO_CONES)
-    area = Surface.of(skeleton.vertices, skeleton.faces).area
+    area = surface_areas(skeleton.vertices, skeleton.faces)
     joint = labels_of_rings(parts.cone, parts.ring, skeleton.influence[:, 0], area, parts.run.shape)
     columns = min(count, 3)
     rows = -(-count // columns)
@@ -101,7 +101,7 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
         surface(axes, skeleton.vertices @ axis, skeleton.faces, colour)
     drift = 100 * tree.border_drift / float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
     shade = graded(float(drift.max(initial=1e-3)))
-    area = Surface.of(skeleton.vertices, skeleton.faces).area
+    area = surface_areas(skeleton.vertices, skeleton.faces)
     middle = centroids(skeleton.vertices, parts.label, area, len(tree.joint_of_part))
     _graph(before, tree, middle @ axis, tree.centre @ axis, shade.to_rgba(drift))
     bar = figure.colorbar(shade, ax=before, shrink=0.7, location="left", pad=0.0)

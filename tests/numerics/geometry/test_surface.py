@@ -3,12 +3,19 @@
 import numpy as np
 import shapes
 
-from kinetree.tasks.numerics.geometry.surface import BORDER, NON_MANIFOLD, Surface
+from kinetree.tasks.numerics.geometry.surface import BORDER, NON_MANIFOLD, Surface, surface_areas
 
 
 def test_vertex_areas_sum_to_the_area_of_the_surface() -> None:
     V, F = shapes.open_cylinder(24, 9, radius=0.5, height=3.0)
     assert np.isclose(Surface.of(V, F).area.sum(), 24 * 2 * 0.5 * np.sin(np.pi / 24) * 3.0)
+
+
+def test_areas_alone_are_those_of_the_surface_to_the_last_bit() -> None:
+    V, F = shapes.sphere(2)
+    F = np.where(np.arange(len(F))[:, None] % 3, F, F[:, [0, 2, 1]])  # every third face is turned over
+    V = V + np.random.default_rng(0).normal(0.0, 0.01, V.shape)
+    assert surface_areas(V, F).tobytes() == Surface.of(V, F).area.tobytes()
 
 
 def test_the_centre_of_area_is_the_middle_of_a_symmetric_body_however_it_is_meshed() -> None:
