@@ -45,13 +45,14 @@ FRAME = "frame"
 @dataclass(frozen=True)
 class Job:
     """One node: over which space its task runs, how deep that is in the graph, chains before all others, whether it is aside
-    (`Graph.aside`), what it takes and what it waits for.
+    (`Graph.aside`) or of a chain, what it takes and what it waits for.
     """
 
     node: Node
     space: Space
     depth: int
     is_aside: bool
+    is_chain: bool
     seconds: float
     before: frozenset[Node]
 
@@ -128,7 +129,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
         read = {parse(label, graph) for argument in record.inputs for label in argument["nodes"]}
         read |= {n for n in found if n.task in tellers and _agree(task.over, node, graph.by_name[n.task].over, n)}
         before = frozenset(n for n in read if n in found and n != node)
-        jobs[node] = Job(node, task.over, depth[node.task], node.task in graph.aside, record.seconds, before)
+        jobs[node] = Job(node, task.over, depth[node.task], node.task in graph.aside, task.is_chain, record.seconds, before)
     return jobs
 
 
@@ -211,7 +212,7 @@ def _parcel(jobs: Jobs, waits: dict[Node, set[Node]], after: dict[Node, list[Nod
             break
         (last,) = following
         parcel.append(last)
-    for member in parcel if first.at and len(parcel) == 1 else ():
+    for member in parcel if first.at and not jobs[first].is_chain else ():
         for node in after[member]:
             is_here = node.at == first.at and jobs[node].space == jobs[first].space
             goes_along = jobs[first].is_aside or not jobs[node].is_aside

@@ -54,7 +54,7 @@ def together(
             break
         (last,) = following
         add(last)
-    if len(parcel) > 1:
+    if first.task.is_chain:
         return parcel
     for member in parcel:
         for other in waiting(member):

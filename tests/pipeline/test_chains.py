@@ -212,8 +212,9 @@ def test_a_long_chain_travels_in_stretches(toys):
     assert [label for labels in sent for label in labels] == [f"link[frame={n}]" for n in range(2 * STRETCH + 3)]
 
 
-def test_a_chain_goes_first_and_takes_nothing_along(toys):
-    """What reads a link can wait, the next link cannot."""
+@pytest.mark.parametrize("more", [0, 1])
+def test_a_chain_goes_first_and_takes_nothing_along(toys, more):
+    """What reads a link can wait, the next link cannot; the last stretch may be one link."""
     read = '''
 
 class Mark(Artifact):
@@ -230,11 +231,12 @@ def mark(link: Link) -> Mark:
 
 GRAPH = Graph.of((source, row, link, mark))
 '''
-    (toys.folder / toys.name / "chain.py").write_text(CHAIN.replace("range(2000)", f"range({2 * STRETCH})") + read)
+    (toys.folder / toys.name / "chain.py").write_text(CHAIN.replace("range(2000)", f"range({2 * STRETCH + more})") + read)
     toys.main = "chain"
     sent = [labels for _, labels in sent_by_run(toys.pipeline().schedule())]
-    links = [[f"link[frame={n}]" for n in range(STRETCH * k, STRETCH * (k + 1))] for k in range(2)]
-    assert sent == [["row"], *links, *([f"mark[frame={n}]"] for n in range(2 * STRETCH))]
+    frames = range(2 * STRETCH + more)
+    links = [[f"link[frame={n}]" for n in frames[k : k + STRETCH]] for k in range(0, len(frames), STRETCH)]
+    assert sent == [["row"], *links, *([f"mark[frame={n}]"] for n in frames)]
 
 
 def test_a_task_may_be_set_by_the_block_of_another(toys):
