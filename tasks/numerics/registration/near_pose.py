@@ -1,4 +1,4 @@
-"""A frame's pose by few points of both surfaces: near enough for a fit to begin with, in a third of its time (ours).
+"""A frame's pose by few points of both surfaces: near enough for a fit to begin with, in less than half of its time (ours).
 
 In a chain every frame waits for the one before, so a chain should do no more than a next frame needs. Bodies and frames are
 thinned to clouds of points, each with its nearest points in place and normal as neighbours; the graph's nodes stay.
