@@ -47,7 +47,8 @@ class EndJointsSettings(NamedTuple):
     degrees: float = 2.0
     """Root mean square turn that agrees from frame to frame, at least: that of a swing over 6°, which other joints need."""
     most_frames: int = 40
-    """Frames of each take in which rings are judged, about, evenly spread runs of two; for time."""
+    """Frames of a take in which rings are judged in all of them; of more, in as many pairs of neighbours, in evenly spread runs
+    of four frames, 52 in all; for time."""
 
 
 class EndJoint(NamedTuple):

@@ -12,6 +12,10 @@ from kinetree.tasks.numerics.structure.hinged_piece import HingedFit
 FEWEST_PAIRS = 3
 """Pairs of frames that follow each other, below which nothing is said of a ring."""
 
+RUN = 3
+"""Pairs of frames that follow each other without a gap, of takes with too many frames: 39 pairs are 52 frames then, and would
+be 78 one by one."""
+
 
 class RingEvidence(NamedTuple):
     """What a ring shows over some frames.
@@ -69,7 +73,7 @@ def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple
     """Frames in which rings are judged, ascending · (pair, 2) which of them follow each other in one take.
 
     count : how many frames there are
-    most  : how many of each take are judged, about; if it has more, runs of two
+    most  : how many of a take are all judged; if it has more, runs of `RUN` pairs
     """
     spans = [np.arange(count)[take] for take in takes or [slice(0, count)]]
     pairs = np.concatenate([_neighbours(span, most) for span in spans])
@@ -77,10 +81,11 @@ def judged_frames(count: int, takes: Sequence[slice] | None, most: int) -> tuple
 
 
 def _neighbours(span: Ints, most: int) -> Ints:
-    """(pair, 2) frames of a take that follow each other, evenly spread if it has more than `most` frames."""
+    """(pair, 2) frames of a take that follow each other; of more than `most` frames as many as these have, in runs."""
     pairs = np.stack([span[:-1], span[1:]], axis=1)
-    if len(span) > most and len(pairs):
-        pairs = pairs[np.unique(np.linspace(0, len(pairs) - 1, most // 2).astype(np.int64))]
+    if len(span) > most and len(pairs) > RUN:
+        begin = np.linspace(0, len(pairs) - RUN, -(-(most - 1) // RUN)).astype(np.int64)
+        pairs = pairs[np.unique(begin[:, None] + np.arange(RUN))]
     return pairs
 
 

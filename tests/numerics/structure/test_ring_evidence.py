@@ -15,12 +15,19 @@ def test_judged_frames_follow_each_other_within_a_take() -> None:
     assert (np.diff(pairs, axis=1) == 1).all()
     assert [3, 4] not in pairs.tolist()
     frames, pairs = judged_frames(500, None, 40)
-    assert len(pairs) == 20
-    assert len(frames) <= 40
+    assert len(pairs) == 39
+    assert len(frames) <= 52
     assert pairs[0].tolist() == [0, 1]
     assert pairs[-1].tolist() == [498, 499]
     assert len(judged_frames(1, None, 40)[0]) == 0
     assert len(judged_frames(41, [slice(i, i + 1) for i in range(41)], 40)[1]) == 0
+
+
+@pytest.mark.parametrize(("most", "pairs"), [(12, 12), (40, 39), (41, 42)])
+def test_a_further_frame_never_takes_pairs_away(most: int, pairs: int) -> None:
+    judged = [judged_frames(count, None, most) for count in range(1, 200)]
+    assert [len(found) for _, found in judged] == [min(count, pairs) for count in range(199)]
+    assert max(len(frames) for frames, _ in judged) == pairs * 4 / 3
 
 
 def test_every_take_is_judged_in_as_many_frames_as_one_alone() -> None:
