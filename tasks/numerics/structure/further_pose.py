@@ -73,7 +73,7 @@ def _on_surface(
     x = x.copy()
     for far in ends:
         near = int(body.parents[far])
-        above, own = int(body.parents[near]), np.flatnonzero(np.isin(body.label, [near, far]))
+        above, own = _part_above(body, near), np.flatnonzero(np.isin(body.label, [near, far]))
         weight = W[own, near] + W[own, far]
         hinge, joint = body.rest[far], body.rest[near]
         piece = sampled_piece(body.V[own], body.N[own], weight, body.label[own] == far, hinge, joint)
@@ -83,6 +83,14 @@ def _on_surface(
         moved = motions(laid_hinged(piece, one, goal, target, turn[far]).pose, hinge)
         x[own] = on_pieces(body.V[own], x[own], weight, W[own, far] / np.maximum(weight, 1e-12), *moved)
     return x
+
+
+def _part_above(body: SkinnedBody, part: int) -> int:
+    """The nearest part above that has vertices, which a bone under the skin has not; the part itself where there is none."""
+    above = int(body.parents[part])
+    while above >= 0 and not (body.label == above).any():
+        above = int(body.parents[above])
+    return above if above >= 0 else part
 
 
 def _rigid_parts(body: SkinnedBody, x: Floats, mass: Floats) -> Motion:

@@ -41,14 +41,35 @@ def test_a_part_that_is_not_seen_is_held_as_in_the_nearest_frame_that_saw_it() -
     assert found.confidence[2] < 0.01 < 0.99 < found.confidence[1]
 
 
-@pytest.mark.parametrize("certain", [1.0, 0.1])
-def test_an_end_that_the_alignment_smears_turns_as_its_surface_does(certain: float) -> None:
+def body_with_end(empty: int = 0) -> tuple[SkinnedBody, KnownPoses]:
+    """A tube of three parts, the last beyond an end joint, and so many parts without vertices below the first."""
     smeared, frames = aligned(turning()), Frames(turning())
     part = (smeared.V[:, 2] > 0.0).astype(int) + (smeared.V[:, 2] > END)
     bound, weight = np.zeros((len(part), 4), np.int64), np.tile(np.eye(4)[0], (len(part), 1))
-    bound[:, 0] = part
-    body = SkinnedBody.of(smeared.V, smeared.F, bound, weight, frames.true.joints, np.array([-1, 0, 1]))
-    known, confidence = KnownPoses(frames.true.R[:8], np.ones((8, 3))), np.where(part > 0, certain, 1.0)
+    bound[:, 0] = part + empty * (part > 0)
+    from_three = np.array([0] * (1 + empty) + [1, 2])
+    rest = frames.true.joints[from_three]
+    body = SkinnedBody.of(smeared.V, smeared.F, bound, weight, rest, np.arange(3 + empty) - 1)
+    return body, KnownPoses(frames.true.R[:8, from_three], np.ones((8, 3 + empty)))
+
+
+def test_the_part_above_an_end_may_have_no_vertices() -> None:
+    smeared, frames, away = aligned(turning()), Frames(turning()), np.array([0.0, 30.0, 0.0])
+    V, F = frames(11)
+    found = []
+    for empty in (0, 2):
+        body, known = body_with_end(empty)
+        target = Target.of(V + away, F, body.size)
+        pose = further_pose(body, smeared.x[11] + away, None, known, 11 - np.arange(8), (2 + empty,), lambda t=target: t)  # type: ignore[misc]
+        found.append(pose.pose.R[[0, 1 + empty, 2 + empty]])
+    assert degrees(*found).max() < 0.1
+
+
+@pytest.mark.parametrize("certain", [1.0, 0.1])
+def test_an_end_that_the_alignment_smears_turns_as_its_surface_does(certain: float) -> None:
+    smeared, frames = aligned(turning()), Frames(turning())
+    body, known = body_with_end()
+    confidence = np.where(body.label > 0, certain, 1.0)
     asked = []
 
     def surface(frame: int) -> Target:
