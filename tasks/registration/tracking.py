@@ -58,10 +58,11 @@ def tracking(
 
 def _fitted(body: Nodes, previous: Tracking, starts: list[Pose], frame: Target, fitting: FitSettings) -> numerics.Tracking:
     """A frame fitted with all samples; in another take, from wherever the body may stand."""
+    distant = usual = previous.usual  # what is far is uncovered too, so no frame on the way leaves less uncovered
     if starts:  # how the body moved before says nothing here
-        return numerics.entered(body, starts, frame, fitting, previous.usual)
+        return numerics.entered(body, starts, frame, fitting, usual, distant=distant)
     earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    return numerics.tracking(body, earlier, pose(previous), frame, fitting, previous.usual, distant=previous.usual)
+    return numerics.tracking(body, earlier, pose(previous), frame, fitting, usual, distant=distant)
 
 
 def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from shipped import FITTING
 from stepwise import along, walk
 
+from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import TrackingParams
 from kinetree.tasks.numerics.registration import first_fit as numeric_first_fit
 from kinetree.tasks.numerics.registration import recovery as numeric_recovery
@@ -46,7 +47,7 @@ def test_body_lies_near_every_frame_and_most_frames_need_few_points_alone() -> N
     assert sum(here.attempt > 0 for here in made.tracking.values()) < len(made.mesh) / 2
 
 
-def test_usual_is_the_x_on_the_way_but_for_the_reference() -> None:
+def test_usual_is_the_smallest_share_unexplained_on_the_way_but_for_the_reference() -> None:
     made = walk()
     for t, here in made.tracking.items():
         on_the_way, at = [], t
@@ -132,6 +133,24 @@ def values(fitting: Any) -> dict[str, Any]:
 def test_values_out_of_bounds_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ValidationError):
         TrackingParams(**wrong)
+
+
+def test_fits_where_a_take_is_entered_know_what_is_far_from_the_body_in_all_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = walk()
+    at = made.reference.frame + 1
+    previous = made.tracking[made.reference.frame].model_copy(update={"usual": 0.05})
+    places = {"rotation": np.tile(np.eye(3), (2, 1, 1)), "shift": np.zeros((2, 3)), "distance": np.zeros(2)}
+    entries = TakeEntries(frames=(at,), before=(made.reference.frame,), entry=np.zeros(2, np.int32), **places)
+    told: list[float] = []
+    fitted = numeric_tracking.tracking
+
+    def listening(*given: Any, distant: float = 0.0) -> Any:
+        told.append(distant)
+        return fitted(*given, distant=distant)
+
+    monkeypatch.setattr(numeric_tracking, "tracking", listening)
+    tracking(made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,))
+    assert told == [0.05, 0.05]
 
 
 def test_a_take_is_entered_facing_the_way_on_which_the_body_bends_least() -> None:

@@ -109,16 +109,18 @@ def entered(
     fitting: FitSettings,
     usual: float = 0.0,
     settings: TrackingSettings | None = None,
+    *,
+    distant: float = 0.0,
 ) -> Tracking:
     """Fit a frame from each place where the body may stand, and take what bends it least of those that cover the frame (ours).
 
     A body is much like itself turned back to front, and then covers a frame nearly as well; but feet must be turned over.
 
     starts  : poses to begin with, at least one
-    returns : Tracking; `graph`, `target`, `fitting` and `usual` as in `tracking`
+    returns : Tracking; `graph`, `target`, `fitting`, `usual` and `distant` as in `tracking`
     """
     settings = settings or TrackingSettings()
-    found = [tracking(graph, None, start, target, fitting, usual, settings) for start in starts]
+    found = [tracking(graph, None, start, target, fitting, usual, settings, distant=distant) for start in starts]
     most = min(one.uncovered for one in found) + settings.as_well
     rest = np.ones(len(graph.edge))
     bent = [edge_energy(graph.edge, rest, *one.pose, graph.g) if one.uncovered <= most else np.inf for one in found]

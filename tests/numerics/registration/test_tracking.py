@@ -12,6 +12,7 @@ from kinetree.tasks.numerics.registration.tracking import (
     TrackingSettings,
     attempts,
     distant_share,
+    entered,
     predicted,
     tracking,
 )
@@ -50,6 +51,15 @@ def test_what_no_frame_on_the_way_could_cover_is_not_sought_again(body):
     V, F = tube(around=29, along=57)
     longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
     assert tracking(body, None, at_rest(body), longer, FITTING, usual=1.0).attempt == 0
+
+
+def test_what_is_far_in_all_frames_is_not_sought_again_where_a_take_is_entered(body, monkeypatch):
+    V, F = tube(around=29, along=57)
+    longer = Target.of(V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH], F, body.size)
+    starts, fits = [at_rest(body)] * 2, []
+    monkeypatch.setattr(module, "fit", lambda *a: fits.append(a) or fit(*a))
+    assert entered(body, starts, longer, FITTING, distant=1.0).attempt == 0
+    assert len(fits) == len(starts)
 
 
 def test_a_fold_that_no_way_covers_but_that_lies_near_is_not_sought_again(body, monkeypatch):
