@@ -141,10 +141,10 @@ def test_our_own_workers_declare_their_memory():
     assert worker["memory_limit"] == 3 * 2**30
 
 
-@pytest.mark.parametrize("memory", ["0GB", "0.5B", "50MB"])
-def test_memory_with_which_no_worker_can_start_is_refused(toys, memory):
-    """A worker that is over its limit when it begins would be ended and started again for ever."""
-    with pytest.raises(ConfigError, match=f"compute.memory {memory}: a worker process holds 256 MB before it computes"):
+@pytest.mark.parametrize("memory", ["0GB", "0.5B", "50MB", "260MB", "450MB"])
+def test_memory_that_does_not_hold_the_code_of_all_tasks_is_refused(toys, memory):
+    """A worker that is over its limit before it computes would be ended and started again for ever."""
+    with pytest.raises(ConfigError, match=f"compute.memory {memory}: a worker process needs 600 MB at least"):
         toys.run(compute={"executor": "processes", "workers": 1, "memory": memory})
 
 
