@@ -195,6 +195,8 @@ def tasks(as_json: AsJson = False) -> None:
         named = " [dim](runs only when it is named)[/dim]" if row["on_request"] else ""
         out.print(f"[bold]{row['task']}[/bold]: {reads} → {row['writes']}{per}{named}  [dim]{escape(row['paper'])}[/dim]")
         out.print(f"    {escape(row['summary'])}")
+        if row["set_by"]:
+            out.print(f"    set by [cyan]{row['set_by']}[/cyan]")
         for name, param in row["params"].items():
             out.print(f"    [cyan]{row['task']}.{name}[/cyan] = {escape(str(param['default']))}  {escape(param['what'])}")
 
@@ -217,6 +219,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         "along": task.traversed,
         "writes": task.returns.__name__,
         "params": {n: {"default": f.default, "what": told.get(n, "")} for n, f in fields.items()},
+        "set_by": "" if task.block == task.name or task.params is None else task.block,
         "on_request": task.on_request,
         "paper": task.paper,
         "summary": task.summary,
