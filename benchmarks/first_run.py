@@ -48,7 +48,8 @@ def timed(environment: dict[str, str]) -> tuple[float, float]:
     with tempfile.TemporaryDirectory() as folder:
         before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
         command = [str(Path(sys.executable).with_name("kinetree")), "demo", "--output", f"{folder}/demo"]
-        subprocess.run(command, env={**os.environ, **environment}, check=True, stdout=subprocess.DEVNULL)
+        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        subprocess.run(command, env={**os.environ, **environment}, check=True, **silent)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return time.perf_counter() - begun, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
