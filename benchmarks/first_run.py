@@ -48,8 +48,8 @@ def timed(environment: dict[str, str]) -> tuple[float, float]:
     with tempfile.TemporaryDirectory() as folder:
         before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
         command = [str(Path(sys.executable).with_name("kinetree")), "demo", "--output", f"{folder}/demo"]
-        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        subprocess.run(command, env={**os.environ, **environment}, check=True, **silent)
+        silent = subprocess.DEVNULL
+        subprocess.run(command, env={**os.environ, **environment}, check=True, stdout=silent, stderr=silent)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return time.perf_counter() - begun, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
