@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.schedule import Schedule
+from kinetree.pipeline.planning.together import is_alone
 from kinetree.pipeline.running.execute import Input, Ref, Step
 from kinetree.pipeline.running.memory import Needs
 
@@ -25,7 +26,7 @@ class Demand:
         """Of a parcel; one that has a limit of time, or is never tried again, is a single node."""
         task = parcel[0].task
         needed = needs.bytes(entry.task for entry in parcel)
-        return Demand(needed, task.timeout, tells=task.timeout is not None or not task.retries)
+        return Demand(needed, task.timeout, tells=is_alone(task))
 
 
 def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
