@@ -31,6 +31,7 @@ from kinetree.errors import UnknownNodeError
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import Node, parse, project
+from kinetree.pipeline.planning.ready import urgency
 from kinetree.pipeline.planning.together import STRETCH
 from kinetree.pipeline.running import execute
 from kinetree.pipeline.task import Space
@@ -44,13 +45,13 @@ FRAME = "frame"
 
 @dataclass(frozen=True)
 class Job:
-    """One node: over which space its task runs, how deep that is in the graph, chains before all others, whether it is aside
-    (`Graph.aside`) or of a chain, what it takes and what it waits for.
+    """One node: over which space its task runs, how urgent it is, whether it is aside (`Graph.aside`) or of a chain, what
+    it takes and what it waits for.
     """
 
     node: Node
     space: Space
-    depth: int
+    urgency: int
     is_aside: bool
     is_chain: bool
     seconds: float
@@ -120,7 +121,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
             found[parse(label, graph)] = record
     if not found:
         raise ValueError(f"{pipeline.config.output} holds no record; run it first")
-    depth = {task.name: number + len(graph.tasks) * task.is_chain for number, task in enumerate(graph.tasks)}
+    urgent = urgency(graph)
     jobs: Jobs = {}
     for node, record in found.items():
         task = graph.by_name[node.task]
@@ -129,7 +130,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
         read = {parse(label, graph) for argument in record.inputs for label in argument["nodes"]}
         read |= {n for n in found if n.task in tellers and _agree(task.over, node, graph.by_name[n.task].over, n)}
         before = frozenset(n for n in read if n in found and n != node)
-        jobs[node] = Job(node, task.over, depth[node.task], node.task in graph.aside, task.is_chain, record.seconds, before)
+        jobs[node] = Job(node, task.over, urgent[node.task], node.task in graph.aside, task.is_chain, record.seconds, before)
     return jobs
 
 
@@ -155,15 +156,13 @@ def makespan(jobs: Jobs, workers: int) -> float:
 
 
 def scheduled(jobs: Jobs, workers: int) -> list[Parcel]:
-    """All parcels in the order of their ends, if every free worker takes the deepest node that is ready, with its parcel, and
-    what is aside last.
-    """
+    """All parcels in the order of their ends, if a free worker takes the most urgent node that is ready, with its parcel."""
     waits = {node: set(job.before) for node, job in jobs.items()}
     after: defaultdict[Node, list[Node]] = defaultdict(list)
     for node, job in jobs.items():
         for read in job.before:
             after[read].append(node)
-    ready = [(job.is_aside, -job.depth, node.at, node) for node, job in jobs.items() if not job.before]
+    ready = [(-job.urgency, node.at, node) for node, job in jobs.items() if not job.before]
     heapq.heapify(ready)
     sent: set[Node] = set()
     under_way: list[tuple[float, int, float, list[Node], Parcel | None]] = []
@@ -172,7 +171,7 @@ def scheduled(jobs: Jobs, workers: int) -> list[Parcel]:
     done: list[Parcel] = []
     while ready or under_way:
         while ready and len(under_way) < workers:
-            parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[3])
+            parcel = _parcel(jobs, waits, after, heapq.heappop(ready)[2])
             sent.update(parcel)
             took = sum(jobs[node].seconds + AT_WORKER for node in parcel)
             heapq.heappush(under_way, (now + took, next(numbers), now, parcel, done[-1] if done else None))
@@ -183,7 +182,7 @@ def scheduled(jobs: Jobs, workers: int) -> list[Parcel]:
             for later in after[node]:
                 waits[later].discard(node)
                 if not waits[later] and later not in sent:
-                    heapq.heappush(ready, (jobs[later].is_aside, -jobs[later].depth, later.at, later))
+                    heapq.heappush(ready, (-jobs[later].urgency, later.at, later))
     return done
 
 

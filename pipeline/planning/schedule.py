@@ -94,11 +94,7 @@ class Schedule:
         return all(entry.state == "fresh" for entry in self.entries.values()) and not any(self.blocked.values())
 
     def ready(self) -> Iterator[Entry]:
-        """Takes the stale nodes one after the other, deepest task first, so that a frame is finished before the next.
-
-        Chains go first, since much waits for their ends. What little waits for goes last: it fills the time in which nothing
-        else is ready.
-        """
+        """Takes the stale nodes one after the other, in the order of `urgency`: a frame is finished before the next."""
         for entry in self._ready.taken():
             entry.state = "running"
             yield entry

@@ -33,6 +33,9 @@ REPLACE_SECONDS = 30.0
 LEAST_MEMORY = 600_000_000
 """Bytes that our own worker process may be limited to at least. It holds 78 MB when it starts and 441 MB with all tasks
 imported; at 80 % of its limit dask gives it no more work, at 95 % it is ended and started again, for ever."""
+WAITS = {"_data_producer": True}
+"""Has a parcel wait at the scheduler until a worker has room for it: dask otherwise gives it at once to one that is busy, for
+however long, and other workers run out of work beside it."""
 _FILES = ("_file", "_cert", "_key")
 """How the arguments of distributed.Security end that name files."""
 
@@ -213,14 +216,17 @@ def sent(client: Client, workers: LivingWorkers, key: str, demand: Demand, work:
     memory = workers.ask(key, demand.memory)
     options: dict[str, Any] = {"resources": {MEMORY: memory}} if memory else {}
     try:
-        future = client.submit(computed, topic, *work, key=key, pure=False, **options)
+        future = client.submit(computed, topic, *work, key=key, pure=False, **WAITS, **options)
     except (OSError, RuntimeError) as error:
         raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from error
     return Remote.of(client, workers, future, tells=demand.tells)
 
 
-def computed(topic: str, *work: Any) -> list[Result]:
-    """In a worker: computes a parcel; where there is a topic, the scheduler has heard under it before that it begins."""
+def computed(topic: str, *work: Any, _data_producer: bool = True) -> list[Result]:
+    """In a worker: computes a parcel; where there is a topic, the scheduler has heard under it before that it begins.
+
+    _data_producer : what a dask that does not know it of tasks hands on (WAITS)
+    """
     if topic:
         worker = get_worker()
         told = {"key": worker.get_current_task(), "worker": worker.address}

@@ -1,8 +1,11 @@
-"""What little waits for goes last and travels alone, so that it fills the time in which nothing else is ready."""
+"""What keeps others waiting goes first; what little waits for goes last and travels alone, so that it fills the time in which
+nothing else is ready.
+"""
 
 import pytest
 
 from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.planning.ready import urgency
 from kinetree.pipeline.planning.schedule import Schedule
 
 LONG = '''"""A long way over all frames, and a note of each frame that only its end reads."""
@@ -103,3 +106,15 @@ def test_nodes_aside_go_when_nothing_else_is_ready(schedule):
     assert sent[:6] == [["points", "smooth"]] * 6
     assert sent[6:9] == [["first"], ["second"], ["third"]]
     assert sent[9:] == [["note"]] * 6 + [["page"]]
+
+
+def test_what_there_is_once_goes_before_the_members_that_are_ready_too(toys):
+    schedule = toys.pipeline().schedule()
+    tasks = schedule.graph.tasks
+    sooner = urgency(schedule.graph)
+    once = {task.name for task in tasks if not task.over} - schedule.graph.aside
+    members = {task.name for task in tasks if task.over and not task.is_chain} - schedule.graph.aside
+    assert once
+    assert members
+    assert min(sooner[name] for name in once) > max(sooner[name] for name in members)
+    assert [sooner[task.name] for task in tasks if task.name in members] == sorted(sooner[name] for name in members)

@@ -4,6 +4,7 @@ import json
 import os
 import threading
 import time
+from pathlib import Path
 
 import dask.config
 import pytest
@@ -16,6 +17,7 @@ from kinetree.pipeline.running import clusters
 from kinetree.pipeline.running.clusters import cluster_of
 from kinetree.pipeline.running.launch import ENVIRONMENT, TRIM, launcher
 from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.settings.config import Compute
 
 NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
@@ -84,6 +86,28 @@ def test_the_window_follows_the_threads_that_live(toys, empty):
         before = launch.window()
         empty.scale(2)
         toys.until(lambda: launch.window() == 2 * before or launch.window() == 6, "the window grows")
+
+
+def test_parcels_wait_at_the_scheduler_and_not_at_a_busy_worker(toys, tmp_path):
+    end = tmp_path / "end"
+    with LocalCluster(**{**NONE, "n_workers": 1, "processes": False}) as cluster, Client(cluster) as client:
+        work = ("nowhere", (), None)
+        busy = client.submit(held_up, end, key="busy")
+        toys.until(lambda: cluster.scheduler.total_occupancy, "the worker is busy")
+        sent = [clusters.sent(client, LivingWorkers(60), f"parcel-{n}", Demand(0, None), work) for n in range(3)]
+        toys.until(lambda: len(cluster.scheduler.tasks) == 1 + len(sent), "the scheduler has them")
+        waiting = len(cluster.scheduler.queued)
+        for future in sent:
+            future.cancel()
+        end.touch()
+        busy.result(timeout=60)
+    assert waiting == 2, "one is at the worker already, so that it does not wait when it is done"
+
+
+def held_up(end: Path) -> None:
+    """Until there is a file."""
+    while not end.exists():
+        time.sleep(0.01)
 
 
 def test_a_cluster_is_named_by_class_and_options(toys, tmp_path):
