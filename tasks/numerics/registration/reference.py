@@ -20,6 +20,9 @@ class ReferenceSettings(NamedTuple):
     Which quantities count was chosen on nine sequences with truth; how their weights were chosen is not recorded.
     """
 
+    own: float = 0.5
+    """For every leaf missing in the frame itself, beside 1 for it in the worst of the frames around. Any value from 0.1 to 1
+    chooses the same frame of a recorded dance at a quarter of its rate, on which it was chosen, and of eleven others."""
     handle: float = 0.01
     """For every handle: fingers fuse and part at the resolution of the grid, so one handle is weak evidence of contact."""
     pose: float = 0.08
@@ -62,7 +65,8 @@ def reference(
     """The frame with most leaves; among those one of large area, few handles, a pose near all others, in the middle (ours).
 
     Leaves, area and handles count as in the worst of a frame and its neighbours, so that frames just before or after
-    contact, or beside one that lacks part of a limb, score lower; where no frame is free of contact, the best of them is taken.
+    contact, or beside one that lacks part of a limb, score lower. A frame's own missing leaves count once more:
+    in fast motion every frame may have one in contact beside it.
 
     leaves  : (frame,) number of leaves
     euler   : (frame,) vertices − edges + faces of the frame's clean mesh
@@ -78,14 +82,16 @@ def reference(
     far = remoteness(unlikeness(profile))
     own = far <= settings.foreign
     spans = takes or [slice(0, len(count))]
-    missing = _worst_around(np.where(own, count[own].max() - count, count.max()), settings.steady, spans)
+    lost = np.where(own, count[own].max() - count, count.max())
+    missing = _worst_around(lost, settings.steady, spans)
     handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, settings.steady, spans)
     frames = np.concatenate([np.full(s.stop - s.start, s.stop - s.start) for s in spans])
     distance = np.concatenate([np.abs(np.arange(s.stop - s.start) - (s.stop - s.start - 1) / 2.0) for s in spans])
     lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0), settings.steady, spans)
     pose = settings.pose * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
     aside = settings.aside * distance / np.maximum(frames, settings.short)
-    score = 1.0 - missing - lack**2 / settings.area - settings.handle * handles - pose - aside - np.where(own, 0.0, far)
+    contact = missing + settings.own * lost + settings.handle * handles + lack**2 / settings.area
+    score = 1.0 - contact - pose - aside - np.where(own, 0.0, far)
     frame = int(np.lexsort((distance, -np.round(score, 9)))[0]) if frame is None else frame
     return Reference(frame, bool(missing[frame] == 0), score)
 

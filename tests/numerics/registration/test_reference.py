@@ -52,6 +52,13 @@ def test_where_every_frame_touches_the_least_fused_is_chosen_and_marked():
     assert not found.free
 
 
+def test_where_contact_lies_beside_every_frame_one_that_is_free_itself_is_chosen():
+    leaves = [4, 5, 4, 4, 4, 4, 4, 4, 5]
+    found = reference(leaves, [2] * 9, [1.0] * 9)
+    assert found.frame == 1
+    assert not found.free
+
+
 def test_a_frame_of_another_body_is_neither_chosen_nor_the_measure_of_the_others():
     leaves, area = [5, 5, 5, 5, 8, 5, 5, 5, 5, 5, 5, 5], [1.0] * 4 + [2.0] + [1.0] * 7
     found = reference(leaves, [2] * 12, area, poses([0, 0.1, 0, 0.1, 50, 0, 0.1, 0, 0.1, 0, 0.1, 0]))
