@@ -66,9 +66,9 @@ class Graph:
     @cached_property
     def openers(self) -> dict[Space, AnyTask]:
         """The task whose artifact lists the members of each space's last dimension."""
-        found = {task.over: task for task in self.tasks if _lists_members(task)}
-        found.update({space(path): task for task in self.tasks for path in task.returns.opens})
-        return found
+        by_space = {task.over: task for task in self.tasks if _lists_members(task)}
+        by_space.update({space(path): task for task in self.tasks for path in task.returns.opens})
+        return by_space
 
     @cached_property
     def unasked(self) -> tuple[str, ...]:
@@ -110,18 +110,18 @@ class Graph:
 
     def before(self, task: AnyTask) -> tuple[AnyTask, ...]:
         """Tasks that come before this one: what it reads at its own index, and what tells indices, traversal and selection."""
-        found = [self.writers[a.artifact] for a in task.arguments if not a.previous]
-        found += [self.openers[s] for s in self.needed_spaces(task)]
+        earlier = [self.writers[a.artifact] for a in task.arguments if not a.previous]
+        earlier += [self.openers[s] for s in self.needed_spaces(task)]
         if task.along is not None:
-            found.append(self.writers[task.along])
+            earlier.append(self.writers[task.along])
         if task.among is not None:
-            found.append(self.writers[task.among])
-        return tuple(dict.fromkeys(t for t in found if t is not task))
+            earlier.append(self.writers[task.among])
+        return tuple(dict.fromkeys(t for t in earlier if t is not task))
 
     def behind(self, task: AnyTask) -> tuple[AnyTask, ...]:
         """Other tasks that this one reads at the previous member of its traversal; they may read this one in turn."""
-        found = [self.writers[a.artifact] for a in task.arguments if a.previous]
-        return tuple(dict.fromkeys(t for t in found if t is not task))
+        writers = [self.writers[a.artifact] for a in task.arguments if a.previous]
+        return tuple(dict.fromkeys(t for t in writers if t is not task))
 
     def needed_spaces(self, task: AnyTask) -> tuple[Space, ...]:
         """The spaces whose members must be listed for this task, with all prefixes: its own, those it gathers over, and
@@ -134,14 +134,14 @@ class Graph:
     def gathered_space(self, task: AnyTask, argument: Argument) -> Space:
         """The space over which an argument is read: frames *of this interval* where such a space is opened, else all."""
         writer = self.writers[argument.artifact]
-        found = self._gathered_space(task, argument, writer)
-        if argument.previous and task.traversed not in found:
+        gathered = self._gathered_space(task, argument, writer)
+        if argument.previous and task.traversed not in gathered:
             per = f"per {'/'.join(writer.over)}" if writer.over else "once"
             raise GraphError(
                 f"{task.name} ({task.where}): argument {argument.name} is read at the previous {task.traversed}, but"
                 f" {writer.name} ({writer.where}) writes {argument.artifact.__name__} {per}"
             )
-        return found
+        return gathered
 
     def numbered(self, task: AnyTask, argument: Argument) -> int:
         """The position, in the index of what a mapping gathers, of the member number that is its key."""
@@ -171,14 +171,14 @@ class Graph:
 
     def until(self, names: Sequence[str]) -> "Graph":
         """The graph that is needed to run the named tasks and no more."""
-        kept: set[str] = set()
+        needed: set[str] = set()
         waiting = [self.task(name) for name in names]
         while waiting:
             task = waiting.pop()
-            if task.name not in kept:
-                kept.add(task.name)
+            if task.name not in needed:
+                needed.add(task.name)
                 waiting.extend(self.reads(task))
-        return replace(self, tasks=tuple(task for task in self.tasks if task.name in kept))
+        return replace(self, tasks=tuple(task for task in self.tasks if task.name in needed))
 
     def remember_code(self) -> None:
         """Digests the code now, while what lies there is what was loaded: a process that lives on while its source is
@@ -261,18 +261,18 @@ def _blocks_are_those_of_tasks(graph: Graph) -> None:
 
 
 def _every_space_is_opened_once(graph: Graph) -> None:
-    seen: dict[Space, AnyTask] = {}
+    opener: dict[Space, AnyTask] = {}
     for task in graph.tasks:
         opened = [space(path) for path in task.returns.opens] + ([task.over] if _lists_members(task) else [])
         for path in opened:
             if not set(task.over) <= set(path[: None if task.is_origin else -1]):
                 raise GraphError(f"{task.name} ({task.where}) runs over {'/'.join(task.over)} and cannot open {'/'.join(path)}")
-            if path in seen:
-                raise TwoWritersError(f"two tasks open {'/'.join(path)}: {seen[path].where} and {task.where}")
-            seen[path] = task
+            if path in opener:
+                raise TwoWritersError(f"two tasks open {'/'.join(path)}: {opener[path].where} and {task.where}")
+            opener[path] = task
     for task in graph.tasks:
         for depth in range(1, len(task.over) + 1):
-            if task.over[:depth] not in seen:
+            if task.over[:depth] not in opener:
                 raise MissingWriterError(
                     f"{task.name} ({task.where}) runs over {'/'.join(task.over)}, but no task opens"
                     f" {'/'.join(task.over[:depth])}"

@@ -152,10 +152,10 @@ def _artifact(reference: str) -> type[Artifact]:
 @cache
 def _class(reference: str, base: type[C]) -> type[C]:
     module, _, name = reference.partition(":")
-    found = getattr(importlib.import_module(_own(module)), name, None)
-    if not (isinstance(found, type) and issubclass(found, base)):
+    cls = getattr(importlib.import_module(_own(module)), name, None)
+    if not (isinstance(cls, type) and issubclass(cls, base)):
         raise GraphError(f"kept graphs name {reference}, which is no {base.__name__}; {REMEDY}")
-    return found
+    return cls
 
 
 def _own(module: str) -> str:

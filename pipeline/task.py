@@ -133,8 +133,8 @@ class Task(Generic[P, R]):
     @property
     def paper(self) -> str:
         """The paper's section or equation, as the docstring cites it in brackets; empty where it cites none."""
-        found = re.search(r"\(((20\d\d|ours)[^)]*)\)", inspect.getdoc(self.function) or "")
-        return found.group(1) if found else ""
+        reference = re.search(r"\(((20\d\d|ours)[^)]*)\)", inspect.getdoc(self.function) or "")
+        return reference.group(1) if reference else ""
 
 
 def task(
@@ -213,13 +213,13 @@ def load(reference: str) -> "Task[..., Any]":
     if collects:  # what an import makes stays; to look through it for garbage takes a tenth of the time
         gc.disable()
     try:
-        found = getattr(importlib.import_module(module), name)
+        named = getattr(importlib.import_module(module), name)
     finally:
         if collects:
             gc.enable()
-    if not isinstance(found, Task):
+    if not isinstance(named, Task):
         raise GraphError(f"{reference} is not a task")
-    return found
+    return named
 
 
 def space(path: str) -> Space:

@@ -143,8 +143,8 @@ def text(artifact: "Artifact", others: "Callable[[type[Artifact]], Artifact | No
 
     others : gives the result of another class, None where there is none
     """
-    found = _TEXT.of(type(artifact))
-    return found[0](artifact, *map(others, found[1])) if found else ()
+    view = _TEXT.of(type(artifact))
+    return view[0](artifact, *map(others, view[1])) if view else ()
 
 
 def summary(artifact: "Artifact") -> Mapping[str, Any]:
@@ -182,16 +182,16 @@ def group_name(cls: "type[Artifact]") -> str:
 
 def page_name(cls: "type[Artifact]") -> str:
     """The name of the file of this class that also tells of the run; empty where there is none."""
-    found = _PAGES.of(cls)
-    return found[0] if found else ""
+    page_view = _PAGES.of(cls)
+    return page_view[0] if page_view else ""
 
 
 def page(artifact: "Artifact", run: Run) -> bytes:
     """The file that also tells of the run; raises GraphError where the class has none."""
-    found = _PAGES.of(type(artifact))
-    if found is None:
+    page_view = _PAGES.of(type(artifact))
+    if page_view is None:
         raise GraphError(f"{type(artifact).__name__} has no page that tells of a run")
-    return found[1](artifact, run)
+    return page_view[1](artifact, run)
 
 
 def _import_provided() -> None:

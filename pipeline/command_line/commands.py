@@ -85,14 +85,14 @@ def run(
         **{name: str(file.absolute()) for name, file in files.items() if file is not None},
     )
     chosen = {"until": until, "force": force, "made_with": made_with}
-    told: dict[str, Any] = {**chosen, "quiet": quiet, "log_json": log_json, "as_json": as_json}
+    options: dict[str, Any] = {**chosen, "quiet": quiet, "log_json": log_json, "as_json": as_json}
     if follow or follow_idle is not None:
-        _follow(Pipeline.of(compute), follow_idle, told)
+        _follow(Pipeline.of(compute), follow_idle, options)
     else:
-        compute_and_report(Pipeline.of(compute), **told)
+        compute_and_report(Pipeline.of(compute), **options)
 
 
-def _follow(pipeline: "Pipeline", idle: float | None, told: dict[str, Any]) -> None:
+def _follow(pipeline: "Pipeline", idle: float | None, options: dict[str, Any]) -> None:
     """Computes again and again as the input grows; raises typer.Exit with code 1 where nodes of the last run failed."""
     from kinetree.pipeline.command_line.follow import follow
 
@@ -101,7 +101,7 @@ def _follow(pipeline: "Pipeline", idle: float | None, told: dict[str, Any]) -> N
     def compute(settling: "Settling") -> None:
         nonlocal failed
         try:
-            compute_and_report(pipeline, **told, settling=settling)
+            compute_and_report(pipeline, **options, settling=settling)
             failed = False
         except typer.Exit:
             failed = True
@@ -188,17 +188,17 @@ def verify(
     from kinetree.pipeline.planning import verify as verifying
 
     pipeline = pipeline_of(config, store=store)
-    found = verifying.verify(pipeline.store, current().methods().values())
+    verified = verifying.verify(pipeline.store, current().methods().values())
     if as_json:
-        print_json(found.json())
+        print_json(verified.json())
     else:
-        for line in found.lines():
+        for line in verified.lines():
             out.print(printable(line), markup=False)
-        out.print(f"{found.artifacts} artifacts read; {'nothing is damaged' if found.is_sound else 'damaged: see above'}")
-    if repair and not found.is_sound:
-        verifying.discard_damage(pipeline.store, found)
+        out.print(f"{verified.artifacts} artifacts read; {'nothing is damaged' if verified.is_sound else 'damaged: see above'}")
+    if repair and not verified.is_sound:
+        verifying.discard_damage(pipeline.store, verified)
         compute_and_report(pipeline, quiet=as_json)
-    elif not found.is_sound:
+    elif not verified.is_sound:
         raise typer.Exit(1)
 
 

@@ -70,66 +70,68 @@ def dataset(
         is_taken = action is Action.RUN or (action is Action.PLAN and option in selects)
         if value and not is_taken:
             raise ConfigError(f"dataset {action.value} takes no {option}; dataset run does")
-    found = Dataset.of(file, sets=sets or (), application=current())
-    found = found.computed_by(with_changes(found.config.compute, workers=workers, executor=executor, scheduler=scheduler))
+    data_set = Dataset.of(file, sets=sets or (), application=current())
+    data_set = data_set.computed_by(
+        with_changes(data_set.config.compute, workers=workers, executor=executor, scheduler=scheduler)
+    )
     chosen: dict[str, Any] = {"only": tuple(only or ()), "failed": failed, "since": since}
     if action is Action.PLAN:
-        _plan(found, chosen, as_json=as_json)
+        _plan(data_set, chosen, as_json=as_json)
     elif action is Action.STATUS:
-        _status(found, as_json=as_json)
+        _status(data_set, as_json=as_json)
     elif action is Action.REPORT:
-        _report(found, as_json=as_json)
+        _report(data_set, as_json=as_json)
     else:
-        _run(found, {**chosen, "max_hours": max_hours}, quiet=quiet, as_json=as_json)
+        _run(data_set, {**chosen, "max_hours": max_hours}, quiet=quiet, as_json=as_json)
 
 
-def _run(found: "Dataset", chosen: dict[str, Any], *, quiet: bool, as_json: bool) -> None:
-    listeners = [] if quiet or as_json else [Progress(err, len(found))]
+def _run(data_set: "Dataset", chosen: dict[str, Any], *, quiet: bool, as_json: bool) -> None:
+    listeners = [] if quiet or as_json else [Progress(err, len(data_set))]
     try:
-        told = found.run(**chosen, listeners=listeners)
+        record = data_set.run(**chosen, listeners=listeners)
     except (KinetreeError, KeyboardInterrupt):
-        if as_json and (left := found.left()) is not None:
+        if as_json and (left := data_set.left()) is not None:
             print_json(left)
         raise
-    counts = told["counts"]
+    counts = record["counts"]
     if as_json:
-        print_json(told)
+        print_json(record)
     elif not quiet and (out.is_terminal or counts["fresh"] != sum(counts.values())):
         line = ", ".join(f"{count} {state}" for state, count in counts.items() if count)
-        out.print(f"{told['status']}: {line or 'no sequence chosen'} in {told['seconds']:.1f} s")
-        files = told.get("summary", {}).get("files", ())
+        out.print(f"{record['status']}: {line or 'no sequence chosen'} in {record['seconds']:.1f} s")
+        files = record.get("summary", {}).get("files", ())
         out.print(
-            f"results: {printable(found.config.root)}{f' ({printable(chr(44).join(files))})' if files else ''}", markup=False
+            f"results: {printable(data_set.config.root)}{f' ({printable(chr(44).join(files))})' if files else ''}", markup=False
         )
     if not as_json and not quiet:
-        for note in told["notes"] if out.is_terminal else ():
+        for note in record["notes"] if out.is_terminal else ():
             err.print(printable(note), markup=False)
-    if "metrics_error" in told and not as_json:
-        err.print(printable(told["metrics_error"]), markup=False)
-    if told["status"] == "failed":
+    if "metrics_error" in record and not as_json:
+        err.print(printable(record["metrics_error"]), markup=False)
+    if record["status"] == "failed":
         if not as_json:
-            _print_failures(told)
+            _print_failures(record)
         raise typer.Exit(1)
 
 
-def _print_failures(told: dict[str, Any]) -> None:
-    for name, row in told["sequences"].items():
+def _print_failures(record: dict[str, Any]) -> None:
+    for name, row in record["sequences"].items():
         failures = row.get("failures", ()) if row["state"] == "failed" else ()
         for failure in failures[:WHY_PRINTED]:
             node = f"{failure['node']}: " if failure["node"] else ""
             err.print(printable(f"{name}: {node}{failure['error']}: {failure['message']}"), markup=False, style="red")
         if len(failures) > WHY_PRINTED:
             err.print(printable(f"{name}: … and {len(failures) - WHY_PRINTED} more"), markup=False, style="red")
-    for failure in told.get("summary", {}).get("failures", ()):
+    for failure in record.get("summary", {}).get("failures", ()):
         err.print(printable(f"summary: {failure['node']}: {failure['message']}"), markup=False, style="red")
-    if "on_failure" in told:
-        err.print(printable(told["on_failure"]), markup=False)
+    if "on_failure" in record:
+        err.print(printable(record["on_failure"]), markup=False)
 
 
-def _plan(found: "Dataset", chosen: dict[str, Any], *, as_json: bool) -> None:
+def _plan(data_set: "Dataset", chosen: dict[str, Any], *, as_json: bool) -> None:
     from kinetree.pipeline.dataset.dataset_plan import COLUMNS
 
-    plan = found.plan(**chosen)
+    plan = data_set.plan(**chosen)
     if as_json:
         print_json(plan.json())
         return
@@ -140,23 +142,23 @@ def _plan(found: "Dataset", chosen: dict[str, Any], *, as_json: bool) -> None:
     out.print(f"{line}; about {plan.seconds:.0f} s of computing" if plan.seconds else line)
 
 
-def _status(found: "Dataset", *, as_json: bool) -> None:
-    rows = found.status()
+def _status(data_set: "Dataset", *, as_json: bool) -> None:
+    rows = data_set.status()
     if as_json:
         print_json(rows)
         return
     _print_table(tuple(rows[0]), [tuple("" if v is None else str(v) for v in row.values()) for row in rows])
 
 
-def _report(found: "Dataset", *, as_json: bool) -> None:
-    told = found.report()
+def _report(data_set: "Dataset", *, as_json: bool) -> None:
+    outcome = data_set.report()
     if as_json:
-        print_json(told)
+        print_json(outcome)
     else:
-        for path in told["files"]:
+        for path in outcome["files"]:
             out.print(printable(path), markup=False)
-    if told["status"] != "done":
-        for failure in told["failures"]:
+    if outcome["status"] != "done":
+        for failure in outcome["failures"]:
             err.print(printable(f"{failure['node']}: {failure['message']}"), markup=False, style="red")
         raise typer.Exit(1)
 

@@ -208,7 +208,7 @@ def _read(argument: dict[str, Any]) -> str:
 def _task_row(task: Any) -> dict[str, Any]:
     from kinetree.pipeline.settings.sentences import sentences
 
-    fields, told = (task.params.model_fields, sentences(task.params)) if task.params and task.block == task.name else ({}, {})
+    fields, texts = (task.params.model_fields, sentences(task.params)) if task.params and task.block == task.name else ({}, {})
     return {
         "task": task.name,
         "over": "/".join(task.over),
@@ -218,7 +218,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         ],
         "along": task.traversed,
         "writes": task.returns.__name__,
-        "params": {n: {"default": f.default, "what": told.get(n, "")} for n, f in fields.items()},
+        "params": {n: {"default": f.default, "what": texts.get(n, "")} for n, f in fields.items()},
         "set_by": "" if task.block == task.name or task.params is None else task.block,
         "on_request": task.on_request,
         "paper": task.paper,

@@ -152,7 +152,7 @@ class Dataset:
         selected = self._selected(only, failed=failed, since=since)
         Owned.of(self.config.root).claim([SUMMARY, LOG, OUTCOME])
         log = RotatingLog(self.config.root / LOG, bytes_of(self.config.retention.log_size), self.config.retention.logs)
-        told: dict[str, Any] = {"format": FORMAT, "file": self.config.file, "status": "stopped", "started": began}
+        record: dict[str, Any] = {"format": FORMAT, "file": self.config.file, "status": "stopped", "started": began}
         metrics = Metrics.of(self.config.metrics, self.application.name) if self.config.metrics is not None else None
         until = None if max_hours is None else time.monotonic() + 3600 * max_hours
         workers_of_all = Workers(self.config.compute, client)
@@ -170,22 +170,26 @@ class Dataset:
                 self._compute(night, workers)
                 if summing is not None and leases.wait_for(self.config.root, ROOT_SECONDS):
                     outcome, _ = summing.make(workers)
-                    told["summary"] = {"status": outcome.status, "files": sorted(outcome.files), "failures": outcome.failures}
-                told["status"] = "failed" if _has_failed(night, told) else "done"
+                    record["summary"] = {
+                        "status": outcome.status,
+                        "files": sorted(outcome.files),
+                        "failures": outcome.failures,
+                    }
+                record["status"] = "failed" if _has_failed(night, record) else "done"
                 if self.config.retention.deletes:
-                    told["deleted"] = self._collect()
+                    record["deleted"] = self._collect()
             except KeyboardInterrupt:
-                told["status"] = "interrupted"
+                record["status"] = "interrupted"
                 raise
             except KinetreeError as error:
-                told["error"] = f"{type(error).__name__}: {error}"
+                record["error"] = f"{type(error).__name__}: {error}"
                 raise
             finally:
-                told |= {"ended": now(), "seconds": round(time.perf_counter() - started, 3), **self._described(night)}
+                record |= {"ended": now(), "seconds": round(time.perf_counter() - started, 3), **self._described(night)}
                 if metrics is not None:
-                    told |= metrics.write(told)
-                self._leave(told)
-        return told
+                    record |= metrics.write(record)
+                self._leave(record)
+        return record
 
     def report(self) -> dict[str, Any]:
         """Brings the summary up to date with what the sequences' last runs left, and computes nothing else.
@@ -284,16 +288,16 @@ class Dataset:
         notes = [*self.config.notes, *self._frames_hint(refused)]
         return {"counts": counts, "sequences": sequences, "notes": notes}
 
-    def _leave(self, told: dict[str, Any]) -> None:
+    def _leave(self, record: dict[str, Any]) -> None:
         """Leaves dataset.json and, where something failed, hands its path to the program that is to hear of it."""
-        is_bad = told["status"] in ("failed", "stopped")
-        text = json.dumps(told, indent=2, ensure_ascii=False, default=str)
+        is_bad = record["status"] in ("failed", "stopped")
+        text = json.dumps(record, indent=2, ensure_ascii=False, default=str)
         folder = Folder(self.config.root, "output folder", beside="")
-        with contextlib.suppress(StoreError) if told["status"] == "stopped" else contextlib.nullcontext():
+        with contextlib.suppress(StoreError) if record["status"] == "stopped" else contextlib.nullcontext():
             folder.put(SUMMARY, f"{text}\n".encode("utf-8", "backslashreplace"))
         if is_bad and self.config.on_failure:
-            told["on_failure"] = called([*self.config.on_failure, str(self.config.root / SUMMARY)])
+            record["on_failure"] = called([*self.config.on_failure, str(self.config.root / SUMMARY)])
 
 
-def _has_failed(night: Night, told: Mapping[str, Any]) -> bool:
-    return "failed" in night.states.values() or told.get("summary", {}).get("status", "done") != "done"
+def _has_failed(night: Night, record: Mapping[str, Any]) -> bool:
+    return "failed" in night.states.values() or record.get("summary", {}).get("status", "done") != "done"

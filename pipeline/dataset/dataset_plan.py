@@ -77,7 +77,7 @@ def planned(name: str, there: Snapshot, before: Outcome | None, rate: float | No
         return PlannedSequence(name, "fresh")
     nodes = sum(node.state != "fresh" for node in plan.nodes)
     expected = there.estimate()
-    members = sum(len(found) for found in there.schedule.given.values())
+    members = sum(len(artifacts) for artifacts in there.schedule.given.values())
     by_rate = None if rate is None else round(rate * members, 1)
     if before is None:
         return PlannedSequence(name, "new", nodes, by_rate)
@@ -99,8 +99,8 @@ def rate(outcomes: Sequence[Outcome]) -> float | None:
 def _why(there: Snapshot) -> str:
     """The reasons of the first task that is out of date."""
     for task in there.plan.tasks:
-        told = [reason for reason in task.reasons if not reason.startswith("waits")]
-        if told:
-            more = f" and {len(told) - 1} more reasons" if len(told) > 1 else ""
-            return f"{task.task}: {told[0]}{more}"
+        reasons = [reason for reason in task.reasons if not reason.startswith("waits")]
+        if reasons:
+            more = f" and {len(reasons) - 1} more reasons" if len(reasons) > 1 else ""
+            return f"{task.task}: {reasons[0]}{more}"
     return ""

@@ -98,23 +98,23 @@ def holder(folder: Path) -> Mapping[str, Any] | None:
 
 
 def _is_held(file: int) -> bool:
-    told = _read(file)
-    if not told:
+    content = _read(file)
+    if not content:
         return False
     try:
-        if is_here(told):
-            return lives_here(told)
-        return has_beaten((float(told.get("epoch", 0.0)), os.fstat(file).st_mtime), time.time())
+        if is_here(content):
+            return lives_here(content)
+        return has_beaten((float(content.get("epoch", 0.0)), os.fstat(file).st_mtime), time.time())
     except (KeyError, TypeError, ValueError):  # no lease of ours
         return False
 
 
 def _read(file: int) -> dict[str, Any]:
     try:
-        told = json.loads(os.pread(file, 4096, 0) or b"{}")
+        content = json.loads(os.pread(file, 4096, 0) or b"{}")
     except ValueError:
         return {}
-    return told if isinstance(told, dict) else {}
+    return content if isinstance(content, dict) else {}
 
 
 @contextlib.contextmanager

@@ -43,25 +43,25 @@ class Metrics:
             self.nodes[event["task"], outcome] += 1
             self.seconds[event["task"]] += event.get("seconds", 0.0)
 
-    def write(self, told: Mapping[str, Any]) -> dict[str, str]:
+    def write(self, record: Mapping[str, Any]) -> dict[str, str]:
         """Replaces the file by what a run tells; returns its path, or why it could not be written, for dataset.json."""
         from prometheus_client import CollectorRegistry, Gauge, write_to_textfile
 
         registry = CollectorRegistry()
-        of_set = {"data_set": Path(told["file"]).name}
+        of_set = {"data_set": Path(record["file"]).name}
 
         def gauge(name: str, what: str, rows: Mapping[Any, float], *labels: str) -> None:
             made = Gauge(f"{self.prefix}_{name}", what, (*of_set, *labels), registry=registry)
             for values, value in rows.items():
                 made.labels(*of_set.values(), *values).set(value)
 
-        ended = datetime.fromisoformat(told["ended"]).timestamp()
-        gauge("dataset_success", "Whether the last run did all it was asked for.", {(): told["status"] == "done"})
+        ended = datetime.fromisoformat(record["ended"]).timestamp()
+        gauge("dataset_success", "Whether the last run did all it was asked for.", {(): record["status"] == "done"})
         gauge("dataset_ended_timestamp_seconds", "When the last run was over.", {(): ended})
-        gauge("dataset_duration_seconds", "How long the last run took.", {(): told["seconds"]})
-        counts = {(state,): count for state, count in told["counts"].items()}
+        gauge("dataset_duration_seconds", "How long the last run took.", {(): record["seconds"]})
+        counts = {(state,): count for state, count in record["counts"].items()}
         gauge("dataset_sequences", "Sequences by what the last run did with them.", counts, "state")
-        failed = {(name,): 1 for name, row in told["sequences"].items() if row["state"] == "failed"}
+        failed = {(name,): 1 for name, row in record["sequences"].items() if row["state"] == "failed"}
         gauge("dataset_sequence_failed", "1 for each sequence that failed in the last run.", failed, "name")
         gauge("dataset_nodes", "Nodes of the last run by what became of them.", self.nodes, "task", "outcome")
         seconds = {(task,): took for task, took in self.seconds.items()}

@@ -182,9 +182,9 @@ class Night:
     def _refuse(self, name: str, error: Exception) -> None:
         """The input of a sequence is wrong, or its folder cannot be written."""
         config = self.pipelines[name].config
-        told = {**_failure(error), "trace": "" if isinstance(error, InputError) else traceback.format_exc()}
+        failure = {**_failure(error), "trace": "" if isinstance(error, InputError) else traceback.format_exc()}
         for listener in self.listeners:
-            Named(name, listener).hear({"event": "refused", "time": round(time.time(), 3), **told})
+            Named(name, listener).hear({"event": "refused", "time": round(time.time(), 3), **failure})
         outcome = Outcome(name, self.inputs[name], "failed", now(), failures=(_failure(error),))
         try:
             Owned.of(config.output).claim([OUTCOME])
@@ -208,7 +208,7 @@ class Night:
             now(),
             session.name,
             computing_seconds(schedule),
-            sum(len(found) for found in schedule.given.values()),
+            sum(len(artifacts) for artifacts in schedule.given.values()),
             counts,
             (*known, *failures),
             _remarks(session.there) if is_done else (),
@@ -260,13 +260,13 @@ def _remarks(there: Snapshot) -> tuple[str, ...]:
 
 def _artifacts(pipeline: Pipeline, schedule: Any, linked: Sequence[AnyTask]) -> dict[str, str]:
     """What this sequence made of that which the summary reads, by the summary's tasks."""
-    found: dict[str, str] = {}
+    digests: dict[str, str] = {}
     for task in linked:
         writer = pipeline.tasks.writers.get(task.returns)
         entry = schedule.entries.get(Node(writer.name, ())) if writer is not None else None
         if entry is not None and entry.state in DONE:
-            found[task.name] = str(entry.artifact)
-    return found
+            digests[task.name] = str(entry.artifact)
+    return digests
 
 
 def _failure(error: Exception) -> dict[str, str]:

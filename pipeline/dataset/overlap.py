@@ -21,12 +21,12 @@ def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], giv
         places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}
         for key, place in places.items():
             for pattern in wild:
-                found = next(
+                inner = next(
                     (p for p in (place, *place.parents) if str(p) not in inputs.values() and matches(p, pattern)), None
                 )
-                if found is not None:
+                if inner is not None:
                     raise ConfigError(
-                        f"{where}: {key} {place} lies in {found}, which the pattern {pattern} would take for a sequence; name"
+                        f"{where}: {key} {place} lies in {inner}, which the pattern {pattern} would take for a sequence; name"
                         f" another folder, e.g. {OUTPUT}"
                     )
             for other, path in inputs.items():

@@ -37,14 +37,14 @@ def sequences(given: Any, template: Any, base: Path, where: str) -> tuple[dict[s
             f"{where}: sequences: expected a pattern such as takes/*, a list of patterns and paths, or names with paths, got"
             f" {given!r}"
         )
-    found, empty = _matched([_absolute(_text(p, f"{where}: sequences"), base) for p in patterns])
-    if not found:
+    matched, empty = _matched([_absolute(_text(p, f"{where}: sequences"), base) for p in patterns])
+    if not matched:
         raise ConfigError(
             f"{where}: sequences: nothing matches {', '.join(empty)}; check the path, which is relative to the folder of this"
             " file: a pattern matches one folder or file for every sequence"
         )
     named_paths: dict[str, str] = {}
-    for path in found:
+    for path in matched:
         name = _named(_filled(template, path, where), f"{where}: name, made of {path}")
         if named_paths.setdefault(name, path) != path:
             raise ConfigError(
@@ -75,24 +75,24 @@ def matches(path: Path, pattern: str) -> bool:
 def chosen(names: Iterable[str], patterns: Sequence[str]) -> list[str]:
     """The names that match one of the patterns, or all where there is no pattern; raises ConfigError where none does."""
     every = list(names)
-    found = [name for name in every if not patterns or any(fnmatchcase(name, pattern) for pattern in patterns)]
-    if patterns and not found:
+    matching = [name for name in every if not patterns or any(fnmatchcase(name, pattern) for pattern in patterns)]
+    if patterns and not matching:
         listed = ", ".join(every[:6]) + (f" and {len(every) - 6} more" if len(every) > 6 else "")
         raise ConfigError(f"--only {' '.join(patterns)}: no sequence has such a name; there are: {listed}")
-    return found
+    return matching
 
 
 def _matched(patterns: Sequence[str]) -> tuple[list[str], list[str]]:
     """The paths that patterns match, each once, and the patterns that match nothing; a plain path stands for itself."""
-    found: dict[str, None] = {}
+    inputs: dict[str, None] = {}
     empty: list[str] = []
     for pattern in patterns:
         is_plain = not WILD.search(pattern) or "://" in pattern or Path(pattern).exists()
         paths = [pattern] if is_plain else sorted(glob.glob(pattern, recursive=True))  # noqa: PTH207 - a pattern of any root
         if not paths:
             empty.append(pattern)
-        found.update(dict.fromkeys(path if "://" in path else os.path.normpath(path) for path in paths))
-    return list(found), empty
+        inputs.update(dict.fromkeys(path if "://" in path else os.path.normpath(path) for path in paths))
+    return list(inputs), empty
 
 
 def _match(parts: Sequence[str], pattern: Sequence[str]) -> bool:

@@ -14,18 +14,18 @@ def bound_by(node: ast.AST, *, walrus: bool = True) -> set[str]:
 
     walrus : whether to look for `:=` in expressions, which takes longer
     """
-    found: set[str] = set()
+    names: set[str] = set()
     for inner in statements_in([node]):
         if isinstance(inner, ast.Import | ast.ImportFrom):
-            found.update(alias.asname or alias.name.partition(".")[0] for alias in inner.names)
+            names.update(alias.asname or alias.name.partition(".")[0] for alias in inner.names)
         elif isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            found.add(inner.name)
+            names.add(inner.name)
         elif isinstance(inner, ast.ExceptHandler):
-            found |= {inner.name} if inner.name else set()
+            names |= {inner.name} if inner.name else set()
         else:
             for target in _targets(inner):
-                found |= bound_in(target)
-    return found | {n.target.id for n in _in_scope(node) if isinstance(n, ast.NamedExpr)} if walrus else found
+                names |= bound_in(target)
+    return names | {n.target.id for n in _in_scope(node) if isinstance(n, ast.NamedExpr)} if walrus else names
 
 
 def statements_in(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
@@ -58,15 +58,15 @@ def bound_in(target: ast.AST) -> set[str]:
         return {target.id}
     if isinstance(target, ast.Attribute | ast.Subscript):
         return set()
-    found: set[str] = set()
+    names: set[str] = set()
     for inner in ast.walk(target):
         if isinstance(inner, ast.Name) and not isinstance(inner.ctx, ast.Load):
-            found.add(inner.id)
+            names.add(inner.id)
         elif isinstance(inner, ast.MatchAs | ast.MatchStar) and inner.name:
-            found.add(inner.name)
+            names.add(inner.name)
         elif isinstance(inner, ast.MatchMapping) and inner.rest:
-            found.add(inner.rest)
-    return found
+            names.add(inner.rest)
+    return names
 
 
 def imported_by(node: ast.AST, module: str, *, is_package: bool) -> Iterator[tuple[str, Target]]:

@@ -31,12 +31,12 @@ def path_of(kind: str, texts: Mapping[str, str]) -> Path:
 def read(path: Path) -> Any:
     """What was kept there; None where nothing was, or where it was altered."""
     try:
-        kept: Any = json.loads(path.read_text(encoding="utf-8"))
-        if kept["format"] != KIND or kept["sum"] != _sum(kept["content"]):
+        value: Any = json.loads(path.read_text(encoding="utf-8"))
+        if value["format"] != KIND or value["sum"] != _sum(value["content"]):
             return None
         with contextlib.suppress(OSError):
             os.utime(path)  # it is used: others go first
-        return json.loads(kept["content"])
+        return json.loads(value["content"])
     except (OSError, ValueError, TypeError, KeyError, AttributeError):
         return None
 

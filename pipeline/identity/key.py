@@ -115,24 +115,24 @@ def keep_code() -> None:
 def _identified(module: str, name: str) -> Identified:
     if not is_own_code(module):
         return _computed(module, name)
-    kept, task = _kept_code(), f"{module}:{name}"
-    if task not in kept.known:
-        kept.add(task, _computed(module, name))
-    return kept.known[task]
+    cache_file, task = _kept_code(), f"{module}:{name}"
+    if task not in cache_file.known:
+        cache_file.add(task, _computed(module, name))
+    return cache_file.known[task]
 
 
 def _computed(module: str, name: str) -> Identified:
     code = _code(CODE_ROOTS if is_own_code(module) else (*CODE_ROOTS, module.partition(".")[0]))
     with _collection_paused():
         reached = code.reached(module, name)
-    found: dict[Definition, str] = {}
+    digests: dict[Definition, str] = {}
     for one, syntax in reached.items():
         known = None if one[1] in (STATEMENTS, IMPORTS) else code.digests.get(one)
-        found[one] = code.digests[one] = known or digest(["kinetree.definition/1", syntax])
+        digests[one] = code.digests[one] = known or digest(["kinetree.definition/1", syntax])
     parts: dict[str, str] = {}
-    for (home, definition), part in found.items():
+    for (home, definition), part in digests.items():
         parts[home] = f"{parts.get(home, '')} {definition}:{part[:PART_DIGITS]}".lstrip()
-    return digest(["kinetree.code/2", name, [[*one, part] for one, part in found.items()]]), parts
+    return digest(["kinetree.code/2", name, [[*one, part] for one, part in digests.items()]]), parts
 
 
 @contextlib.contextmanager
@@ -170,8 +170,8 @@ def source_of(module: str) -> Path | None:
 
 def forget_code() -> None:
     """Makes the code be read again, for a process that reloads its modules after an edit."""
-    for kept in (_identified, _code, _paths, _kept_code, _kept_stamps):
-        kept.cache_clear()
+    for remembered in (_identified, _code, _paths, _kept_code, _kept_stamps):
+        remembered.cache_clear()
 
 
 @cache
@@ -187,12 +187,12 @@ def _kept_stamps() -> Mapping[str, tuple[int, int]]:
 
 def _stamps() -> Mapping[str, tuple[int, int]]:
     """Time and size of every file of our own code."""
-    found: dict[str, tuple[int, int]] = {}
+    stamps: dict[str, tuple[int, int]] = {}
     for name, path in (row for root in CODE_ROOTS for row in _files(root)):
         with contextlib.suppress(OSError):
-            told = path.stat()
-            found[name] = told.st_mtime_ns, told.st_size
-    return found
+            stat = path.stat()
+            stamps[name] = stat.st_mtime_ns, stat.st_size
+    return stamps
 
 
 @cache

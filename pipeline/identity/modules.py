@@ -44,14 +44,14 @@ class Modules:
 
     def imported(self, module: str) -> frozenset[str]:
         """The modules that importing `module` can import, packages on the way included."""
-        found: dict[str, None] = {}
+        modules: dict[str, None] = {}
         waiting = [module]
         while waiting:
             name = waiting.pop()
-            if name not in found and self.knows(name):
-                found[name] = None
+            if name not in modules and self.knows(name):
+                modules[name] = None
                 waiting += (*self.imports(name), name.rpartition(".")[0])
-        return frozenset(found)
+        return frozenset(modules)
 
     def imports(self, module: str) -> tuple[str, ...]:
         """The modules of ours that a module's import statements name, wherever in it they stand."""
@@ -101,13 +101,13 @@ class Modules:
 
     def named(self, here: Module, names: Names) -> set[Definition]:
         """The definitions that names stand for."""
-        found = {one for use in names.uses for one in self.meant(here, use, names)}
+        definitions = {one for use in names.uses for one in self.meant(here, use, names)}
         if names.is_dynamic:
-            found.add((here.name, EVERYTHING))
+            definitions.add((here.name, EVERYTHING))
             for text in (t for t in names.strings if "." in t):
                 named = [m for m in (t.removesuffix(PACKAGE) for t in self.texts) if m == text or m.startswith(text)]
-                found |= {(m, EVERYTHING) for m in named if m == text or text.endswith(".")}
-        return found
+                definitions |= {(m, EVERYTHING) for m in named if m == text or text.endswith(".")}
+        return definitions
 
     def meant(self, here: Module, use: Use, names: Names) -> Iterable[Definition]:
         if use.targets:
@@ -123,21 +123,21 @@ class Modules:
             return self._resolved.get(asked, frozenset())
         self._asked.append(asked)
         here = self.module(module)
-        found: set[Definition] = set()
+        definitions: set[Definition] = set()
         if name in here.bindings:
-            found.add((module, name))
+            definitions.add((module, name))
             targets = [s.target for s in here.bindings[name] if s.target is not None]
-            found |= {one for target in targets for one in self._imported(target, attributes)}
+            definitions |= {one for target in targets for one in self._imported(target, attributes)}
         elif here.starred:
-            found.add((module, EVERYTHING))
+            definitions.add((module, EVERYTHING))
         elif "__getattr__" in here.bindings and not hasattr(builtins, name):
-            found.add((module, "__getattr__"))
+            definitions.add((module, "__getattr__"))
         elif not hasattr(builtins, name) and not (name.startswith("__") and name.endswith("__")):
-            found.add((module, EVERYTHING))
+            definitions.add((module, EVERYTHING))
         self._asked.pop()
         if not self._asked:  # inside, a ring of imports may have cut the answer short
-            self._resolved[asked] = frozenset(found)
-        return frozenset(found)
+            self._resolved[asked] = frozenset(definitions)
+        return frozenset(definitions)
 
     def _imported(self, target: Target, attributes: tuple[str, ...]) -> set[Definition]:
         """The definitions that an import's target, with attributes after it, stands for."""
@@ -148,13 +148,13 @@ class Modules:
             return self._imported((inner, None), chain[1:]) if self.knows(inner) or inner in self._namespaces else set()
         if not chain:
             return {(module, EVERYTHING)}
-        found: set[Definition] = set()
+        definitions: set[Definition] = set()
         inner, here = f"{module}.{chain[0]}", self.module(module)
         if chain[0] in here.bindings:
-            found |= self.resolve(module, chain[0], chain[1:])
-        if self.knows(inner) and (len(chain) > 1 or not found):
-            found |= self._imported((inner, None), chain[1:])
-        return found or {*self.resolve(module, chain[0], chain[1:])} or {(module, EVERYTHING)}
+            definitions |= self.resolve(module, chain[0], chain[1:])
+        if self.knows(inner) and (len(chain) > 1 or not definitions):
+            definitions |= self._imported((inner, None), chain[1:])
+        return definitions or {*self.resolve(module, chain[0], chain[1:])} or {(module, EVERYTHING)}
 
 
 def _every_statement(body: Sequence[ast.AST]) -> Iterator[ast.AST]:

@@ -60,11 +60,11 @@ def statistics(array: NDArray[Any]) -> dict[str, Any]:
 
 
 def _schema(cls: type[Artifact]) -> dict[str, Any]:
-    arrays, told = cls.array_fields(), sentences(cls)
+    arrays, texts = cls.array_fields(), sentences(cls)
     fields = {}
     for name, field in cls.model_fields.items():
         spec = arrays.get(name)
-        fields[name] = {"type": _type(spec) if spec else _type_name(field.annotation), "what": told.get(name, "")}
+        fields[name] = {"type": _type(spec) if spec else _type_name(field.annotation), "what": texts.get(name, "")}
     return {"name": cls.__name__, "version": cls.version, "fields": fields}
 
 

@@ -50,12 +50,12 @@ class Outcome:
     def at(folder: Path) -> "Outcome | None":
         """The one in an output folder; None where there is none or it cannot be read."""
         try:
-            told = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
-            if told.pop("format") != FORMAT:
+            fields = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
+            if fields.pop("format") != FORMAT:
                 return None
-            files: Any = {name: (int(size), int(when)) for name, (size, when) in told.pop("files").items()}
-            lists: dict[str, Any] = {key: tuple(told.pop(key)) for key in ("failures", "remarks")}
-            return Outcome(**told, **lists, files=files)
+            files: Any = {name: (int(size), int(when)) for name, (size, when) in fields.pop("files").items()}
+            lists: dict[str, Any] = {key: tuple(fields.pop(key)) for key in ("failures", "remarks")}
+            return Outcome(**fields, **lists, files=files)
         except (OSError, ValueError, TypeError, KeyError, AttributeError):
             return None
 
@@ -71,7 +71,7 @@ class Outcome:
 
 def stamps(folder: Path, names: Any) -> dict[str, tuple[int, int]]:
     """Size and time of the last change of files, and of folders with all that is in them, by name; without missing ones."""
-    found: dict[str, tuple[int, int]] = {}
+    by_name: dict[str, tuple[int, int]] = {}
     for name in names:
         path = folder / name
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
@@ -80,8 +80,8 @@ def stamps(folder: Path, names: Any) -> dict[str, tuple[int, int]]:
         except OSError:
             continue
         if stats:
-            found[name] = sum(s.st_size for s in stats), max(s.st_mtime_ns for s in stats)
-    return found
+            by_name[name] = sum(s.st_size for s in stats), max(s.st_mtime_ns for s in stats)
+    return by_name
 
 
 def computing_seconds(schedule: Schedule) -> float:

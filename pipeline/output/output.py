@@ -50,12 +50,12 @@ def claim(config: Config, schedule: Schedule, always: Collection[str]) -> Owned:
 
 def summaries(schedule: Schedule) -> dict[str, Any]:
     """What run.json says of results that stand for the whole sequence, by task; one that is damaged is removed and left out."""
-    found: dict[str, Any] = {}
+    by_task: dict[str, Any] = {}
     for entry in schedule.entries.values():
         if entry.state in DONE and not entry.task.over and views.has_summary(entry.task.returns):
             with contextlib.suppress(DamagedArtifactError), _damage_discarded(schedule, entry):
-                found[entry.task.name] = views.summary(schedule.value(entry.node))
-    return found
+                by_task[entry.task.name] = views.summary(schedule.value(entry.node))
+    return by_task
 
 
 def write_results(owned: Owned, schedule: Schedule) -> list[str]:

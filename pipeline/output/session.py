@@ -102,16 +102,16 @@ class Session:
         notes = {"notes": said} if said else {}
         summed = {**summary(self.account, status, seconds), "files": self.left, **notes}
         results = summaries(schedule)
-        told = {**summed, **({"results": results} if results else {})}
+        content = {**summed, **({"results": results} if results else {})}
         if self.is_own:
-            write_run_json(self.config, told)
+            write_run_json(self.config, content)
         if not self.is_on_record:
-            return RunSummary({"run": self.name, **told})
+            return RunSummary({"run": self.name, **content})
         before = History.of(store, self.config).last_nodes()
         store.create()  # which somebody may have removed meanwhile
         store.write_run(self.name, closing(self.opened, schedule, before, self.account, summed))
         store.records.pack(self.name, [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
-        return RunSummary({"run": self.name, **told})
+        return RunSummary({"run": self.name, **content})
 
     def write_pages(self, summed: Mapping[str, Any]) -> None:
         """Leaves the pages that also tell of the run, as `close` summed it up."""

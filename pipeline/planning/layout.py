@@ -65,21 +65,21 @@ class Layout:
         space = self.graph.gathered_space(task, argument)
         shared = tuple(d for d in space if d in task.over)
         here = project(index, task.over, shared)
-        found, blocking = self.indices(space, dict(zip(shared, here, strict=True)))
-        chosen = self._selected(task, index, found, space)
+        indices, blocking = self.indices(space, dict(zip(shared, here, strict=True)))
+        chosen = self._selected(task, index, indices, space)
         if isinstance(chosen, Node):
             return (), (*blocking, chosen)
         return tuple(Node(writer.name, project(i, space, writer.over)) for i in chosen), blocking
 
-    def _selected(self, task: AnyTask, index: Index, found: list[Index], space: Space) -> list[Index] | Node:
+    def _selected(self, task: AnyTask, index: Index, indices: list[Index], space: Space) -> list[Index] | Node:
         """Those of the indices of a space that the task gathers among, or the node that has to tell them."""
         if task.among is None or task.among.selects not in space or task.among.selects in task.over:
-            return found
+            return indices
         selector = self.graph.writers[task.among]
         node = Node(selector.name, project(index, task.over, selector.over))
         members = self.ask(node, lambda value: frozenset(value.selected()))
         place = space.index(task.among.selects)
-        return node if members is None else [i for i in found if i[place] in members]
+        return node if members is None else [i for i in indices if i[place] in members]
 
     def _members(self, space: Space, prefix: Index, only: int | None) -> Sequence[int] | Node:
         """Members of a space's last dimension below a prefix, or the node that has to tell them; `only` this one, if any."""

@@ -57,7 +57,7 @@ class Schedule:
         self._ready = ReadyNodes(graph, self.entries)
         self._values: dict[Node, Artifact] = {}
         self._shaping = {t.name for t in graph.openers.values()}
-        self._shaping |= {graph.writers[told].name for t in graph.tasks for told in (t.along, t.among) if told}
+        self._shaping |= {graph.writers[artifact].name for t in graph.tasks for artifact in (t.along, t.among) if artifact}
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
         self._skipped_late: list[Node] = []
@@ -225,13 +225,13 @@ class Schedule:
 
     def losses(self) -> list[Loss]:
         """What was lost since this was asked last, in that order."""
-        found, self._losses = self._losses, []
-        return found
+        losses, self._losses = self._losses, []
+        return losses
 
     def skipped_late(self) -> list[Entry]:
         """What was skipped as soon as it was laid out since this was asked last: a node that it reads had failed before."""
-        found, self._skipped_late = self._skipped_late, []
-        return [self.entries[node] for node in found]
+        skipped, self._skipped_late = self._skipped_late, []
+        return [self.entries[node] for node in skipped]
 
     def _link(self, entry: Entry) -> None:
         """Lists what a node reads; while that cannot be known, it waits for the nodes that will tell."""

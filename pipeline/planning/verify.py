@@ -39,8 +39,8 @@ class Verified:
     def json(self) -> dict[str, Any]:
         """As JSON values."""
         nodes = {digest: list(self.nodes.get(digest, ())) for digest in self.damaged}
-        told = {"artifacts": self.artifacts, "damaged": dict(self.damaged), "nodes": nodes}
-        return {**told, "records": list(self.records), "runs": list(self.runs)}
+        report = {"artifacts": self.artifacts, "damaged": dict(self.damaged), "nodes": nodes}
+        return {**report, "records": list(self.records), "runs": list(self.runs)}
 
 
 def verify(store: Store, graphs: Iterable[Graph]) -> Verified:
@@ -64,12 +64,12 @@ def verify(store: Store, graphs: Iterable[Graph]) -> Verified:
     return Verified(len(there), damaged, nodes, tuple(store.records.damaged()), runs)
 
 
-def discard_damage(store: Store, found: Verified) -> None:
+def discard_damage(store: Store, verified: Verified) -> None:
     """Removes what is damaged: records and runs whole, artifacts too, so that their nodes are no longer up to date."""
-    for digest in found.damaged:
+    for digest in verified.damaged:
         store.discard(digest)
     store.records.discard_damaged()
-    for path in found.runs:
+    for path in verified.runs:
         store.place.remove(path)
 
 

@@ -229,8 +229,8 @@ def computed(topic: str, *work: Any, _data_producer: bool = True) -> list[Result
     """
     if topic:
         worker = get_worker()
-        told = {"key": worker.get_current_task(), "worker": worker.address}
-        asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=told), worker.loop.asyncio_loop).result()
+        event = {"key": worker.get_current_task(), "worker": worker.address}
+        asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=event), worker.loop.asyncio_loop).result()
     return execute(*work)
 
 

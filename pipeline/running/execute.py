@@ -202,12 +202,12 @@ def _asked_index(task: Task[..., Any], step: Step) -> Index | None:
 
 def _value(bench: _Bench, task: Task[..., Any], given: Input) -> Any:
     cls = next(a.artifact for a in task.arguments if a.name == given.argument)
-    found = [_artifact(bench, cls, ref) for ref in given.reads]
+    artifacts = [_artifact(bench, cls, ref) for ref in given.reads]
     if given.form == "tuple":
-        return tuple(found)
+        return tuple(artifacts)
     if given.numbers is not None:
-        return dict(zip(given.numbers, found, strict=True))
-    return found[0] if found else None
+        return dict(zip(given.numbers, artifacts, strict=True))
+    return artifacts[0] if artifacts else None
 
 
 def _artifact(bench: _Bench, cls: type[Artifact], ref: Ref) -> Artifact:
@@ -238,10 +238,10 @@ def _store(url: str) -> Store:
 @lru_cache(maxsize=1)
 def versions() -> dict[str, str]:
     """Versions of Python and of the libraries that took part."""
-    found = {"python": platform.python_version()}
+    by_library = {"python": platform.python_version()}
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            by_library[name] = version(name)
         except PackageNotFoundError:
             continue
-    return found
+    return by_library

@@ -45,8 +45,8 @@ def refuse_rings(schedule: Schedule) -> None:
 
 def beyond_repair(artifact: str, what: str) -> Result:
     """The failure of a node whose input was computed again in vain."""
-    told = f"artifact {artifact[:12]} {what}, again after it was computed again; check the disk"
-    return Result("failed", error="DamagedArtifactError", message=told)
+    cause = f"artifact {artifact[:12]} {what}, again after it was computed again; check the disk"
+    return Result("failed", error="DamagedArtifactError", message=cause)
 
 
 def twin(result: Result) -> Result:

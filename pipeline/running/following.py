@@ -47,8 +47,8 @@ async def _follow(client: Any, workers: LivingWorkers) -> None:
         with contextlib.suppress(OSError, TimeoutError):  # a scheduler that does not answer is the client's to notice
             threads = await client.scheduler.ncores()
             if set(threads) != known:  # all that is known of many workers is much to send four times a second
-                told = (await client.scheduler.identity(n_workers=-1))["workers"]
-                memory = {a: int(w["resources"][MEMORY]) for a, w in told.items() if MEMORY in w["resources"]}
+                workers_now = (await client.scheduler.identity(n_workers=-1))["workers"]
+                memory = {a: int(w["resources"][MEMORY]) for a, w in workers_now.items() if MEMORY in w["resources"]}
                 known = set(threads)
             workers.hear(threads, memory)
         await asyncio.sleep(FOLLOW_SECONDS)

@@ -82,13 +82,13 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
         with contextlib.ExitStack() as stack:
             if is_ours and not compute.cluster:
-                kept = {
+                environment = {
                     name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != TRIM or compute.memory_bytes
                 }
                 watching = UNWATCHED if compute.performance_report is None else {}
-                stack.enter_context(dask.config.set({ENVIRONMENT: kept, **watching}))
-            found = stack.enter_context(clusters.connected(compute, client))
-            yield _on_client(found, stack.enter_context(followed(found, compute, is_ours=is_ours)), compute)
+                stack.enter_context(dask.config.set({ENVIRONMENT: environment, **watching}))
+            there = stack.enter_context(clusters.connected(compute, client))
+            yield _on_client(there, stack.enter_context(followed(there, compute, is_ours=is_ours)), compute)
         return
     if compute.performance_report is not None:
         raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")

@@ -42,8 +42,8 @@ class LivingWorkers:
 
     def hear_begun(self, event: tuple[float, Mapping[str, str]]) -> None:
         """A worker has begun a parcel."""
-        _, told = event
-        self.began[told["key"]] = (time.monotonic(), told["worker"])
+        _, message = event
+        self.began[message["key"]] = (time.monotonic(), message["worker"])
 
     def is_begun(self, key: str, worker: str) -> bool:
         """Whether the worker at this address is the last that told that it begins a parcel."""

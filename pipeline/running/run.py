@@ -181,8 +181,8 @@ class _Loop:
             self._forget(number)
             tries = self._suspects.losses(job, parcel[0]) + 1
             times = f", each of {tries} times that it was tried" if tries > 1 else ""
-            told = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
-            self._lose(job, parcel, LateNodeError(told))
+            cause = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
+            self._lose(job, parcel, LateNodeError(cause))
         return bool(late)
 
     def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:

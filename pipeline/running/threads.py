@@ -68,19 +68,19 @@ def limited(threads: int = 1) -> Iterator[None]:
 
 def blas() -> str:
     """The BLAS libraries that are loaded, with the instruction set that each has chosen: bytes differ between these."""
-    found = {_named(library) for library in _controller(len(sys.modules)).info() if library["user_api"] == "blas"}
-    return ", ".join(sorted(found))
+    libraries = {_named(library) for library in _controller(len(sys.modules)).info() if library["user_api"] == "blas"}
+    return ", ".join(sorted(libraries))
 
 
 @lru_cache(maxsize=1)
 def simd() -> str:
     """The instruction set of numpy's own loops and the processor numba compiles for: bytes differ between these too."""
     sets = np.show_config(mode="dicts")["SIMD Extensions"]
-    told = [f"numpy {[*sets.get('baseline', ()), *sets.get('found', ())][-1]}"]
+    instruction_sets = [f"numpy {[*sets.get('baseline', ()), *sets.get('found', ())][-1]}"]
     numba, llvm = sys.modules.get("numba"), sys.modules.get("llvmlite.binding")
     if numba is not None and llvm is not None:
-        told.append(f"numba {numba.config.CPU_NAME or llvm.get_host_cpu_name()}")
-    return ", ".join(told)
+        instruction_sets.append(f"numba {numba.config.CPU_NAME or llvm.get_host_cpu_name()}")
+    return ", ".join(instruction_sets)
 
 
 def _named(library: dict[str, Any]) -> str:

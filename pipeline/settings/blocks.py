@@ -161,11 +161,11 @@ def _yaml_names(folder: Traversable | None) -> list[str]:
     return sorted(f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")) if folder else []
 
 
-def _file(path: Any, seen: tuple[str, ...], reading: Reading) -> tuple[dict[str, Any], str]:
-    if str(path) in seen:
-        raise ConfigError(f"{path}: extends itself through {' → '.join(seen)}")
+def _file(path: Any, files: tuple[str, ...], reading: Reading) -> tuple[dict[str, Any], str]:
+    if str(path) in files:
+        raise ConfigError(f"{path}: extends itself through {' → '.join(files)}")
     base = path.absolute().parent if isinstance(path, Path) else Path.cwd()
-    return extended(read_yaml(path), base, str(path), (*seen, str(path)), reading)
+    return extended(read_yaml(path), base, str(path), (*files, str(path)), reading)
 
 
 def read_yaml(path: Any) -> dict[str, Any]:
@@ -177,7 +177,7 @@ def read_yaml(path: Any) -> dict[str, Any]:
 
 
 def extended(
-    blocks: dict[str, Any], base: Path, where: str, seen: tuple[str, ...], reading: Reading
+    blocks: dict[str, Any], base: Path, where: str, files: tuple[str, ...], reading: Reading
 ) -> tuple[dict[str, Any], str]:
     """The blocks with their paths made absolute, over those of the preset or file they extend."""
     blocks = absolute(blocks, base, reading.paths)
@@ -188,7 +188,7 @@ def extended(
     if not source.is_file():
         presets = ", ".join(reading.preset_names) or "there are none"
         raise ConfigError(f"{where}: extends {parent!r}, which is neither a preset ({presets}) nor a file")
-    below, _ = _file(source, seen, reading)
+    below, _ = _file(source, files, reading)
     return merged(below, blocks), where
 
 

@@ -16,11 +16,11 @@ from pydantic import BaseModel
 @cache
 def sentences(model: type[BaseModel]) -> dict[str, str]:
     """By field name, also of fields that a base declares; a field without a sentence, or without source, is not in it."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for cls in reversed(model.__mro__):
         if issubclass(cls, BaseModel) and cls is not BaseModel:
-            found |= _below(cls)
-    return {name: found[name] for name in model.model_fields if name in found}
+            texts |= _below(cls)
+    return {name: texts[name] for name in model.model_fields if name in texts}
 
 
 def _below(cls: type[BaseModel]) -> dict[str, str]:
@@ -29,9 +29,9 @@ def _below(cls: type[BaseModel]) -> dict[str, str]:
     except (OSError, TypeError):
         return {}
     (statement,) = tree.body
-    found: dict[str, str] = {}
-    for field, told in pairwise(statement.body if isinstance(statement, ast.ClassDef) else ()):
-        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(told, ast.Expr):
-            if isinstance(told.value, ast.Constant) and isinstance(told.value.value, str):
-                found[field.target.id] = inspect.cleandoc(told.value.value)
-    return found
+    texts: dict[str, str] = {}
+    for field, following in pairwise(statement.body if isinstance(statement, ast.ClassDef) else ()):
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(following, ast.Expr):
+            if isinstance(following.value, ast.Constant) and isinstance(following.value.value, str):
+                texts[field.target.id] = inspect.cleandoc(following.value.value)
+    return texts

@@ -20,13 +20,13 @@ class _Loader(BoundedLoader):
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Refuses a key that is there twice, of which one would silently be lost."""
-        seen: set[str] = set()
+        names: set[str] = set()
         for name, _ in node.value:
             if isinstance(name, yaml.ScalarNode) and name.tag != "tag:yaml.org,2002:merge":
-                if name.value in seen:
+                if name.value in names:
                     problem = f"key {name.value!r} is there twice"
                     raise yaml.constructor.ConstructorError(None, None, problem, name.start_mark)
-                seen.add(name.value)
+                names.add(name.value)
         return super().construct_mapping(node, deep)
 
 

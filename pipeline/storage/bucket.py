@@ -73,14 +73,14 @@ class Bucket:
 
         def last(store: Any, key: str) -> tuple[bytes, int]:
             try:
-                found = store.get(key, options={"range": {"suffix": count}})
+                answer = store.get(key, options={"range": {"suffix": count}})
             except FileNotFoundError:
                 raise
             except Exception:  # an empty object has no last bytes: the service refuses the range
                 if store.head(key)["size"]:
                     raise
                 return b"", 0
-            return bytes(found.bytes()), int(found.meta["size"])
+            return bytes(answer.bytes()), int(answer.meta["size"])
 
         return self._asked(path, last)
 
@@ -99,14 +99,14 @@ class Bucket:
 
     def size(self, path: str) -> int | None:
         """Bytes of one object; None where nothing is."""
-        found = self.look(path)
-        return None if found is None else found.size
+        listed = self.look(path)
+        return None if listed is None else listed.size
 
     def names(self, path: str) -> list[str]:
         """Names directly below `path`, sorted; empty where nothing is."""
         with self._refusals("list", path):
-            found = self._store.list_with_delimiter(self._key(path) or None)
-        below = [*(o["path"] for o in found["objects"]), *found["common_prefixes"]]
+            answer = self._store.list_with_delimiter(self._key(path) or None)
+        below = [*(o["path"] for o in answer["objects"]), *answer["common_prefixes"]]
         return sorted({key.rstrip("/").rpartition("/")[2] for key in below})
 
     def listed(self, path: str) -> dict[str, Listed]:
@@ -114,19 +114,19 @@ class Bucket:
         key = self._key(path)
         top = f"{key}/" if key else ""
         with self._refusals("list", path):
-            found = [o for chunk in self._store.list(top or None, chunk_size=LISTED_AT_ONCE) for o in chunk]
-        return dict(sorted((o["path"].removeprefix(top), _listed(o)) for o in found))
+            objects = [o for chunk in self._store.list(top or None, chunk_size=LISTED_AT_ONCE) for o in chunk]
+        return dict(sorted((o["path"].removeprefix(top), _listed(o)) for o in objects))
 
     def children(self, path: str) -> dict[str, Listed]:
         """The objects directly below `path`, by name, sorted; empty where nothing is."""
         with self._refusals("list", path):
-            found = self._store.list_with_delimiter(self._key(path) or None)["objects"]
-        return dict(sorted((o["path"].rpartition("/")[2], _listed(o)) for o in found))
+            objects = self._store.list_with_delimiter(self._key(path) or None)["objects"]
+        return dict(sorted((o["path"].rpartition("/")[2], _listed(o)) for o in objects))
 
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change of an object; 0 where nothing is."""
-        found = self.look(path)
-        return 0.0 if found is None else found.modified
+        listed = self.look(path)
+        return 0.0 if listed is None else listed.modified
 
     def remove(self, path: str) -> None:
         """Removes an object, or all below a prefix; nothing happens where nothing is."""
@@ -178,8 +178,8 @@ class Bucket:
             ) from None
 
 
-def _listed(told: Any) -> Listed:
-    return Listed(int(told["size"]), float(told["last_modified"].timestamp()), str(told["e_tag"] or ""))
+def _listed(entry: Any) -> Listed:
+    return Listed(int(entry["size"]), float(entry["last_modified"].timestamp()), str(entry["e_tag"] or ""))
 
 
 def _client_options() -> Any:
@@ -195,10 +195,10 @@ def _failure_of_service(error: Exception) -> str:
     obstore has one kind of error for all of it; the first line of its text is the request and what came of it, the others
     are its causes, a line each.
     """
-    told = str(error).partition("\n")[0]
-    status = _STATUS.search(told)
+    message = str(error).partition("\n")[0]
+    status = _STATUS.search(message)
     if status is None:
-        is_silent = "HTTP error: " in told and not _CERTIFICATE.search(str(error))
+        is_silent = "HTTP error: " in message and not _CERTIFICATE.search(str(error))
         what = (
             "no machine of the service's name is found" if _UNKNOWN_NAME.search(str(error)) else "the service does not answer"
         )

@@ -86,13 +86,13 @@ def collect(
 def _fitting(store: Store, runs: dict[str, dict[str, Any]], bound: Collection[str], size: int) -> set[str]:
     """The runs without the oldest, as many as it takes until what the rest use is no larger than `size`."""
     used = {name: {n["artifact"] for n in _nodes(store, run).values() if n.get("key")} for name, run in runs.items()}
-    sizes = {digest: told.size for digest, told in store.artifacts().items()}
-    kept = set(runs)
+    sizes = {digest: listed.size for digest, listed in store.artifacts().items()}
+    staying = set(runs)
     for name in (name for name in runs if name not in bound):
-        if sum(sizes.get(d, 0) for d in set().union(*(used[k] for k in kept)) if d) <= size:
+        if sum(sizes.get(d, 0) for d in set().union(*(used[k] for k in staying)) if d) <= size:
             break
-        kept.remove(name)
-    return kept
+        staying.remove(name)
+    return staying
 
 
 def _last(runs: dict[str, dict[str, Any]], count: int) -> list[str]:
@@ -145,7 +145,7 @@ def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: 
         else:
             records.append(key)
     there = store.artifacts()
-    artifacts = [digest for digest, told in there.items() if digest not in needed and told.modified < since]
+    artifacts = [digest for digest, listed in there.items() if digest not in needed and listed.modified < since]
     leftovers = dict(_leftovers(store, runs, lists, since))
     freed = sum(there[digest].size for digest in artifacts) + sum(leftovers.values())
     return Garbage(runs, tuple(records), tuple(artifacts), tuple(leftovers), freed)
@@ -155,14 +155,14 @@ def _leftovers(store: Store, runs: Collection[str], lists: Collection[str], sinc
     """What else nobody needs, and its size: half-written things, lists and heartbeats of runs that go."""
     old = min(time.time() - LEFTOVER_SECONDS, since)
     half: dict[str, list[Listed]] = {}
-    for name, told in store.place.listed("tmp").items():
-        half.setdefault(f"tmp/{name.partition('/')[0]}", []).append(told)
-    yield from ((path, sum(t.size for t in told)) for path, told in half.items() if all(t.modified < old for t in told))
-    for name, told in store.place.listed("nodes").items():
-        if name.removesuffix(".json") not in lists and told.modified < since:
-            yield list_path(name.removesuffix(".json")), told.size
-    beats = ((name, told) for name, told in store.place.listed("runs").items() if name.endswith(".beat"))
-    yield from ((f"runs/{name}", told.size) for name, told in beats if name.removesuffix(".beat") in runs)
+    for name, listed in store.place.listed("tmp").items():
+        half.setdefault(f"tmp/{name.partition('/')[0]}", []).append(listed)
+    yield from ((path, sum(t.size for t in listed)) for path, listed in half.items() if all(t.modified < old for t in listed))
+    for name, listed in store.place.listed("nodes").items():
+        if name.removesuffix(".json") not in lists and listed.modified < since:
+            yield list_path(name.removesuffix(".json")), listed.size
+    beats = ((name, listed) for name, listed in store.place.listed("runs").items() if name.endswith(".beat"))
+    yield from ((f"runs/{name}", listed.size) for name, listed in beats if name.removesuffix(".beat") in runs)
 
 
 def _free(store: Store, garbage: Garbage) -> None:

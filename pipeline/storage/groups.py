@@ -74,8 +74,8 @@ def decoded(files: Mapping[str, bytes], spec: Array | None) -> NDArray[Any]:
     """
     meta = _metadata(files.get(_META))
     _refuse_foreign(meta)
-    told = [meta["data_type"], meta.get("dimension_names"), meta.get("attributes")]
-    if spec is not None and told != [spec.dtype, _dimensions(spec), {"unit": spec.unit}]:
+    layout = [meta["data_type"], meta.get("dimension_names"), meta.get("attributes")]
+    if spec is not None and layout != [spec.dtype, _dimensions(spec), {"unit": spec.unit}]:
         raise ForeignArrayError("its dtype, dimensions or unit are not those of its schema")
     chunks = {path: data for path, data in files.items() if path != _META}
     _refuse_bomb(meta, sum(map(len, chunks.values())))
@@ -208,9 +208,9 @@ def _refuse_packed(data: bytes, meta: Mapping[str, Any], stored: int) -> None:
     expected = math.prod(_chunk_shape(meta)) * np.dtype(meta["data_type"]).itemsize + _SLACK
     codec = next((name for name in _codecs(meta) if name in COMPRESSORS), None)
     sizes = {"zstd": _zstd_size, "gzip": _gzip_size, "blosc": _blosc_size}
-    told = sizes[codec](data, expected, stored) if codec else stored
-    if told > expected:
-        raise ForeignArrayError(f"a chunk would unpack to {told} bytes, expected {expected - _SLACK}")
+    size = sizes[codec](data, expected, stored) if codec else stored
+    if size > expected:
+        raise ForeignArrayError(f"a chunk would unpack to {size} bytes, expected {expected - _SLACK}")
 
 
 def _zstd_size(data: bytes, _: int, stored: int) -> int:

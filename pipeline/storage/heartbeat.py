@@ -50,11 +50,11 @@ def _clock_of(store: Store) -> float:
     probe = _path(f"clock-{uuid.uuid4().hex}")
     try:
         store.place.put(probe, b"")
-        shown = store.place.modified(probe)
+        modified = store.place.modified(probe)
         store.place.remove(probe)
     except StoreError:
         return time.time()
-    return shown
+    return modified
 
 
 def is_here(process: Mapping[str, Any]) -> bool:

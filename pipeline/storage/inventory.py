@@ -35,8 +35,8 @@ class Inventory:
 
     def holds(self, record: Record) -> bool:
         """Whether the record's artifact lay there in its size."""
-        found = self._artifacts.get(artifact_path(record.artifact).removeprefix(f"{ARTIFACTS}/"))
-        return found is not None and found.size == record.bytes
+        listed = self._artifacts.get(artifact_path(record.artifact).removeprefix(f"{ARTIFACTS}/"))
+        return listed is not None and listed.size == record.bytes
 
     @cached_property
     def _artifacts(self) -> dict[str, Listed]:

@@ -71,13 +71,13 @@ class Overlay:
     def listed(self, path: str) -> dict[str, Listed]:
         """Every object below `path`, by path relative to it, sorted; empty where nothing is."""
         within = f"{path}/" if path else ""
-        told: dict[str, Listed] = dict(self._below.listed(path))
+        entries: dict[str, Listed] = dict(self._below.listed(path))
         for name, data in self._held.items():
             if name.startswith(within):
-                told.pop(name[len(within) :], None)
+                entries.pop(name[len(within) :], None)
                 if data is not None:
-                    told[name[len(within) :]] = Listed(len(data), 0.0)
-        return dict(sorted(told.items()))
+                    entries[name[len(within) :]] = Listed(len(data), 0.0)
+        return dict(sorted(entries.items()))
 
     def modified(self, path: str) -> float:
         """Seconds since the epoch of the last change of an object; 0 where nothing is, and for what is in memory."""

@@ -36,9 +36,9 @@ def packed(files: Mapping[str, bytes], *, is_deflated: bool = False) -> bytes:
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED if is_deflated else zipfile.ZIP_STORED) as archive:
         for name, data in files.items():
-            told = zipfile.ZipInfo(name, _WRITTEN)
-            told.compress_type = archive.compression
-            archive.writestr(told, data)
+            member = zipfile.ZipInfo(name, _WRITTEN)
+            member.compress_type = archive.compression
+            archive.writestr(member, data)
     return out.getvalue()
 
 
@@ -59,13 +59,13 @@ class Packed:
 
         raises : DamagedZipError
         """
-        found = place.tail(path, TAIL_BYTES)
-        if found is None:
+        tail = place.tail(path, TAIL_BYTES)
+        if tail is None:
             return None
         try:
-            return Packed(place, path, _spans(*found), *found)
+            return Packed(place, path, _spans(*tail), *tail)
         except _Outside:
-            whole = place.part(path, 0, found[1]) or b""  # the list alone is longer than the tail
+            whole = place.part(path, 0, tail[1]) or b""  # the list alone is longer than the tail
             return Packed(place, path, _spans(whole, len(whole)), whole, len(whole))
 
     def read(self, names: Iterable[str]) -> dict[str, bytes]:

@@ -84,8 +84,8 @@ class Records:
     def singles(self) -> dict[str, Record]:
         """By key, the readable records that lie alone."""
         self._list()
-        found = self._read_singles(self._single)
-        records = {key: _checked(data, key) for key, data in found.items()}
+        files = self._read_singles(self._single)
+        records = {key: _checked(data, key) for key, data in files.items()}
         return {key: record for key, record in records.items() if record is not None}
 
     def look_again(self) -> None:
@@ -123,8 +123,8 @@ class Records:
     def pack(self, name: str, keys: Collection[str]) -> None:
         """Puts the single records of these keys into one pack of that name, if they are many."""
         self._list()
-        found = self._read_singles(self._single & set(keys))
-        files = {f"{key}.json": data for key, data in found.items() if data is not None and _checked(data, key) is not None}
+        by_key = self._read_singles(self._single & set(keys))
+        files = {f"{key}.json": data for key, data in by_key.items() if data is not None and _checked(data, key) is not None}
         if len(files) >= PACKED_FROM:
             self.place.put(_pack(name), packed(files, is_deflated=True))
             self.place.remove_all(f"records/{file}" for file in files)
@@ -165,8 +165,8 @@ class Records:
         return [key for key, data in self._read_singles(self._single).items() if _checked(data, key) is None]
 
     def _read_singles(self, keys: Iterable[str]) -> dict[str, bytes | None]:
-        found = self.place.get_all(map(_single, wanted := sorted(keys)))
-        return {key: found[_single(key)] for key in wanted}
+        by_path = self.place.get_all(map(_single, wanted := sorted(keys)))
+        return {key: by_path[_single(key)] for key in wanted}
 
     def _list(self) -> None:
         with self._lock:
@@ -195,10 +195,10 @@ def _placed(before: dict[str, str], known: Packs, packs: Packs) -> dict[str, str
     """The pack of every key; only those that were not known are looked through, since a store may have thousands of others."""
     if packs == known:
         return before
-    kept = {name for name, archive in known.items() if packs.get(name) is archive}
-    where = dict(before) if len(kept) == len(known) else {key: name for key, name in before.items() if name in kept}
+    same = {name for name, archive in known.items() if packs.get(name) is archive}
+    where = dict(before) if len(same) == len(known) else {key: name for key, name in before.items() if name in same}
     for name, archive in packs.items():
-        if archive is not None and name not in kept:
+        if archive is not None and name not in same:
             where.update((file[:-5], name) for file in archive.namelist() if _KEY.fullmatch(file[:-5]))
     return where
 

@@ -51,17 +51,19 @@ def found(where: str) -> "dict[str, Listed]":
     if magic:
         folder = key[: magic.start()].rpartition("/")[0]
         listed = _asked(lambda: bucket.listed(folder))
-        paths = {f"{folder}/{name}".lstrip("/"): told for name, told in listed.items()}
-        there = {path: told for path, told in paths.items() if _matches(path.split("/"), key.split("/"))}
+        paths = {f"{folder}/{name}".lstrip("/"): entry for name, entry in listed.items()}
+        there = {path: entry for path, entry in paths.items() if _matches(path.split("/"), key.split("/"))}
     else:
         folder = key.rstrip("/")
         single = _asked(lambda: bucket.look(key)) if key and not key.endswith("/") else None
         inside = {} if single is not None else _asked(lambda: bucket.children(folder))
-        there = {key: single} if single is not None else {f"{folder}/{name}".lstrip("/"): told for name, told in inside.items()}
-    named = {path: told for path, told in there.items() if not PurePosixPath(path).name.startswith(".")}
+        there = (
+            {key: single} if single is not None else {f"{folder}/{name}".lstrip("/"): entry for name, entry in inside.items()}
+        )
+    named = {path: entry for path, entry in there.items() if not PurePosixPath(path).name.startswith(".")}
     if not named:
         raise InputError(f"{where}: there is nothing; a folder, a pattern or a file in the bucket is needed")
-    return {f"{bucket.url}/{path}": told for path, told in sorted(named.items())}
+    return {f"{bucket.url}/{path}": entry for path, entry in sorted(named.items())}
 
 
 def look(address: str) -> "Listed | None":
@@ -113,10 +115,10 @@ class _Copies:
     def of(self, address: str) -> Path:
         """The copy of an object; raises InputError."""
         if address not in self.by_address:
-            told = look(address)
-            if told is None:
+            entry = look(address)
+            if entry is None:
                 raise InputError(f"{address}: there is no such object; was it removed? Run again")
-            self.by_address[address] = _copy(address, told.tag, told.size, told.modified)
+            self.by_address[address] = _copy(address, entry.tag, entry.size, entry.modified)
         return self.by_address[address].path
 
 

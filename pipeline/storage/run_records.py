@@ -29,8 +29,8 @@ class RunRecords:
 
     def heads(self) -> list[dict[str, Any]]:
         """The runs without their nodes, oldest first, without those that cannot be read; `list` names a run's nodes."""
-        found = self.place.get_all([run_path(name) for name in self.names()])
-        heads = (_head(data, path) for path, data in found.items())
+        by_path = self.place.get_all([run_path(name) for name in self.names()])
+        heads = (_head(data, path) for path, data in by_path.items())
         return [head for head in heads if head is not None]
 
     def head(self, name: str) -> dict[str, Any] | None:
@@ -50,8 +50,8 @@ class RunRecords:
         nodes = run["nodes"]
         states = {label: node["state"] for label, node in nodes.items() if node.get("state", "fresh") != "fresh"}
         listed = {label: {k: v for k, v in node.items() if k != "state"} for label, node in nodes.items()}
-        told = {**run, "nodes": self._put_list(listed), "states": states}
-        self.place.put(run_path(name), sealed(told))
+        record = {**run, "nodes": self._put_list(listed), "states": states}
+        self.place.put(run_path(name), sealed(record))
 
     def _list(self, name: str) -> Any:
         if name not in self._lists:

@@ -92,7 +92,7 @@ class Store:
         """
         arrays, plain = artifact.arrays(), artifact.plain()
         digests = {name: array_digest(array) for name, array in arrays.items()}
-        told = combined_digest(type(artifact), plain, digests)
+        digest = combined_digest(type(artifact), plain, digests)
         head = {
             "schema": type(artifact).__name__,
             "version": type(artifact).version,
@@ -100,10 +100,10 @@ class Store:
             "digests": digests,
         }
         data = packed(group_files({"kinetree": head}, arrays, type(artifact).array_fields()))
-        path = artifact_path(told)
+        path = artifact_path(digest)
         if self.place.size(path) != len(data) or self.place.get(path) != data:
             self.place.put(path, data)
-        return told, len(data)
+        return digest, len(data)
 
     def write(self, record: Record) -> None:
         """Makes a published artifact known as what its key made."""
@@ -118,7 +118,9 @@ class Store:
         head = _head(group, digest)
         _refuse_altered(cls, head, digest)
         specs = cls.array_fields()
-        return cls.lazily(head["values"], {n: _loader(group, digest, n, specs[n], told) for n, told in head["digests"].items()})
+        return cls.lazily(
+            head["values"], {n: _loader(group, digest, n, specs[n], expected) for n, expected in head["digests"].items()}
+        )
 
     def head(self, digest: str) -> dict[str, Any]:
         """Schema, version, JSON values and array digests of an artifact, as stored; raises DamagedArtifactError."""
@@ -138,8 +140,8 @@ class Store:
         if cls is not None and cls.version == head["version"]:
             self.read(cls, digest).arrays()
             return
-        for name, told in head["digests"].items():
-            _loader(group, digest, name, None, told)()
+        for name, expected in head["digests"].items():
+            _loader(group, digest, name, None, expected)()
 
     def discard(self, digest: str) -> None:
         """Removes an artifact; records that name it then make nothing fresh."""
@@ -147,7 +149,7 @@ class Store:
 
     def artifacts(self) -> dict[str, Listed]:
         """Size and time of every artifact there is, by digest."""
-        return {path.rpartition("/")[2].removesuffix(".zip"): told for path, told in self.place.listed(ARTIFACTS).items()}
+        return {path.rpartition("/")[2].removesuffix(".zip"): listed for path, listed in self.place.listed(ARTIFACTS).items()}
 
     def run_names(self) -> list[str]:
         """Identifiers of the runs on record, oldest first."""
@@ -155,8 +157,8 @@ class Store:
 
     def runs(self) -> list[dict[str, Any]]:
         """The runs on record with their nodes, oldest first, without those that cannot be read."""
-        found = ((head, self.run_records.nodes(head)) for head in self.run_records.heads())
-        return [{**head, "nodes": nodes} for head, nodes in found if nodes is not None]
+        pairs = ((head, self.run_records.nodes(head)) for head in self.run_records.heads())
+        return [{**head, "nodes": nodes} for head, nodes in pairs if nodes is not None]
 
     def run(self, name: str) -> dict[str, Any]:
         """The record of one run with its nodes; raises UnknownNodeError where there is none."""
@@ -234,10 +236,10 @@ def _refuse_altered(cls: type[Artifact], head: Mapping[str, Any], digest: str) -
     if (head["schema"], head["version"]) != (cls.__name__, cls.version):
         raise DamagedArtifactError(digest, f"holds {head['schema']}/{head['version']}, not {cls.__name__}")
     try:
-        told = combined_digest(cls, head["values"], head["digests"])
+        actual = combined_digest(cls, head["values"], head["digests"])
     except (TypeError, AttributeError):
-        told = ""
-    if told != digest or set(head["digests"]) != set(cls.array_fields()):
+        actual = ""
+    if actual != digest or set(head["digests"]) != set(cls.array_fields()):
         raise DamagedArtifactError(digest, "its attributes were altered")
 
 

@@ -122,9 +122,13 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
     """Writes what Blender left as .npz, all or nothing, and returns the number of frames."""
     import numpy as np
 
-    told = small_json(small_text(folder / "told.json", InputError, MOST_TOLD), f"{file}: what Blender says", InputError)
+    layout = small_json(small_text(folder / "told.json", InputError, MOST_TOLD), f"{file}: what Blender says", InputError)
     try:
-        counts, fps, scale = np.array(told["counts"], dtype=np.int64).reshape(-1, 2), float(told["fps"]), float(told["scale"])
+        counts, fps, scale = (
+            np.array(layout["counts"], dtype=np.int64).reshape(-1, 2),
+            float(layout["fps"]),
+            float(layout["scale"]),
+        )
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{file}: what Blender says: counts, scale and fps are needed ({error!r})") from None
     if not (0 < fps < math.inf and 0 < scale < math.inf):

@@ -83,8 +83,8 @@ def _print(evaluation: "Evaluation") -> None:
         out.print(printable(line), markup=False)
     if evaluation.spurious:
         of = zip(evaluation.spurious, evaluation.duplicate_of, strict=True)
-        told = ", ".join(f"{name} (a second {true})" if true else name for name, true in of)
-        out.print(printable(f"spurious: {told}"), markup=False)
+        spurious = ", ".join(f"{name} (a second {true})" if true else name for name, true in of)
+        out.print(printable(f"spurious: {spurious}"), markup=False)
     if evaluation.summary is not None:
         for line in _lines(evaluation.summary):
             out.print(printable(line), markup=False)

@@ -114,8 +114,8 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | 
     there = pipeline.computed(task, LAID_OUT_BY)
     schedule = there.schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
-    told = dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node)))
-    remarks = [*([there.unkept] if there.unkept else []), *told]
+    remarks_made = dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node)))
+    remarks = [*([there.unkept] if there.unkept else []), *remarks_made]
     if (named := _joint_names(schedule)) is not None:
         remarks += unknown_joints("joint_names.rename" if names is None or names in STYLES else names, named)
     if output is not None:
@@ -134,15 +134,15 @@ def _names_setting(names: str) -> str:
     path = Path(names)
     if not path.is_file():
         raise ConfigError(f"--names {names}: neither a style nor a file; {nearest(names, STYLES)}")
-    told = parsed(small_text(path, ConfigError, LARGEST_NAMES), names)
-    pairs = told.items() if isinstance(told, dict) else [(None, None)]
+    given_names = parsed(small_text(path, ConfigError, LARGEST_NAMES), names)
+    pairs = given_names.items() if isinstance(given_names, dict) else [(None, None)]
     if not all(isinstance(text, str) and text for pair in pairs for text in pair):
         raise ConfigError(
             f"{names}: expected a line 'joint: name' for each joint; write the file with --to {NAMES}, then edit it"
         )
-    if long := next((name for name in told.values() if len(name) > LONGEST_NAME), None):
+    if long := next((name for name in given_names.values() if len(name) > LONGEST_NAME), None):
         raise ConfigError(f"{names}: the name {long[:20]}… has {len(long)} letters; {LONGEST_NAME} are the most")
-    return f"joint_names.rename={json.dumps(told)}"
+    return f"joint_names.rename={json.dumps(given_names)}"
 
 
 def _names_text(pipeline: "Pipeline") -> str:
@@ -152,15 +152,15 @@ def _names_text(pipeline: "Pipeline") -> str:
     there = pipeline.computed("joint_names", LAID_OUT_BY)
     if there.unkept:
         tell(there.unkept)
-    found = _joint_names(there.schedule)
-    assert found is not None
-    return dumped(dict(zip(found.given, found.names, strict=True)), sort_keys=False)
+    joint_names = _joint_names(there.schedule)
+    assert joint_names is not None
+    return dumped(dict(zip(joint_names.given, joint_names.names, strict=True)), sort_keys=False)
 
 
 def _joint_names(schedule: "Schedule") -> "JointNames | None":
     """The names of all joints; None where the schedule has none."""
-    found = (e.node for e in schedule.entries.values() if e.node.task == "joint_names" and e.artifact is not None)
-    return next((cast("JointNames", schedule.value(node)) for node in found), None)
+    nodes = (e.node for e in schedule.entries.values() if e.node.task == "joint_names" and e.artifact is not None)
+    return next((cast("JointNames", schedule.value(node)) for node in nodes), None)
 
 
 def _write_text(text: str, output: Path | None) -> None:
