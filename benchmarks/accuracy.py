@@ -45,11 +45,14 @@ import yaml
 from kinetree.errors import KinetreeError
 from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.inspect import Pipeline
+from kinetree.schemas.input.sequence import Sequence as InputSequence
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.evaluation import Evaluation, EvaluationParams, Summary
 from kinetree.schemas.results.truth import Truth, TruthParams
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.frame_truth import frame_truth
+from kinetree.tasks.results.known_truth import known_truth
 from kinetree.tasks.results.truth import synthetic, truth
 
 PEOPLE = ("walk", "dance", "look", "reach", "run", "squat", "greet", "throw")
@@ -175,7 +178,10 @@ def nothing(true: Truth) -> Evaluation:
         label=np.zeros(len(V), np.int32), influence=np.zeros((len(V), 4), np.int32), weight=np.tile(np.eye(4)[0], (len(V), 1)),
     )  # fmt: skip
     source = {frame: Source(content="", path="") for frame in true.frames}
-    return evaluation(skeleton=lone, truth=true, source=source, mesh={}, projection={}, params=EvaluationParams())
+    known = known_truth(true, source, InputSequence(frames=true.frames, fps=true.fps, unit=true.unit))
+    none: dict[int, Any] = {}
+    of_frames = {t: frame_truth(lone, known, {t: source[t]}, none, none, (t,)) for t in known.compared}
+    return evaluation(lone, known, of_frames, EvaluationParams())
 
 
 def _truth(case: Case, pipeline: Pipeline) -> Truth:

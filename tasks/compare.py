@@ -190,7 +190,7 @@ def evaluated(pipeline: Pipeline, tell: Tell | None = None) -> Evaluation | None
     raises : InputError where the truth is wrong; UnknownNodeError where what it is made from is not there
     """
     try:
-        there = pipeline.computed("evaluation")
+        there = pipeline.computed("evaluation", also=("known_truth", "frame_truth"))
     except NodesFailedError as error:
         if f": {InputError.__name__}: " in str(error):
             raise InputError(str(error).partition(f": {InputError.__name__}: ")[2]) from None

@@ -24,7 +24,7 @@ class TruthParams(Params):
     """Unit of the truth's coordinates where its file has none, e.g. cm; None: the sequence's unit."""
 
 
-class Truth(Artifact):
+class TrueBody(Artifact):
     """The true joints in every frame; without joints where no truth is given."""
 
     source: str
@@ -57,3 +57,7 @@ class Truth(Artifact):
     """The joint that each vertex of the true body follows most."""
     bone_end: Annotated[Ints, Array("int32", VERTEX)]
     """The other end of the one bone that the vertex follows; −1 where the joint carries all its bones as one rigid group."""
+
+
+class Truth(TrueBody):
+    """The truth as its file has it."""

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
-from kinetree.schemas.dims import FRAME, PART, ROW, VERTEX, XYZ
+from kinetree.schemas.dims import FRAME, JOINT, PART, ROW, VERTEX, XYZ
 
 
 class FurtherCut(Artifact):
@@ -19,3 +19,7 @@ class FurtherCut(Artifact):
     """x(t) = rotation · v + translation for a vertex v in that pose."""
     residual: Annotated[Floats, Array("float64", FRAME, PART, unit="length")]
     """Root mean square distance between the part's clearly rigid vertices and where its motion carries them."""
+    joined: bool
+    """Whether its joints are known; where the frames give the correspondence they depend on the first cut."""
+    joints: Annotated[Floats, Array("float64", FRAME, JOINT, XYZ, unit="length")]
+    """Its joints in every frame, but for its root; none where they are not known."""

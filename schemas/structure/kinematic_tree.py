@@ -11,7 +11,7 @@ from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, XYZ
 from kinetree.schemas.structure.skeleton import ArticulatedBody
 
-MOST_TOGETHER = 6
+MOST_TOGETHER = 2
 """Uncertain frames that are refined by one task, at most."""
 
 

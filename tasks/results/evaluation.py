@@ -9,11 +9,10 @@ import numpy as np
 from kinetree.errors import InputError
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Bools, Floats
-from kinetree.schemas.input.mesh import Mesh
-from kinetree.schemas.input.source import Source
-from kinetree.schemas.registration.projection import Projection
 from kinetree.schemas.results.evaluation import Chamfer, Evaluation, EvaluationParams, JointScore, Overlap, PartScore, Summary
-from kinetree.schemas.results.truth import Truth
+from kinetree.schemas.results.frame_truth import FrameTruth
+from kinetree.schemas.results.known_truth import KnownTruth
+from kinetree.schemas.results.truth import TrueBody
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.results.evaluation import body, rignet
@@ -24,7 +23,6 @@ from kinetree.tasks.numerics.results.evaluation.matching import Matching, joint_
 from kinetree.tasks.numerics.results.evaluation.parts import (
     adjusted_rand_index,
     contingency,
-    leading_parts,
     mean_iou,
     rand_index,
 )
@@ -34,7 +32,6 @@ from kinetree.tasks.numerics.results.evaluation.split_joints import SplitTree, s
 from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors, tree_edit_distance
 from kinetree.tasks.numerics.results.evaluation.tree_match import tree_match_distance
 from kinetree.tasks.numerics.results.units import unit_factor
-from kinetree.tasks.results.truth import numbered, synthetic, true_carriers
 
 
 class Comparison(NamedTuple):
@@ -47,7 +44,7 @@ class Comparison(NamedTuple):
     """
 
     skeleton: Skeleton
-    truth: Truth
+    truth: TrueBody
     X: Floats
     Y: Floats
     height: float
@@ -65,27 +62,23 @@ class Comparison(NamedTuple):
 @task()
 def evaluation(
     skeleton: Skeleton,
-    truth: Truth,
-    source: Mapping[int, Source],
-    mesh: Mapping[int, Mesh],
-    projection: Mapping[int, Projection],
+    known_truth: KnownTruth,
+    frame_truth: Mapping[int, FrameTruth],
     params: EvaluationParams,
 ) -> Evaluation:
     """Compares the skeleton with the truth: joints, tree, parts, lengths and smoothness (2014, Sec. 7.1)."""
-    recipe = next((s.recipe for s in source.values()), "")
-    if not truth.names and recipe:
-        truth = synthetic(recipe)
+    truth = known_truth
     if not truth.names:
         none = np.zeros(len(skeleton.frames))
         return Evaluation(truth="", frames=skeleton.frames, unit=skeleton.unit, height=0.0, joints=(), spurious=(),
                           true_frames=0, summary=None, error=none[:, None][:, :0], detection=none, distance=none)  # fmt: skip
-    truth = numbered(truth, source)
     compared = _comparison(skeleton, truth, params)
+    by_frame = [frame_truth[frame] for frame in skeleton.frames]
     rate, distance = (f(compared.X, compared.Y[:, _moving(truth)]) for f in (detection_rate, nearest_distance))
     of_frames_and_parts = {
         "detection": float(rate.mean()),
         "distance": float(distance.mean() / compared.height),
-        "parts": _part_score(compared, source, mesh, projection),
+        "parts": _part_score(compared, by_frame),
     }
     return Evaluation(
         truth=truth.source,
@@ -96,14 +89,14 @@ def evaluation(
         joints=tuple(_joint_score(compared, j) for j in range(len(compared.tree.parents))),
         spurious=tuple(skeleton.names[i] for i in compared.matching.spurious),
         duplicate_of=tuple(truth.names[compared.tree.origin[j]] if j >= 0 else "" for j in compared.duplicated),
-        summary=_summary(compared, params).model_copy(update=of_frames_and_parts),
+        summary=_summary(compared, by_frame, params).model_copy(update=of_frames_and_parts),
         error=compared.error,
         detection=rate,
         distance=distance / compared.height,
     )
 
 
-def _comparison(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> Comparison:
+def _comparison(skeleton: Skeleton, truth: TrueBody, params: EvaluationParams) -> Comparison:
     """Brings the truth to the sequence's frames and unit and matches the joints; refuses the truth of another sequence."""
     _check_frames(skeleton, truth)
     scale = unit_factor(truth.unit, skeleton.unit, truth.source)
@@ -122,7 +115,7 @@ def _comparison(skeleton: Skeleton, truth: Truth, params: EvaluationParams) -> C
     return Comparison(skeleton, truth, X, Y, height, tree, pairs, joint_errors(X, Z, pairs.partner), second)
 
 
-def _check_frames(skeleton: Skeleton, truth: Truth) -> None:
+def _check_frames(skeleton: Skeleton, truth: TrueBody) -> None:
     """Raises InputError where the truth lacks frames of the sequence or has another frame rate."""
     missing = [frame for frame in skeleton.frames if frame not in set(truth.frames)]
     if missing:
@@ -139,7 +132,7 @@ def _check_frames(skeleton: Skeleton, truth: Truth) -> None:
         )
 
 
-def _moving(truth: Truth) -> Bools:
+def _moving(truth: TrueBody) -> Bools:
     """(true,) the joints that motion can show: the root, tips and scored joints."""
     rows = zip(truth.scored, truth.kinds, truth.parents, strict=True)
     return np.array([scored or kind == "tip" or parent < 0 for scored, kind, parent in rows])
@@ -168,7 +161,7 @@ def _joint_score(c: Comparison, j: int) -> JointScore:
     )
 
 
-def _summary(c: Comparison, params: EvaluationParams) -> Summary:
+def _summary(c: Comparison, by_frame: Ordered[FrameTruth], params: EvaluationParams) -> Summary:
     """Counts and means over the joints, distances between the trees, lengths and jitter."""
     partner, scored = c.matching.partner, c.tree.scored
     hit = scored & (partner >= 0)
@@ -201,7 +194,7 @@ def _summary(c: Comparison, params: EvaluationParams) -> Summary:
         true_length_variation=float(length_variation(c.Y, c.truth.parents).max(initial=0.0) * 100.0),
         jitter=of_error / of_truth if of_truth > 0.0 else None,
         jitter_percent=of_error / c.height * 100.0,
-        **_rigging_scores(c),
+        **_rigging_scores(c, by_frame),
     )
 
 
@@ -216,33 +209,28 @@ def _tree_distances(c: Comparison) -> tuple[int, int]:
     return tree_match_distance(one, two, pairs, c.tree.origin[dividing].tolist()), tree_edit_distance(one, two)
 
 
-def _rigging_scores(c: Comparison) -> dict[str, Any]:
+def _rigging_scores(c: Comparison, by_frame: Ordered[FrameTruth]) -> dict[str, Any]:
     """RigNet's measures, against all true joints and against those that motion can show."""
     moving, parents = _moving(c.truth), c.truth.parents
-    tolerance, side = _radii_and_side(c)
+    tolerance, side = _radii_and_side(c, by_frame)
     of_all = _rigging(c, c.Y, parents, side, tolerance)
     of_moving = _rigging(c, c.Y[:, moving], contracted_tree(parents, list(moving)), side, tolerance[moving])
     return {"chamfer": of_all[0], "chamfer_moving": of_moving[0], "overlap": of_all[1], "overlap_moving": of_moving[1]}
 
 
-def _radii_and_side(c: Comparison) -> tuple[Floats, float]:
+def _radii_and_side(c: Comparison, by_frame: Ordered[FrameTruth]) -> tuple[Floats, float]:
     """(true,) half the body's diameter at every true joint, median over the frames, and the side of the body's cube.
 
     raises : InputError where the true joints do not lie in the body
     """
     s = c.skeleton
-    fits, radii = [], []
-    for R, x, y in zip(s.rotation, c.X, c.Y, strict=True):
-        V = body.blended_skin(s.vertices, s.influence, s.weight, s.rest, R, x)
-        fits.append(body.joints_fit(V, y))
-        radii.append(body.local_radii(V, y))
-    if np.mean(fits) < EvaluationSettings().least_fitting:
+    if np.mean([frame.inside for frame in by_frame]) < EvaluationSettings().least_fitting:
         sizes = f"{body.longest_side(c.Y[0]):.4g}, but the body {body.longest_side(s.vertices):.4g}"
         raise InputError(
             f"{c.truth.source}: the true joints do not lie in the body: it is the truth of another sequence, or it has another"
             f" unit or other axes. The true joints measure {sizes}; if the unit differs, set truth.unit"
         )
-    return np.median(radii, axis=0), body.longest_side(s.vertices)
+    return np.median([frame.radius for frame in by_frame], axis=0), body.longest_side(s.vertices)
 
 
 def _rigging(c: Comparison, Y: Floats, parents: Ordered[int], side: float, tolerance: Floats) -> tuple[Chamfer, Overlap]:
@@ -252,27 +240,18 @@ def _rigging(c: Comparison, Y: Floats, parents: Ordered[int], side: float, toler
     return Chamfer(**distances._asdict()), Overlap(**{name: 100.0 * value for name, value in shares.items()})
 
 
-def _part_score(
-    c: Comparison, source: Mapping[int, Source], mesh: Mapping[int, Mesh], projection: Mapping[int, Projection]
-) -> PartScore | None:
+def _part_score(c: Comparison, by_frame: Ordered[FrameTruth]) -> PartScore | None:
     """Agreement of the labels of the input's vertices in all frames with the true ones; None where these are not known."""
+    if not all(frame.known for frame in by_frame):
+        return None
     s = c.skeleton
-    part_of_joint = np.array(remaining_ancestors(s.parents, [kind != "leaf" for kind in s.kinds]))
-    part = part_of_joint[leading_parts(s.label, s.influence, s.weight)]
+    part = np.array(remaining_ancestors(s.parents, [kind != "leaf" for kind in s.kinds]))
     true_part = np.array(remaining_ancestors(c.tree.parents, list(_dividing(c))))
-    labels, true_labels = [], []
-    for frame in s.frames:
-        carrier = None
-        if frame in mesh:
-            carrier = true_carriers(c.truth, source[frame], mesh[frame].vertices, frame, s.unit)
-        if carrier is None:
-            return None
-        vertex, at = mesh[frame].vertex_of_input, projection[frame]
-        known = (vertex >= 0) & (at.face >= 0)
-        labels.append(part[s.faces[at.face[known], at.share[known].argmax(axis=1)]])
-        joint, end = (values[vertex[known]] for values in carrier)
-        true_labels.append(true_part[np.where(end >= 0, np.array(c.tree.parents)[end], joint)])
-    table = contingency(np.concatenate(labels), np.concatenate(true_labels))
+    joint, carrier, end, count = (
+        np.concatenate([getattr(frame, name) for frame in by_frame]) for name in ("part", "carrier", "bone_end", "count")
+    )
+    true = true_part[np.where(end >= 0, np.array(c.tree.parents)[end], carrier)]
+    table = contingency(part[joint], true, count)
     return PartScore(
         rand=rand_index(table), adjusted_rand=adjusted_rand_index(table), mean_iou=mean_iou(table),
         parts=table.shape[0], true_parts=table.shape[1],

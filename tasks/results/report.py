@@ -6,22 +6,18 @@ from html import escape
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Floats
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
-from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.schemas.results.alignment_figures import AlignmentFigures
-from kinetree.schemas.results.appearance import Appearance
 from kinetree.schemas.results.assumed_joints import AssumedJoints
-from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.evaluation import Evaluation
-from kinetree.schemas.results.excerpt import Excerpt
+from kinetree.schemas.results.evaluation_figures import EvaluationFigures
 from kinetree.schemas.results.motion_figures import MotionFigures
+from kinetree.schemas.results.played_body import PlayedBody
 from kinetree.schemas.results.report import Report, ReportParams
 from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
-from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.topology_figures import TopologyFigures
 from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.error_bars import ErrorBars
@@ -29,17 +25,11 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
-from kinetree.tasks.numerics.results.verdict import VerdictSettings
 from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
-from kinetree.tasks.results.formats.names import in_words
-from kinetree.tasks.results.glb import NO_APPEARANCE
-from kinetree.tasks.results.page.alternatives import evaluation_words
 from kinetree.tasks.results.page.chapters import pictures, sections
-from kinetree.tasks.results.page.document import Page, Section, document, picture, table
-from kinetree.tasks.results.page.scene import Limits, Trust, scene
-from kinetree.tasks.results.page.surface_colours import surface_colours
+from kinetree.tasks.results.page.document import Page, Section, document, table
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
-from kinetree.tasks.results.plots.evaluation import evaluation_figure
+from kinetree.tasks.results.played_body import played_scene
 from kinetree.tasks.views.results import evaluation_remarks
 from kinetree.tasks.views.structure import assumed_words, two_digits
 from kinetree.tasks.views.topology import UNSURE
@@ -63,30 +53,19 @@ def report(
     evaluation: Evaluation,
     up_direction: UpDirection,
     frame_confidence: FrameConfidence,
-    surface_error: Mapping[int, SurfaceError],
+    evaluation_figures: EvaluationFigures,
     verdict: Verdict,
     error_bars: ErrorBars,
-    excerpt: Excerpt,
-    coarse_mesh: tuple[CoarseMesh, ...],
-    alignment: Mapping[int, Alignment],
+    played_body: PlayedBody,
     mesh: Mapping[int, Mesh],
     params: ReportParams,
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
-    appearance: Appearance = NO_APPEARANCE,
 ) -> Report:
     """Lays out the result of the run on one page that needs no network (ours)."""
-    limits = Limits(len(excerpt.frames), params.vertices, coarse_mesh[0].limit)
-    inputs = dict(zip(excerpt.frames, coarse_mesh, strict=True))
     structure = pictures(skeleton_figures) + pictures(motion_figures)
-    size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
-    error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
-    share = VerdictSettings().wrong
-    trust = Trust(verdict.labels, error, share * size, share, verdict.state, bounds_in_frames(error_bars))
-    assumed = [(in_words(joint.anatomy), joint.child, joint.place) for joint in assumed_joints.joints]
-    colours = surface_colours(appearance, len(skeleton.vertices))
     label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
     if evaluation.summary is not None:
-        truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, sequence.fps, label))]
+        truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, evaluation_figures, label))]
     aligned = pictures(alignment_figures) or "<p>All frames have the same faces, so nothing had to be aligned.</p>"
     joints = _joints(skeleton, verdict.labels, intervals, structure_figures, assumed_joints, error_bars)
     page = Page(
@@ -96,7 +75,7 @@ def report(
         headline=headline(verdict),
         faults=faults(verdict),
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
-        scene=scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours),
+        scene=played_scene(played_body),
         sections=[
             Section("joints", "Joints", joints),
             Section("structure", "Parts, tree and angles", structure),
@@ -157,11 +136,6 @@ def _error_words(bars: ErrorBars, j: int) -> str:
     return f"{two_digits(bars.expected[j])} (90 %: {two_digits(bars.bound[j])})" if known else "–"
 
 
-def bounds_in_frames(bars: ErrorBars) -> Floats | None:
-    """(frame, joint) bound of every joint, in a frame as much larger as its expected error is; None where nothing is known."""
-    return np.asarray(bars.in_frame * (bars.bound / bars.expected)) if bars.cuts else None
-
-
 def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> str:
     """The intervals in which the mean confidence of a joint is not low."""
     spans = zip(intervals.begin, intervals.end, strict=True)
@@ -170,7 +144,7 @@ def _confident_intervals(skeleton: Skeleton, intervals: Intervals, j: int) -> st
     return "all" if len(confident) == len(means) else ", ".join(confident) or "none"
 
 
-def _comparison(evaluation: Evaluation, fps: float | None, label: Mapping[str, str]) -> str:
+def _comparison(evaluation: Evaluation, figures: EvaluationFigures, label: Mapping[str, str]) -> str:
     """A picture of the errors and a table of the scored joints."""
     rows = [
         (
@@ -185,8 +159,7 @@ def _comparison(evaluation: Evaluation, fps: float | None, label: Mapping[str, s
     ]
     remarks = "".join(f"<p>{escape(text)}</p>" for text in evaluation_remarks(evaluation))
     head = ("true joint", "range, °", "found as", evaluation.unit or "length", "% of the height")
-    caption = "Error of every joint over time with its mean and deviation (2014, Fig. 16); below, the measures of 2009."
-    return remarks + picture(evaluation_figure(evaluation, fps), caption, evaluation_words(evaluation)) + table(head, rows)
+    return remarks + pictures(figures) + table(head, rows)
 
 
 def _facts(

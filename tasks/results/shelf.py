@@ -8,12 +8,18 @@ from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
 from kinetree.tasks.results.complete_skeleton import complete_skeleton
+from kinetree.tasks.results.derivation_figures import derivation_figures
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.evaluation_figures import evaluation_figures
 from kinetree.tasks.results.excerpt import excerpt
+from kinetree.tasks.results.frame_truth import frame_truth
 from kinetree.tasks.results.glb import glb
+from kinetree.tasks.results.known_truth import known_truth
 from kinetree.tasks.results.motion_figures import motion_figures
+from kinetree.tasks.results.named_figures import named_figures
 from kinetree.tasks.results.outcomes import outcomes
 from kinetree.tasks.results.paper_figures import paper_figures
+from kinetree.tasks.results.played_body import played_body
 from kinetree.tasks.results.ply import ply
 from kinetree.tasks.results.reeb_figures import reeb_figures
 from kinetree.tasks.results.report import report
@@ -34,6 +40,8 @@ from kinetree.tasks.results.verdict import verdict
 
 RESULTS = (
     truth,
+    known_truth,
+    frame_truth,
     evaluation,
     complete_skeleton,
     assumed_joints,
@@ -57,9 +65,11 @@ RESULTS = (
     skeleton_figures,
     motion_figures,
     alignment_figures,
+    evaluation_figures,
+    played_body,
     report,
 )
-FIGURES = (structure_figures,)
+FIGURES = (derivation_figures, named_figures, structure_figures)
 FIGURES_2009 = (reeb_figures,)
 FIGURES_2014 = (paper_figures,)
 OVER_SEQUENCES = (outcomes, sequence_figures, sequence_table)

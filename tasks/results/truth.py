@@ -15,7 +15,7 @@ from kinetree.errors.small_text import small_text
 from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
-from kinetree.schemas.results.truth import Truth, TruthParams
+from kinetree.schemas.results.truth import TrueBody, Truth, TruthParams
 from kinetree.tasks.numerics.results.truth import TrueMotion, read_truth, truth_of_json
 from kinetree.tasks.numerics.results.units import unit_factor
 
@@ -56,7 +56,7 @@ def numbered(truth: Truth, source: Mapping[int, Source]) -> Truth:
     return truth.model_copy(update={"frames": tuple(range(first, last + 1)), "numbered": True})
 
 
-def true_carriers(truth: Truth, source: Source, V: Floats, frame: int, unit: str | None) -> tuple[Ints, Ints] | None:
+def true_carriers(truth: TrueBody, source: Source, V: Floats, frame: int, unit: str | None) -> tuple[Ints, Ints] | None:
     """The true joint that each vertex of a frame follows most, and the end of the one bone that it follows.
 
     V       : (vertex, xyz) vertices of the frame, in the sequence's unit

@@ -58,7 +58,8 @@ def kinematic_tree(
         None if given else evidence,
         settings=tree_settings(params)._replace(hidden_bones=params.hidden_bones and given, end_joints=params.end_joints),
         takes=take_spans(frames),
-        further=[_cut(cut, alignment[frame]) for frame, cut in further_cut.items()],
+        further=[_cut(cut, alignment[frame]) for frame, cut in further_cut.items() if not cut.joined],
+        carried=[np.array(cut.joints) for cut in further_cut.values() if cut.joined],
     )
     return KinematicTree(
         frames=frames,

@@ -19,6 +19,8 @@ from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.results.excerpt import ExcerptParams
+from kinetree.schemas.results.report import ReportParams
+from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.correlation import Correlation
 from kinetree.schemas.topology.geodesics import Geodesics
@@ -28,11 +30,15 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.alignment_figures import alignment_figures
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
+from kinetree.tasks.results.derivation_figures import derivation_figures
+from kinetree.tasks.results.evaluation_figures import evaluation_figures
 from kinetree.tasks.results.excerpt import excerpt
 from kinetree.tasks.results.motion_figures import motion_figures
+from kinetree.tasks.results.named_figures import named_figures
 from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.document import Page, Section, document, table
 from kinetree.tasks.results.page.scene import Limits, Scene, Trust, scene
+from kinetree.tasks.results.played_body import played_body
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.structure_figures import structure_figures
@@ -92,10 +98,7 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
         "skeleton": skeleton,
         "joint_names": plain(skeleton),
         "assumed_joints": AssumedJoints(),
-        "structure_figures": structure_figures(
-            parts_of(skeleton), tree_of(skeleton), plain(skeleton),
-            Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit), UP,
-        ),
+        "structure_figures": derived(skeleton),
         "up_direction": UP,
         "connectivity": Connectivity(fixed=not anew, first_change=None, vertices=count, faces=len(skeleton.faces)),
         "sequence": Sequence(frames=frames, fps=skeleton.fps, unit=skeleton.unit),
@@ -118,6 +121,14 @@ def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str,
             for t, (f, order) in enumerate(zip(frames, orders, strict=True))
         },
     }  # fmt: skip
+
+
+def derived(skeleton: Skeleton) -> StructureFigures:
+    """How its joints were found."""
+    sequence = Sequence(frames=skeleton.frames, fps=skeleton.fps, unit=skeleton.unit)
+    parts, tree = parts_of(skeleton), tree_of(skeleton)
+    named = named_figures(parts, tree, plain(skeleton), sequence, UP)
+    return structure_figures(tree, derivation_figures(parts, tree, sequence, UP), named)
 
 
 def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
@@ -146,6 +157,9 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
     all_of_it["appearance"] = changes.get("appearance", Appearance.none())
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))
+    all_of_it["evaluation_figures"] = evaluation_figures(**some("evaluation", "sequence"))
+    played = {argument.name: all_of_it[argument.name] for argument in played_body.arguments}
+    all_of_it["played_body"] = played_body(**played, params=ReportParams())
     return {argument.name: all_of_it[argument.name] for argument in report.arguments}
 
 

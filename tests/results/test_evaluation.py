@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from results.true_skeletons import generated, observed, perfect
+from results.true_skeletons import generated, held_against, observed, perfect
 
 from kinetree.errors import InputError
 from kinetree.pipeline import views
@@ -21,15 +21,12 @@ TRUTH = synthetic(RECIPE)
 OBSERVED = observed(RECIPE)
 NOBODY = truth.function(params=truth.params(), files=None)
 HEIGHT = TRUTH.height
-NOTHING = ({0: OBSERVED[0][0].model_copy(update={"recipe": ""})}, {}, {})
+NOTHING = ({t: told.model_copy(update={"recipe": ""}) for t, told in OBSERVED[0].items()}, {}, {})
 FIRST = PERFECT.kinds.index("joint")
 
 
 def evaluated(skeleton=PERFECT, true=TRUTH, observed=NOTHING, **params):
-    source, mesh, projection = observed
-    return evaluation(
-        skeleton=skeleton, truth=true, source=source, mesh=mesh, projection=projection, params=EvaluationParams(**params)
-    )
+    return evaluation(skeleton, *held_against(skeleton, true, *observed), EvaluationParams(**params))
 
 
 def changed(**fields):
@@ -264,7 +261,8 @@ def test_truth_without_numbers_begins_with_the_sequence_where_both_are_as_long()
 
 
 def test_truth_with_too_few_frames_is_refused():
-    short = TRUTH.model_copy(update={"frames": (0, 1, 2), "positions": TRUTH.positions[:3]})
+    fewer = {name: getattr(TRUTH, name)[:3] for name in ("positions", "vertices")}
+    short = TRUTH.model_copy(update={"frames": (0, 1, 2), **fewer})
     with pytest.raises(InputError, match=r"frames 0 to 2, but 3 of the 6 frames of the sequence are missing, the first is 3"):
         evaluated(true=short)
 

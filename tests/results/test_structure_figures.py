@@ -6,23 +6,20 @@ from matplotlib.text import Text
 from results.plain_names import plain
 from results.rigged_bodies import spider
 from results.sample_derivation import parts_of, tree_of
-from results.sample_report import UP
+from results.sample_report import derived
 
-from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.page.document import rendered
 from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
-from kinetree.tasks.results.structure_figures import structure_figures
 
 FIGURES = (cones, merging, elimination, structure, lengths)
 
 
 def of(body: Skeleton) -> StructureFigures:
-    sequence = Sequence(frames=body.frames, fps=body.fps, unit=body.unit)
-    return structure_figures(parts_of(body), tree_of(body), plain(body), sequence, UP)
+    return derived(body)
 
 
 def words(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> list[str]:

@@ -13,8 +13,11 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.input.hull import hull
 from kinetree.tasks.input.isosurface import isosurface
 from kinetree.tasks.input.mesh import mesh
+from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.input.source import source
 from kinetree.tasks.results.evaluation import evaluation
+from kinetree.tasks.results.frame_truth import frame_truth
+from kinetree.tasks.results.known_truth import known_truth
 from kinetree.tasks.results.truth import truth
 
 
@@ -30,4 +33,4 @@ def projection(source: Source, mesh: Mesh) -> Projection:
     return next(iter(observed(source.recipe or generated())[2].values()))
 
 
-GRAPH = Graph.of((source, truth, hull, isosurface, mesh, projection, skeleton, evaluation))
+GRAPH = Graph.of((source, sequence, truth, hull, isosurface, mesh, projection, skeleton, known_truth, frame_truth, evaluation))

@@ -5,12 +5,18 @@ import json
 import numpy as np
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
+from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.input.synth import SynthParams
 from kinetree.schemas.registration.projection import Projection
+from kinetree.schemas.results.frame_truth import FrameTruth
+from kinetree.schemas.results.known_truth import KnownTruth
+from kinetree.schemas.results.truth import Truth
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.input.synth import body, recipe
 from kinetree.tasks.numerics.results.evaluation.tree_edit import contracted_tree, remaining_ancestors
+from kinetree.tasks.results.frame_truth import frame_truth
+from kinetree.tasks.results.known_truth import known_truth
 from kinetree.tasks.results.truth import synthetic
 
 
@@ -71,6 +77,16 @@ def observed(written: str) -> tuple[dict[int, Source], dict[int, Mesh], dict[int
         t: Mesh(vertices=rig.frame(t)[0], faces=F.astype(np.int32), vertex_of_input=same, cleaning=Cleaning()) for t in source
     }
     return source, mesh, dict.fromkeys(source, where)
+
+
+def held_against(
+    skeleton: Skeleton, true: Truth, source: dict[int, Source], mesh: dict[int, Mesh], projection: dict[int, Projection]
+) -> tuple[KnownTruth, dict[int, FrameTruth]]:
+    """What an evaluation reads of a truth."""
+    known = known_truth(true, source, Sequence(frames=tuple(source), fps=skeleton.fps, unit=skeleton.unit))
+    of_frames = (({t: given[t]} if t in given else {} for given in (source, mesh, projection)) for t in known.compared)
+    frames = zip(known.compared, of_frames, strict=True)
+    return known, {t: frame_truth(skeleton, known, *given, index=(t,)) for t, given in frames}
 
 
 def written_truth(written: str) -> str:

@@ -95,7 +95,7 @@ def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.Mon
     body, asked = chain((0.0,), swings(16, 2)), []
     made = numerics.kinematic_tree
 
-    def listening(*given: Any, settings: Any, takes: Any, further: Any) -> Any:
+    def listening(*given: Any, settings: Any, takes: Any, further: Any, carried: Any) -> Any:
         asked.append(given[10].settings)
         return made(*given[:10], None, settings=settings)
 

@@ -8,9 +8,10 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
+from kinetree.tasks.numerics.structure.cut_joints import cut_joints, cut_tree
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
@@ -21,7 +22,7 @@ from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
 
 
 class KinematicTree(NamedTuple):
@@ -103,6 +104,7 @@ def kinematic_tree(
     settings: KinematicTreeSettings,
     takes: Sequence[slice] | None = None,
     further: Sequence[Cut] = (),
+    carried: Sequence[Floats] = (),
 ) -> tuple[KinematicTree, Derivation]:
     """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
 
@@ -117,19 +119,20 @@ def kinematic_tree(
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     takes      : positions of the frames of each take; None takes all as one
     further    : other cuts of the same body; its joints are then the mean over all cuts that have them
+    carried    : (frame, joint, xyz) of every further cut, as `cut_joints` gives them, where they are known already
     """
     chosen = settings
     V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
     body = MovingSurface(V, np.array(F, dtype=np.int64), x, area, takes)
     given = R.shape[1]
-    found = _with_hidden_bones(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
+    found = cut_tree(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
     alike = chosen._replace(hidden_bones=bool((found.left.origin == NO_PART).any()))
-    others, before = [_trajectories(body, cut, leaves, confidence, alike) for cut in further], len(found.rest)
+    others, before = carried or [cut_joints(body, cut, leaves, confidence, alike) for cut in further], len(found.rest)
     if chosen.end_joints and evidence is not None and confidence is not None:
         body, found = inserted_ends(body, found, confidence, evidence, chosen.noise * body.size)
     agreed = _agreed(found, others, body.size)
     F, x, tree, label, W, R, t = body.F, body.x, found.left.part_tree.tree, found.label, found.W, found.R, found.t
-    rest, off = agreed.rest, found.drift if not further else found.drift_at(agreed.rest)
+    rest, off = agreed.rest, found.drift if not others else found.drift_at(agreed.rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
     share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)
@@ -140,25 +143,6 @@ def kinematic_tree(
     spans = score_spans(len(x), takes)
     made, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, off, support, spans, chosen)
     return made, _derivation(found, agreed, given, before, made, order)
-
-
-def _with_hidden_bones(
-    body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, evidence: FrameEvidence | None,
-    chosen: KinematicTreeSettings,
-) -> TreeJoints:  # fmt: skip
-    """The tree of a cut; where every vertex was followed with the bones that no cut can find."""
-    found = tree_joints(body, cut, leaves, confidence, evidence, settings=chosen)
-    if confidence is not None or not chosen.hidden_bones:
-        return found
-    return inserted_bones(body, found, chosen.noise * body.size)
-
-
-def _trajectories(
-    body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
-) -> Floats:
-    """(frame, joint, xyz) the joints of another cut of the same body, but for its root; the frames need not show them."""
-    found = _with_hidden_bones(body._replace(V=cut.V), cut, leaves, confidence, None, chosen)
-    return found.motion.carried(found.rest[1:])
 
 
 def _agreed(found: TreeJoints, further: Sequence[Floats], size: float) -> JointConsensus:

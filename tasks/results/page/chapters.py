@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CaptionedFigure:
-    """A figure with its caption, and with what it shows of this run for those who do not see it."""
+    """A figure, or its file, with its caption, and with what it shows of this run for those who do not see it."""
 
-    figure: "Figure"
+    figure: "Figure | bytes"
     caption: str
     alternative: str
 
@@ -37,12 +37,18 @@ class FigureChapter:
 
 def rendered_figures(figures: Sequence[CaptionedFigure]) -> dict[str, Any]:
     """Renders some figures and returns the fields of `Figures`."""
-    files = [rendered(d.figure) for d in figures]
+    files = [_file(d) for d in figures]
     return {
         "pictures": tuple(Picture(caption=d.caption, alternative=d.alternative) for d in figures),
         "end": np.cumsum([len(f) for f in files], dtype=np.int64),
         "content": np.frombuffer(b"".join(files), dtype=np.uint8),
     }
+
+
+def drawn_before(figures: Figures) -> list[CaptionedFigure]:
+    """Figures that another task has rendered."""
+    rows = zip(figures.files(), figures.pictures, strict=True)
+    return [CaptionedFigure(file, p.caption, p.alternative) for file, p in rows]
 
 
 def pictures(figures: Figures) -> str:
@@ -57,7 +63,7 @@ def rendered_chapters(chapters: Sequence[FigureChapter], length_variation: Float
 
     length_variation : (joint,) %, see `StructureFigures`
     """
-    files = [rendered(d.figure) for chapter in chapters for d in chapter.figures]
+    files = [_file(d) for chapter in chapters for d in chapter.figures]
     return StructureFigures(
         chapters=tuple(
             Chapter(
@@ -83,3 +89,8 @@ def sections(figures: StructureFigures) -> list[Section]:
         body += "".join(f"<p>{escape(text)}</p>" for text in chapter.paragraphs)
         laid_out.append(Section(chapter.anchor, chapter.heading, body, is_detail=True))
     return laid_out
+
+
+def _file(drawn: CaptionedFigure) -> bytes:
+    """The file of a figure."""
+    return drawn.figure if isinstance(drawn.figure, bytes) else rendered(drawn.figure)

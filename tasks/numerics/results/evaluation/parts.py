@@ -22,16 +22,17 @@ def leading_parts(label: Numbers, influence: Numbers, weight: Floats) -> Ints:
     return np.where(label >= 0, label, most).astype(np.int64)
 
 
-def contingency(label: Ints, other: Ints) -> Ints:
+def contingency(label: Ints, other: Ints, count: Ints | None = None) -> Ints:
     """Number of points with each pair of labels.
 
     label, other : (point,) label in either division, any whole numbers
+    count        : (point,) how many points each stands for; None takes each as one
     returns      : (part, other part) counts, parts in ascending order of their labels
     """
     rows, i = np.unique(label, return_inverse=True)
     columns, j = np.unique(other, return_inverse=True)
     table = np.zeros((len(rows), len(columns)), dtype=np.int64)
-    np.add.at(table, (i.ravel(), j.ravel()), 1)
+    np.add.at(table, (i.ravel(), j.ravel()), 1 if count is None else count)
     return table
 
 
