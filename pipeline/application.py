@@ -84,6 +84,9 @@ class Application:
     beside: str | None = None
     """What helps a run that computes on this machine from the side, as module:function: gives a context manager that lasts as
     long as the run and changes no result."""
+    worker_setup: str | None = None
+    """What every worker process of this machine needs and can be loaded before there is work, as module:function; called in the
+    process that they are forked from. Changes no result."""
     first_steps: tuple[tuple[str, str], ...] = ()
     """Command lines to begin with and what each does; printed where no command is named."""
 

@@ -31,6 +31,7 @@ from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.events import Account, Listener, Watch
 from kinetree.pipeline.running.memory import Needs
+from kinetree.pipeline.running.worker_parent import WorkerParent
 from kinetree.pipeline.settings import config as configuration
 from kinetree.pipeline.settings.config import Compute, Config
 from kinetree.pipeline.storage.files import Files, Settling
@@ -55,6 +56,8 @@ class Pipeline:
     store: Store = field(repr=False)
     beside: str | None = field(default=None, repr=False, compare=False)
     """See `Application.beside`."""
+    worker_setup: str | None = field(default=None, repr=False, compare=False)
+    """See `Application.worker_setup`."""
 
     @staticmethod
     def of(
@@ -77,7 +80,7 @@ class Pipeline:
             product = replace(product, methods=lambda: graphs)
         checked = config if isinstance(config, Config) else configuration.load(config, product, sets)
         graph = replace(product.methods()[checked.method], renamed=product.renamed)
-        return Pipeline(checked, graph, Store.at(checked.store), product.beside)
+        return Pipeline(checked, graph, Store.at(checked.store), product.beside, product.worker_setup)
 
     def __repr__(self) -> str:
         """What it runs on and where it leaves things."""
@@ -170,14 +173,22 @@ class Pipeline:
         raises   : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
         """
         started = time.perf_counter()
-        files = Files.of(self.store, settling)
-        there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
-        with advising(self.store):
+        compute = self.config.compute
+
+        def begin() -> None:  # the files are new, so that there will be something to compute
+            if client is None and compute.has_own_workers:
+                from kinetree.pipeline.running.launch import environment
+
+                parent.begin(environment(compute))
+
+        with WorkerParent(self.worker_setup) as parent, advising(self.store):
+            files = Files.of(self.store, settling, unknown=begin)
+            there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
             session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
             files.save()
             status: Status = "interrupted"
             try:
-                self._go(there, session.watch, client)
+                self._go(there, session.watch, client, parent)
                 status = session.leave()
             except Exception:
                 status = "stopped"
@@ -263,7 +274,7 @@ class Pipeline:
         """What differs between two runs, and from where: nodes whose inputs agree but whose artifacts do not."""
         return Difference(difference(self.store, self.store.run(run_a), self.store.run(run_b)))
 
-    def _go(self, there: Snapshot, watch: Watch, client: Any) -> None:
+    def _go(self, there: Snapshot, watch: Watch, client: Any, parent: WorkerParent | None = None) -> None:
         """Starts workers only where there is something to run."""
         schedule = there.schedule
         if schedule.is_idle:
@@ -274,7 +285,7 @@ class Pipeline:
 
         is_whole, beside = False, self.beside if client is None and self.config.compute.is_here else None
         while not is_whole:
-            with helped(beside), launcher(self.config.compute, client) as launch:
+            with helped(beside), launcher(self.config.compute, client, parent) as launch:
                 run(schedule, launch, watch, Needs.of(there.history.records().values() if launch.is_elsewhere else ()))
             # to end workers takes seconds, in which somebody may have removed what was there
             is_whole = not launch.is_elsewhere or not take_back_lost(Job(schedule, watch), schedule.store)

@@ -184,6 +184,7 @@ APPLICATION = Application(
         "upright": "up_direction",
     },
     beside="kinetree.tasks.compiled_ahead:compiling_ahead",
+    worker_setup="kinetree.tasks.worker_setup:load",
     first_steps=(
         ("kinetree demo", "compute an example, in a few minutes"),
         ("kinetree run --input FOLDER --output OUT", "compute your own sequence: a folder of meshes, one per frame"),

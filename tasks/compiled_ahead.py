@@ -54,11 +54,16 @@ def main(parent: str | None = None) -> None:
             _all_done().touch()
 
 
+def is_all_compiled() -> bool:
+    """Whether all of the list was compiled on this machine."""
+    return _all_done().exists()
+
+
 def _started() -> "subprocess.Popen[bytes] | None":
     quiet: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     with contextlib.suppress(OSError):  # without a folder that can be written, what it compiles is lost
         kernel_folder().mkdir(parents=True, exist_ok=True)
-        if sys.executable and os.access(kernel_folder(), os.W_OK) and not _all_done().exists():
+        if sys.executable and os.access(kernel_folder(), os.W_OK) and not is_all_compiled():
             return subprocess.Popen([sys.executable, "-P", "-m", __name__, str(os.getpid())], **quiet)
     return None
 

@@ -8,6 +8,7 @@ import contextlib
 import copy
 import errno
 import functools
+import gc
 import inspect
 import io
 import os
@@ -147,6 +148,7 @@ def main(application: Application) -> NoReturn:
         typer.echo(f"{name}: interrupted; what is finished is kept, run again to go on", err=True)
         if threading.active_count() > 1:
             _leave(code)
+    gc.freeze()  # to look for garbage when the process ends takes half a second
     raise SystemExit(code)
 
 

@@ -30,6 +30,8 @@ ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
 REPLACE_SECONDS = 30.0
 """Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
+IDLE_PATIENCE = 2.0
+"""Seconds in which a worker with nothing to do ends by itself."""
 LEAST_MEMORY = 600_000_000
 """Bytes that our own worker process may be limited to at least. It holds 78 MB when it starts and 441 MB with all tasks
 imported; at 80 % of its limit dask gives it no more work, at 95 % it is ended and started again, for ever."""
@@ -72,8 +74,9 @@ def local(compute: Compute) -> Iterator[Client]:
         try:
             yield client
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
-            cluster.sync(_kill, cluster)
+            cluster.sync(_end, cluster, patience=0.1)
             raise
+        cluster.sync(_end, cluster, patience=IDLE_PATIENCE)
 
 
 @contextlib.contextmanager
@@ -303,9 +306,11 @@ class _Deaf(WorkerPlugin):  # type: ignore[misc]
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-async def _kill(cluster: Any) -> None:
-    """Ends the workers at once; one that takes longer than it should to be gone is no fault of the run."""
-    await asyncio.gather(*(nanny.kill(timeout=0.1) for nanny in cluster.workers.values()), return_exceptions=True)
+async def _end(cluster: Any, patience: float) -> None:
+    """Ends the workers, all at once, and none is started again; one that takes longer than it should is no fault of the run."""
+    for nanny in cluster.workers.values():
+        nanny.close_gracefully()
+    await asyncio.gather(*(nanny.kill(timeout=patience) for nanny in cluster.workers.values()), return_exceptions=True)
 
 
 @contextlib.contextmanager

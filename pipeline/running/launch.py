@@ -3,8 +3,9 @@ threads; on workers, distributed does. Everything is a future.
 """
 
 import contextlib
+import os
 import secrets
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -16,6 +17,7 @@ from kinetree.pipeline.running.execute import Step, execute
 from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.running.pool import Pool
 from kinetree.pipeline.running.sight import Sight
+from kinetree.pipeline.running.worker_parent import WorkerParent
 from kinetree.pipeline.settings.config import Compute
 
 UNWATCHED = {
@@ -26,10 +28,14 @@ UNWATCHED = {
 """How dask watches processes of our own: its defaults look at every one fifty times a second, and at what a worker computes a
 hundred times, for a performance report; results are too small to be moved about."""
 
+METHOD = "distributed.worker.multiprocessing-method"
+"""Where dask looks how it starts processes."""
 ENVIRONMENT, TRIM = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """What dask sets in the environment of our own processes; and of that, what makes them give back the memory of every array
 at once, which the kernel then clears for the next one. It stays where workers have a limit of memory, at which dask stops them
 by what they hold; where the run's own environment sets it, it holds."""
+VARIABLES: Mapping[str, Any] = {"OMP_NUM_THREADS": 1, "MKL_NUM_THREADS": 1, "OPENBLAS_NUM_THREADS": 1, TRIM: 65536}
+"""Those that dask sets unless it is configured otherwise: processes are begun before the run has imported most of dask."""
 
 
 class Future(Protocol):
@@ -73,8 +79,11 @@ class Launcher:
 
 
 @contextlib.contextmanager
-def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
-    """The launcher that a configuration asks for, or one on a `distributed.Client` handed in."""
+def launcher(compute: Compute, client: Any = None, parent: WorkerParent | None = None) -> Iterator[Launcher]:
+    """The launcher that a configuration asks for, or one on a `distributed.Client` handed in.
+
+    parent : what worker processes of this machine are forked from, perhaps begun already; None makes one
+    """
     if client is not None or compute.is_cluster:
         from kinetree.pipeline.running import clusters
         from kinetree.pipeline.running.following import followed
@@ -82,11 +91,11 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
         is_ours = client is None and not (compute.scheduler or compute.scheduler_file)
         with contextlib.ExitStack() as stack:
             if is_ours and not compute.cluster:
-                environment = {
-                    name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != TRIM or compute.memory_bytes
-                }
+                parent = stack.enter_context(WorkerParent()) if parent is None else parent
+                parent.begin(environment(compute))
                 watching = UNWATCHED if compute.performance_report is None else {}
-                stack.enter_context(dask.config.set({ENVIRONMENT: environment, **watching}))
+                starting = {ENVIRONMENT: environment(compute), METHOD: parent.method}
+                stack.enter_context(dask.config.set({**starting, **watching}))
             there = stack.enter_context(clusters.connected(compute, client))
             yield _on_client(there, stack.enter_context(followed(there, compute, is_ours=is_ours)), compute)
         return
@@ -101,6 +110,13 @@ def launcher(compute: Compute, client: Any = None) -> Iterator[Launcher]:
         else:
             here = SynchronousExecutor()
             yield Launcher(lambda _, __, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
+
+
+def environment(compute: Compute) -> dict[str, str]:
+    """What is set in the environment of our own processes before they start."""
+    wanted = {**VARIABLES, **dask.config.get(ENVIRONMENT, {})}
+    own = {name: str(value) for name, value in wanted.items() if name != TRIM or compute.memory_bytes}
+    return own | {name: os.environ[name] for name in own if name in os.environ}
 
 
 def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:

@@ -75,6 +75,11 @@ class Compute(BaseModel):
         return self.scheduler is None and self.scheduler_file is None and self.cluster is None
 
     @property
+    def has_own_workers(self) -> bool:
+        """Whether processes that the run starts on this machine compute."""
+        return self.executor == "processes" and self.is_here
+
+    @property
     def memory_bytes(self) -> int | None:
         """The memory limit of one worker process in bytes."""
         if self.memory is None:

@@ -28,6 +28,10 @@ SETTLED_SECONDS = 2.0
 UNREADABLE = "unreadable: "
 
 
+def _nothing() -> None:
+    """Nobody wants to know."""
+
+
 @dataclass
 class Settling:
     """Which files are complete: those that stood still from one look to the next."""
@@ -56,16 +60,18 @@ class Files:
     store: Store
     settling: Settling | None = None
     """Which files are complete while the input grows; None takes all as they are."""
+    unknown: Callable[[], None] = _nothing
+    """Called before a file is read of which nothing is remembered: there will be something to compute."""
     _known: dict[str, Any] = field(default_factory=dict)
     _learnt: bool = False
     _listed: dict[str, Listed] = field(default_factory=dict)
     """What was found in buckets, by address."""
 
     @staticmethod
-    def of(store: Store, settling: Settling | None = None) -> "Files":
+    def of(store: Store, settling: Settling | None = None, unknown: Callable[[], None] = _nothing) -> "Files":
         """The memory that this store keeps, empty where there is none or it is unreadable."""
         known = unsealed(store.place.get(MEMORY))
-        return Files(store, settling, known if isinstance(known, dict) else {})
+        return Files(store, settling, unknown, known if isinstance(known, dict) else {})
 
     def complete(self, paths: Sequence[Path]) -> list[Path]:
         """Those of the paths whose file is complete: all of them, unless the input is followed as it grows."""
@@ -119,6 +125,7 @@ class Files:
         if stamp is not None and isinstance(entry, list) and len(entry) == 2 and entry[0] == stamp:
             digests: list[str] = entry[1]
             return digests
+        self.unknown()
         with copied(str(path)) if is_remote(path) else contextlib.nullcontext(Path(path)) as file:
             digests = list(read(file))
         if (not digests or not digests[0].startswith(UNREADABLE)) and stamp is not None and _has_settled(path, stamp):
