@@ -155,7 +155,8 @@ class Dataset:
         record: dict[str, Any] = {"format": FORMAT, "file": self.config.file, "status": "stopped", "started": began}
         metrics = Metrics.of(self.config.metrics, self.application.name) if self.config.metrics is not None else None
         until = None if max_hours is None else time.monotonic() + 3600 * max_hours
-        workers_of_all = Workers(self.config.compute, client)
+        helpers = {"beside": self.application.beside, "setup": self.application.worker_setup}
+        workers_of_all = Workers(self.config.compute, client, **helpers)
         with contextlib.closing(log), Leases() as leases, workers_of_all as workers, advising(self.store):
             summing = Summing.of(self.config, self.application, self.store)
             night = Night(

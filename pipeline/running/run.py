@@ -186,24 +186,26 @@ class _Loop:
         return bool(late)
 
     def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:
-        """Nothing came back of a parcel: what has a record is done, and the first node without one is tried again, alone."""
+        """Nothing came back of a parcel: what has a record is done, and the first node without one is tried again or fails.
+
+        The first of the parcel counts as under way until something is told of it, so that it waits for its next try, alone. One
+        behind it is put back: it is sent again as any other that is ready.
+        """
         first, *rest = parcel
         for entry in rest:
             job.schedule.put_back(entry.node)
-        known = finished(job, first, self.store)
-        if known is not None:
-            self._tell_all(job, [first], [known])  # those behind it settle as far as they have records
-        suspect = first if known is None else next((entry for entry in rest if entry.state == "stale"), None)
-        if suspect is None:
-            return
-        is_tried_again = self._suspects.lose(job, suspect, rest, error, self.store)
         failure = Result("failed", error=type(error).__name__, message=str(error) or repr(error))
-        if known is not None and not is_tried_again:
+        known = finished(job, first, self.store)
+        if known is None:
+            if self._suspects.lose(job, first, rest, error, self.store):
+                self._suspects.waiting.append((job, first))
+            else:
+                self._tell_all(job, [first], [failure])
+            return
+        self._tell_all(job, [first], [known])  # those behind it settle as far as they have records
+        suspect = next((entry for entry in rest if entry.state == "stale"), None)
+        if suspect is not None and not self._suspects.lose(job, suspect, rest, error, self.store):
             self._tell(job, suspect, failure)
-        elif known is None and is_tried_again:
-            self._suspects.waiting.append((job, suspect))
-        elif known is None:
-            self._tell_all(job, [suspect], [failure])
 
     def _tell_all(self, job: Job, parcel: list[Entry], results: list[Result]) -> None:
         twins = self._twins.pop(parcel[0].key or "", [])

@@ -4,6 +4,8 @@ import contextlib
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from kinetree.pipeline.application import helped
+
 if TYPE_CHECKING:  # what computes nothing does without dask
     from kinetree.pipeline.running.jobs import Jobs
     from kinetree.pipeline.running.launch import Launcher
@@ -12,10 +14,14 @@ if TYPE_CHECKING:  # what computes nothing does without dask
 
 
 class Workers:
-    """A context that ends what it started."""
+    """A context that ends what it started.
 
-    def __init__(self, compute: "Compute", client: Any = None) -> None:
-        self._compute, self._client = compute, client
+    beside, setup : what the product has beside a run and what its worker processes load (`Application`)
+    """
+
+    def __init__(self, compute: "Compute", client: Any = None, *, beside: str | None = None, setup: str | None = None) -> None:
+        self._compute, self._client, self._setup = compute, client, setup
+        self._beside = beside if client is None and compute.is_here else None
         self._stack = contextlib.ExitStack()
         self._launch: Launcher | None = None
 
@@ -29,7 +35,10 @@ class Workers:
         """Runs schedules until there are no more; raises as `run_all`."""
         from kinetree.pipeline.running.launch import launcher
         from kinetree.pipeline.running.run import run_all
+        from kinetree.pipeline.running.worker_parent import WorkerParent
 
         if self._launch is None:
-            self._launch = self._stack.enter_context(launcher(self._compute, self._client))
+            self._stack.enter_context(helped(self._beside))
+            parent = self._stack.enter_context(WorkerParent(self._setup))
+            self._launch = self._stack.enter_context(launcher(self._compute, self._client, parent))
         run_all(jobs, store, self._launch)

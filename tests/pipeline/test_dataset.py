@@ -1,12 +1,17 @@
 """A data set: many sequences with one configuration, run side by side and summed up; toy sequences of text files."""
 
+import contextlib
 import json
 import shutil
+import sys
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from pipeline.lab import Lab
 
 from kinetree.errors import ConfigError
+from kinetree.pipeline.dataset.dataset import Dataset
 
 
 @pytest.fixture
@@ -34,6 +39,22 @@ def test_a_second_run_computes_nothing_and_writes_no_run(lab):
     assert {f: f.stat().st_mtime_ns for f in store.rglob("*") if f.is_file() and f.name != "files.json"} == {
         f: when for f, when in before.items() if f.name != "files.json"
     }
+
+
+def test_what_helps_a_run_is_beside_a_whole_night_and_not_beside_one_with_nothing_to_do(lab, monkeypatch):
+    heard = []
+
+    @contextlib.contextmanager
+    def beside():
+        heard.append("begins")
+        yield
+        heard.append("ends")
+
+    monkeypatch.setitem(sys.modules, "helper", SimpleNamespace(beside=beside))
+    product = replace(lab.application(), beside="helper:beside")
+    for _ in range(2):
+        assert Dataset.of(lab.file, application=product).run()["status"] == "done"
+        assert heard == ["begins", "ends"]
 
 
 def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):
