@@ -15,10 +15,10 @@ from kinetree.schemas.registration.reference import ReferenceParams
 from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import TrackingParams
-from kinetree.schemas.topology.extrema import ExtremaParams
+from kinetree.schemas.topology.extrema import Extrema, ExtremaParams
 from kinetree.schemas.topology.geodesics import GeodesicsParams
 from kinetree.schemas.topology.intervals import Intervals
-from kinetree.schemas.topology.leaves import LeavesParams
+from kinetree.schemas.topology.leaves import Leaves, LeavesParams
 from kinetree.schemas.topology.mu_histogram import MuHistogramParams
 from kinetree.tasks.input.connectivity import connectivity
 from kinetree.tasks.input.synth import body, recipe
@@ -84,23 +84,26 @@ def uncut(count: int) -> Intervals:
     )  # fmt: skip
 
 
-def referred(meshes: dict[int, Mesh]) -> Any:
-    """The reference of a sequence."""
+def referred(meshes: dict[int, Mesh]) -> tuple[Any, dict[int, Extrema], Leaves]:
+    """The reference of a sequence, the extrema of every frame, and its leaves."""
     mu = {t: geodesics(m, GeodesicsParams(bases=40)) for t, m in meshes.items()}
     seen = {t: extrema(meshes[t], g, ExtremaParams()) for t, g in mu.items()}
-    return reference(
+    followed = leaves(seen, uncut(len(seen)), LeavesParams())
+    chosen = reference(
         mesh=meshes,
         distribution={t: mu_histogram(g, MuHistogramParams()) for t, g in mu.items()},
         tips=seen,
-        leaves=leaves(seen, uncut(len(seen)), LeavesParams()),
+        leaves=followed,
         connectivity=connectivity(meshes),
         params=ReferenceParams(),
     )
+    return chosen, seen, followed
 
 
 def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
-    made = SimpleNamespace(mesh=meshes, reference=referred(meshes))
+    made = SimpleNamespace(mesh=meshes)
+    made.reference, made.extrema, made.leaves = referred(meshes)
     graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
     made.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
     made.take_entries, made.numbers = (
@@ -114,7 +117,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         ),
         {t: (t,) for t in meshes},
     )
-    made.tracking_order = tracking_order(made.reference, made.take_entries, made.sequence)
+    made.tracking_order = tracking_order(made.reference, made.take_entries, made.sequence, made.extrema, made.leaves)
     made.tracking = along(
         tracking,
         made.tracking_order,

@@ -31,6 +31,7 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking
+from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.topology.extrema import Extrema, ExtremaParams
 from kinetree.schemas.topology.geodesics import GeodesicsParams
@@ -124,7 +125,8 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     carried = {t: graph_alignment(m) for t, m in motion.items()}
     reference = graph_reference(one, runs)
     entries = take_entries(ends, reference)
-    nodes, tracked = followed(reference, entries, one, motion, mesh)
+    order = tracking_order(reference, entries, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"), ends, tracks)
+    nodes, tracked = followed(reference, order, one, motion, mesh)
     aligned = carried if letter else aligned_by(reference, entries, nodes, tracked, mesh)
     tree = graph_skeleton(one, motion, aligned, mesh, place)
     touching = contact_kinds(one, motion, runs)
@@ -135,11 +137,10 @@ def volumetric(*, letter: bool = False) -> Volumetric:
 
 
 def followed(
-    reference: Reference, entries: TakeEntries, one: IntegratedStructure, motion: dict[int, GraphMotion], mesh: dict[int, Mesh]
+    reference: Reference, order: TrackingOrder, one: IntegratedStructure, motion: dict[int, GraphMotion], mesh: dict[int, Mesh]
 ) -> tuple[DeformationGraph, dict[int, Tracking]]:
     """The deformation graph of the default, and the surface bent onto every frame, in the order of the traversal."""
     nodes = deformation_graph(reference, DeformationGraphParams(nodes=150))
-    order = tracking_order(reference, entries, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"))
     done: dict[int, Tracking] = {}
     for frame in sorted(one.frames, key=lambda t: abs(t - one.frame)):
         last = order.previous(frame)

@@ -35,8 +35,12 @@ class TrackingParams(Params):
 class Tracking(Pose):
     """A frame of the chain outwards from the reference: near enough for a fit, with what the next frame needs to start from."""
 
+    frame: int = 0
+    """Source frame number; 0 also where poses are not predicted from it."""
+    earlier_frame: int = 0
+    """Source frame number of the frame before in the chain, which may be some frames away."""
     steps: int
-    """Frames between the reference and this one, in the order in which frames are reached; 0 for the reference."""
+    """Steps from the reference to this frame, in the order in which frames are reached; 0 for the reference."""
     unexplained: float
     """Share of the frame that the body does not explain: of its few points, those far from the body."""
     usual: float

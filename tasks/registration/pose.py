@@ -62,10 +62,21 @@ def fit_settings(params: TrackingParams) -> deformation.FitSettings:
 
 
 def stored_tracking(
-    near: NearPose, earlier: deformation.Pose, steps: int, usual: float, params: TrackingParams, attempt: int = 0
+    near: NearPose,
+    earlier: deformation.Pose,
+    steps: int,
+    usual: float,
+    params: TrackingParams,
+    attempt: int = 0,
+    frames: tuple[int, int] = (0, 0),
 ) -> Tracking:
-    """A frame of the chain, with the pose before it, its place in the chain and how it is to be fitted."""
+    """A frame of the chain, with the pose before it, its place in the chain and how it is to be fitted.
+
+    frames : source numbers of this frame and of the one before
+    """
     return Tracking(
+        frame=frames[0],
+        earlier_frame=frames[1],
         steps=steps,
         rotation=near.pose.rotation,
         translation=near.pose.translation,

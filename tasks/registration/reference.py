@@ -41,7 +41,7 @@ def reference(
             f" which are {frames[0]} to {frames[-1]}; see sequence.learn_from"
         )
     pinned = None if params.frame is None else frames.index(params.frame)
-    followed, takes = _followed(leaves, tuple(tips.values())), take_spans(frames)
+    followed, takes = followed_stems(leaves, tuple(tips.values())), take_spans(frames)
     chosen = numerics.reference(count, euler, area, profile, followed, frame=pinned, takes=takes)
     mine = mesh[frames[chosen.frame]]
     return Reference(
@@ -58,7 +58,7 @@ def reference(
     )
 
 
-def _followed(leaves: Leaves, tips: tuple[Extrema, ...]) -> Floats:
+def followed_stems(leaves: Leaves, tips: tuple[Extrema, ...]) -> Floats:
     """(leaf, frame, station, xyz) the stem of every leaf that was followed; NaN where it is not seen."""
     shape = tips[0].stems.shape[1:]
     stems = np.full((*leaves.rows.shape, *shape), np.nan)

@@ -23,6 +23,7 @@ from kinetree.tasks.numerics.registration.near_pose import (
     thinned_body,
     thinned_frame,
 )
+from kinetree.tasks.numerics.registration.tracking import stepped_back
 from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, stored_tracking, target
 
 
@@ -40,7 +41,7 @@ def tracking(
     """Brings the reference near a frame, starting from its neighbour's pose (ours, for 2014, Eqs. 4 to 6)."""
     body = graph(deformation_graph)
     if previous is None:
-        return stored_tracking(NearPose(at_rest(body), 0.0), at_rest(body), 0, 0.0, params)
+        return stored_tracking(NearPose(at_rest(body), 0.0), at_rest(body), 0, 0.0, params, frames=(index[0], index[0]))
     last, cloud = pose(previous), thinned_body(body)
     points = thinned_frame(np.array(mesh.vertices), mesh.faces, body.size)
     is_entry, has_colours = index[0] in take_entries.frames, len(vertex_colour.colour) > 0 and len(reference_colour.colour) > 0
@@ -49,20 +50,26 @@ def tracking(
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
-        fitted = _fitted(body, previous, starts, frame, fit_settings(params))
+        fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0])
         near, attempt = NearPose(fitted.pose, distant_points(cloud, fitted.pose, points)), 1 + fitted.attempt
     # the reference is far from nothing, whatever the capture's holes
     usual = near.distant if previous.steps == 0 else min(previous.usual, near.distant)
-    return stored_tracking(near, near.pose if is_entry else last, previous.steps + 1, usual, params, attempt)
+    before, frames = near.pose if is_entry else last, (index[0], previous.frame)
+    return stored_tracking(near, before, previous.steps + 1, usual, params, attempt, frames)
 
 
-def _fitted(body: Nodes, previous: Tracking, starts: list[Pose], frame: Target, fitting: FitSettings) -> numerics.Tracking:
+def _fitted(
+    body: Nodes, previous: Tracking, starts: list[Pose], frame: Target, fitting: FitSettings, number: int
+) -> numerics.Tracking:
     """A frame fitted with all samples; in another take, from wherever the body may stand."""
     distant = usual = previous.usual  # what is far is uncovered too, so no frame on the way leaves less uncovered
     if starts:  # how the body moved before says nothing here
         return numerics.entered(body, starts, frame, fitting, usual, distant=distant)
-    earlier = Pose(previous.earlier_rotation, previous.earlier_translation) if previous.steps > 0 else None
-    return numerics.tracking(body, earlier, pose(previous), frame, fitting, usual, distant=distant)
+    last, earlier = pose(previous), None
+    if previous.steps > 0:
+        ahead = (number - previous.frame) / (previous.frame - previous.earlier_frame)
+        earlier = stepped_back(Pose(previous.earlier_rotation, previous.earlier_translation), last, ahead)
+    return numerics.tracking(body, earlier, last, frame, fitting, usual, distant=distant)
 
 
 def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:

@@ -31,9 +31,10 @@ def test_reference_is_at_rest_and_every_other_frame_is_reached_from_its_neighbou
     assert (rest.steps, rest.unexplained, rest.attempt) == (0, 0.0, 0)
     assert np.array_equal(rest.translation, made.deformation_graph.vertices[made.deformation_graph.nodes])
     for t, here in made.tracking.items():
-        assert here.steps == abs(t - made.reference.frame)
+        assert here.frame == t
         if here.steps > 0:
             before = made.tracking[made.tracking_order.previous(t)]
+            assert (here.steps, here.earlier_frame) == (before.steps + 1, before.frame)
             assert np.array_equal(here.earlier_rotation, before.rotation)
             assert np.array_equal(here.earlier_translation, before.translation)
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, uncovered
@@ -157,6 +158,18 @@ def predicted(earlier: Pose, last: Pose) -> Pose:
     """The pose after `last` if every node turns and shifts once more as from `earlier` to `last`."""
     turn = last.rotation @ earlier.rotation.transpose(0, 2, 1)
     return Pose(turn @ last.rotation, 2.0 * last.translation - earlier.translation)
+
+
+def stepped_back(earlier: Pose, last: Pose, ahead: float) -> Pose:
+    """The pose from which `predicted` goes on by a step of another length: as many times as long as from `earlier` to `last`.
+
+    ahead : length of the step to come, in lengths of the step before
+    """
+    if ahead == 1.0:
+        return earlier
+    turn = Rotation.from_matrix(last.rotation @ earlier.rotation.transpose(0, 2, 1)).as_rotvec()
+    back = Rotation.from_rotvec(-ahead * turn).as_matrix()
+    return Pose(back @ last.rotation, last.translation - ahead * (last.translation - earlier.translation))
 
 
 def _attempted(graph: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracking:

@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.registration.tracking import (
     distant_share,
     entered,
     predicted,
+    stepped_back,
     tracking,
 )
 
@@ -87,6 +88,17 @@ def test_the_prediction_of_a_steady_turn_is_the_next_step_of_it(body):
     found = predicted(steady[0], steady[1])
     np.testing.assert_allclose(found.rotation, steady[2].rotation, atol=1e-12)
     np.testing.assert_allclose(predicted(steady[0], steady[0]).translation, steady[0].translation)
+
+
+def test_a_step_of_another_length_is_predicted_as_many_times_as_long(body):
+    R = [rotation((1, 2, 0), k * 0.3) for k in range(4)]
+    steady = [rigid(body, r, k * np.array([1.0, 0, 0])) for k, r in enumerate(R)]
+    assert stepped_back(steady[1], steady[2], 1.0) is steady[1]
+    for earlier, last, ahead, there in ((0, 2, 0.5, 3), (0, 1, 2.0, 3)):
+        found = predicted(stepped_back(steady[earlier], steady[last], ahead), steady[last])
+        np.testing.assert_allclose(found.rotation, steady[there].rotation, atol=1e-12)
+        moved = steady[last].translation + ahead * (steady[last].translation - steady[earlier].translation)
+        np.testing.assert_allclose(found.translation, moved, atol=1e-9)
 
 
 def test_later_attempts_reach_further_and_try_longer():
