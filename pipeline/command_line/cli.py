@@ -12,7 +12,6 @@ import gc
 import inspect
 import io
 import os
-import signal
 import sys
 import textwrap
 import threading
@@ -29,6 +28,7 @@ from typer.main import get_command
 from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError, ServiceError
 from kinetree.pipeline.application import Application, Command, Shortcut
 from kinetree.pipeline.command_line.printable import printable, quoted
+from kinetree.pipeline.running.interrupts import heed
 
 EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 cluster or service failed, try again · 130 interrupted"
 ENVIRONMENT = (
@@ -119,7 +119,7 @@ def main(application: Application) -> NoReturn:
 
     SIGTERM interrupts. So does SIGINT, but where this process was started to ignore it (nohup, a job in the background).
     """
-    signal.signal(signal.SIGTERM, _interrupt)
+    heed()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal that cannot show × must not end a run
@@ -232,7 +232,3 @@ def _print_error(name: str, error: KinetreeError) -> None:
 
 def _complain(text: str) -> None:
     typer.secho(text, err=True, fg=typer.colors.RED)
-
-
-def _interrupt(*_: object) -> NoReturn:
-    raise KeyboardInterrupt

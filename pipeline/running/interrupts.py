@@ -4,6 +4,23 @@ import contextlib
 import signal
 import threading
 from collections.abc import Callable, Iterator
+from typing import NoReturn
+
+_heard = threading.Event()
+"""Whether a signal came that `heed` listens for."""
+
+
+def heed() -> None:
+    """From now on SIGTERM, and Ctrl-C where this process does not ignore it, raise KeyboardInterrupt."""
+    _heard.clear()
+    signal.signal(signal.SIGTERM, _interrupt)
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupt)
+
+
+def _interrupt(*_: object) -> NoReturn:
+    _heard.set()
+    raise KeyboardInterrupt
 
 
 @contextlib.contextmanager
@@ -13,7 +30,12 @@ def interruptible(interrupt: Callable[..., None], *, is_apart: bool) -> Iterator
     Raised wherever the thread happens to be, they can leave a lock of a library held for ever. A node that runs in this
     very thread (not `is_apart`) is interrupted as usual. A signal that whoever started this process had it ignore (nohup, a
     job in the background) stays ignored.
+
+    raises : KeyboardInterrupt where one came before and was swallowed: libraries try to import others and pass over whatever
+             is raised meanwhile
     """
+    if _heard.is_set():
+        raise KeyboardInterrupt
     if not is_apart or threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,11 +1,14 @@
 """Ctrl-C and SIGTERM leave a store from which the next run goes on."""
 
+import contextlib
 import json
 import os
 import signal
 from pathlib import Path
 
 import pytest
+
+from kinetree.pipeline.running.interrupts import heed, interruptible
 
 
 def living(group: int) -> list[int]:
@@ -75,3 +78,20 @@ def test_a_run_that_was_started_deaf_to_ctrl_c_stays_so_and_obeys_sigterm(toys, 
     assert process.returncode == 130
     assert err.strip() == "toy: interrupted; what is finished is kept, run again to go on"
     toys.until(lambda: not living(process.pid), "no process is left behind")
+
+
+def test_an_interrupt_that_a_library_swallows_is_heard_before_the_first_node():
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        for blow in before:
+            heed()
+            with interruptible(lambda *_: None, is_apart=True):
+                pass
+            with contextlib.suppress(BaseException):  # as trimesh imports what may not be there
+                os.kill(os.getpid(), blow)
+            with pytest.raises(KeyboardInterrupt), interruptible(lambda *_: None, is_apart=False):
+                pass
+    finally:
+        heed()
+        for number, handler in before.items():
+            signal.signal(number, handler)
