@@ -50,6 +50,13 @@ def test_a_reference_that_is_bent_beyond_the_ring_is_no_evidence() -> None:
     assert found(5.0, 0.06, bent=15.0) == []
 
 
+@pytest.mark.parametrize(("degrees", "slice_length", "joints"), [(25.0, 1.0, 1), (25.0, 10.0, 0), (8.0, 10.0, 1)])
+def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joint(
+    degrees: float, slice_length: float, joints: int
+) -> None:
+    assert len(found(degrees, settings=EndJointsSettings(slice_length=slice_length))) == joints
+
+
 def test_a_part_that_no_frame_shows_has_no_joint() -> None:
     surface, tree = found_in(aligned(turning()))
     confidence = np.where(surface.V[:, 2] > 0.0, 0.1, 1.0) * np.ones((len(surface.x), 1))
