@@ -14,7 +14,7 @@ def given(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference, dict[
     frames = tuple(range(FIRST, FIRST + len(x)))
     reference = Reference(
         frames=frames, frame=FIRST + 2, vertices=V, faces=F, size=1.0, fixed=True, leaves=0, free=True,
-        score=np.zeros(len(x)),
+        stems=np.zeros((0, 4, 3)), score=np.zeros(len(x)),
     )  # fmt: skip
     zero, one = np.zeros(len(V)), np.ones(len(V))
     aligned = {

@@ -96,7 +96,7 @@ def reference_at(frames: dict[int, Frame], chosen: int) -> Reference:
     mesh, each = frames[chosen].mesh, np.ones(len(frames))
     return Reference(
         frames=tuple(frames), frame=chosen, fixed=False, leaves=3, free=True, vertices=mesh.vertices, faces=mesh.faces,
-        size=10.0, score=each,
+        size=10.0, stems=np.zeros((0, 4, 3)), score=each,
     )  # fmt: skip
 
 

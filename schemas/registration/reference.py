@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
-from kinetree.schemas.dims import CORNER, FACE, FRAME, VERTEX, XYZ
+from kinetree.schemas.dims import CORNER, FACE, FRAME, LEAF, STATION, VERTEX, XYZ
 
 
 class ReferenceParams(Params):
@@ -34,5 +34,7 @@ class Reference(Artifact):
     """Its faces."""
     size: float
     """Root of its area, length: what every length of the alignment is relative to."""
+    stems: Annotated[Floats, Array("float64", LEAF, STATION, XYZ, unit="length")]
+    """Centres of its limbs from their roots to their ends; none where they are not known."""
     score: Annotated[Floats, Array("float64", FRAME)]
     """How fit each frame is as the reference, at most 1, higher is better."""

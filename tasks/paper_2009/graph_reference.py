@@ -1,5 +1,7 @@
 """The mesh of the integrated structure, as the reference that the surface of every frame is fitted with."""
 
+import numpy as np
+
 from kinetree.pipeline.task import task
 from kinetree.schemas.paper_2009.coherent_intervals import CoherentIntervals
 from kinetree.schemas.paper_2009.integrated_structure import IntegratedStructure
@@ -21,5 +23,6 @@ def graph_reference(integrated_structure: IntegratedStructure, intervals: Cohere
         vertices=s.vertices,
         faces=s.faces,
         size=s.size,
+        stems=np.zeros((0, 1, 3)),
         score=intervals.spread,
     )

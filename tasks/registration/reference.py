@@ -54,6 +54,7 @@ def reference(
         vertices=mine.vertices,
         faces=mine.faces,
         size=float(np.sqrt(area[chosen.frame])),
+        stems=tips[frames[chosen.frame]].stems,
         score=chosen.score,
     )
 

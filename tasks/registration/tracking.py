@@ -6,11 +6,14 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.array import Index
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.schemas.registration.vertex_colour import VertexColour
+from kinetree.schemas.topology.extrema import Extrema
+from kinetree.tasks.numerics.registration import limb_swing
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest
@@ -35,6 +38,8 @@ def tracking(
     previous: Tracking | None,
     params: TrackingParams,
     index: Index,
+    reference: Reference,
+    tips: Extrema,
     vertex_colour: VertexColour = NO_COLOUR,
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Tracking:
@@ -46,11 +51,13 @@ def tracking(
     points = thinned_frame(np.array(mesh.vertices), mesh.faces, body.size)
     is_entry, has_colours = index[0] in take_entries.frames, len(vertex_colour.colour) > 0 and len(reference_colour.colour) > 0
     # few points show too little of colours, and say nothing of where a body stands in another take
-    near, attempt = None if is_entry or has_colours else near_pose(cloud, last, points), 0
+    near, attempt, swung = None if is_entry or has_colours else near_pose(cloud, last, points), 0, None
+    if near is not None and is_lost(near, previous.usual):
+        near, swung = _near_by_limbs(cloud, last, near, points, (reference, tips))
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
-        fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0])
+        fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0], swung)
         near, attempt = NearPose(fitted.pose, distant_points(cloud, fitted.pose, points)), 1 + fitted.attempt
     # the reference is far from nothing, whatever the capture's holes
     usual = near.distant if previous.steps == 0 else min(previous.usual, near.distant)
@@ -58,8 +65,25 @@ def tracking(
     return stored_tracking(near, before, previous.steps + 1, usual, params, attempt, frames)
 
 
+def _near_by_limbs(
+    cloud: Nodes, last: Pose, near: NearPose, points: Target, limbs: tuple[Reference, Extrema]
+) -> tuple[NearPose, Pose | None]:
+    """The near pose or that from swung limbs, whichever explains more; and the pose with swung limbs, if there are any."""
+    reference, tips = limbs
+    swung = limb_swing.swung(cloud, last, np.array(reference.stems), tips.stems, np.array(tips.centre))
+    if swung is None:
+        return near, None
+    return min(near, near_pose(cloud, swung, points), key=lambda one: one.distant), swung
+
+
 def _fitted(
-    body: Nodes, previous: Tracking, starts: list[Pose], frame: Target, fitting: FitSettings, number: int
+    body: Nodes,
+    previous: Tracking,
+    starts: list[Pose],
+    frame: Target,
+    fitting: FitSettings,
+    number: int,
+    swung: Pose | None,
 ) -> numerics.Tracking:
     """A frame fitted with all samples; in another take, from wherever the body may stand."""
     distant = usual = previous.usual  # what is far is uncovered too, so no frame on the way leaves less uncovered
@@ -69,7 +93,7 @@ def _fitted(
     if previous.steps > 0:
         ahead = (number - previous.frame) / (previous.frame - previous.earlier_frame)
         earlier = stepped_back(Pose(previous.earlier_rotation, previous.earlier_translation), last, ahead)
-    return numerics.tracking(body, earlier, last, frame, fitting, usual, distant=distant)
+    return numerics.tracking(body, earlier, last, frame, fitting, usual, distant=distant, swung=swung)
 
 
 def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:

@@ -9,8 +9,9 @@ from pydantic import ValidationError
 from shipped import FITTING
 from stepwise import along, walk
 
+from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.take_entries import TakeEntries
-from kinetree.schemas.registration.tracking import TrackingParams
+from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.tasks.numerics.registration import first_fit as numeric_first_fit
 from kinetree.tasks.numerics.registration import recovery as numeric_recovery
 from kinetree.tasks.numerics.registration import tracking as numeric_tracking
@@ -18,6 +19,7 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, shape
 from kinetree.tasks.numerics.registration.first_fit import last_steps
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
+from kinetree.tasks.numerics.registration.limb_swing import swung
 from kinetree.tasks.numerics.registration.tracking import entered
 from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.pose import fit_settings, graph, pose
@@ -74,10 +76,31 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
         take_entries=made.take_entries,
         index=made.numbers,
         params=TrackingParams(),
+        reference=made.reference,
+        tips=made.extrema,
     )
     assert again[strange].attempt > 0, "few points show that a limb is lost, and all samples are asked"
     assert again[strange].unexplained > 0.1
     assert again[last].unexplained < 0.1
+
+
+def test_a_limb_far_from_where_it_was_is_brought_to_where_the_frame_shows_it_and_needs_few_points_alone() -> None:
+    made = walk()
+    rest, at = made.tracking[made.reference.frame], made.reference.frame + 1
+    stems, body = np.array(made.reference.stems), graph(made.deformation_graph)
+    raised = (stems - stems[:, :1]) @ rotation((1, 0, 0), 2.0).T + stems[:, :1]
+    elsewhere = swung(body, pose(rest), stems, raised, body.V[body.sample].mean(axis=0))
+    assert elsewhere is not None
+    last = rest.model_copy(update={"rotation": elsewhere.rotation, "translation": elsewhere.translation})
+
+    def from_there(reference: Reference) -> Tracking:
+        told = made.mesh[at], made.deformation_graph, made.take_entries, last, TrackingParams(), (at,)
+        return tracking(*told, reference, made.extrema[at])
+
+    unknown, known = (from_there(made.reference.model_copy(update={"stems": limbs})) for limbs in (stems[:0], stems))
+    assert unknown.attempt > 0
+    assert known.attempt == 0
+    assert known.unexplained < 0.003
 
 
 OTHERS = TrackingParams(
@@ -92,9 +115,9 @@ def test_every_parameter_reaches_every_fit_with_all_samples(
     fits: list[Any] = []
     fitted = numeric_tracking.tracking
 
-    def listening(body: Any, earlier: Any, neighbour: Any, target: Any, fitting: Any, *usual: Any, **distant: Any) -> Any:
+    def listening(body: Any, earlier: Any, neighbour: Any, target: Any, fitting: Any, *usual: Any, **others: Any) -> Any:
         fits.append(fitting)
-        return fitted(body, earlier, neighbour, target, fitting, *usual, **distant)
+        return fitted(body, earlier, neighbour, target, fitting, *usual, **others)
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
     monkeypatch.setattr(numeric_first_fit, "tracking", listening)
@@ -109,6 +132,8 @@ def test_every_parameter_reaches_every_fit_with_all_samples(
         take_entries=made.take_entries,
         index=made.numbers,
         params=OTHERS,
+        reference=made.reference,
+        tips=made.extrema,
     )
     assert [values(fitting) for fitting in fits] == [OTHERS.model_dump()], "of a frame that few points lose"
     near = first[0].model_copy(update={"attempt": 0})
@@ -150,7 +175,9 @@ def test_fits_where_a_take_is_entered_know_what_is_far_from_the_body_in_all_fram
         return fitted(*given, distant=distant)
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
-    tracking(made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,))
+    tracking(
+        made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,), made.reference, made.extrema[at]
+    )
     assert told == [0.05, 0.05]
 
 

@@ -15,7 +15,7 @@ def ordered(frames: range, at: int, *, learned: range | None = None, fixed: bool
     used = tuple(learned or frames)
     reference = Reference(
         frames=used, frame=at, fixed=fixed, leaves=5, free=True, vertices=np.zeros((3, 3)), faces=np.array([[0, 1, 2]]),
-        size=1.0, score=np.zeros(len(used)),
+        size=1.0, stems=np.zeros((0, 4, 3)), score=np.zeros(len(used)),
     )  # fmt: skip
     further = tuple(t for t in frames if t not in used)
     none = TakeEntries(

@@ -43,7 +43,7 @@ def told(
     reference = Reference(
         frames=frames, frame=FIRST + 2, vertices=body.V, faces=body.F,
         size=float(np.sqrt(body.area.sum())), fixed=True, leaves=len(tips), free=True,
-        score=np.zeros(count),
+        stems=np.zeros((0, 4, 3)), score=np.zeros(count),
     )  # fmt: skip
     parts = rigid(body, frames)
     zero, one = np.zeros(len(body.V)), np.ones(len(body.V))

@@ -6,7 +6,7 @@ that. The share of the frame that the body leaves uncovered is then about ten ti
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -45,12 +45,12 @@ class TrackingSettings(NamedTuple):
 class Attempt(NamedTuple):
     """One way to fit a frame.
 
-    settings  : of the fit
-    predicted : whether it starts where the body would be if it moved on as before
+    settings : of the fit
+    start    : from the neighbour's pose, with limbs swung to where the frame shows them, or as if the body moved on as before
     """
 
     settings: FitSettings
-    predicted: bool = False
+    start: Literal["neighbour", "swung", "predicted"] = "neighbour"
 
 
 class Tracking(NamedTuple):
@@ -76,6 +76,7 @@ def tracking(
     settings: TrackingSettings | None = None,
     *,
     distant: float = 0.0,
+    swung: Pose | None = None,
 ) -> Tracking:
     """Fit a frame from its neighbour's pose; if a limb stays uncovered, try other ways and take what covers most (ours).
 
@@ -86,20 +87,21 @@ def tracking(
     fitting   : of the usual way
     usual     : smallest share that any frame between the reference and this one leaves uncovered: holes of a capture
     distant   : smallest share of any such frame that is far from the body
+    swung     : the neighbour's pose with limbs swung to where this frame shows limbs; None where that is not known
     returns   : Tracking of the first way that leaves little uncovered, or little of the frame far from the body; where no way
                 does, of the one that covers most
     """
     settings = settings or TrackingSettings()
     ways = attempts(fitting, settings)
     best = _attempted(graph, neighbour, target, ways[0].settings, 0)
+    starts = {"neighbour": neighbour, "swung": swung, "predicted": None if earlier is None else predicted(earlier, neighbour)}
     for number, way in enumerate(ways[1:], start=1):
         is_covered = best.uncovered <= usual + settings.uncovered
         if is_covered or distant_share(graph, best.pose, target, settings.distance) <= distant + settings.distant:
             break
-        if way.predicted and earlier is None:
-            continue
-        start = neighbour if earlier is None or not way.predicted else predicted(earlier, neighbour)
-        best = min(best, _attempted(graph, start, target, way.settings, number), key=lambda attempt: attempt.uncovered)
+        start = starts[way.start]
+        if start is not None:
+            best = min(best, _attempted(graph, start, target, way.settings, number), key=lambda attempt: attempt.uncovered)
     return best
 
 
@@ -132,12 +134,14 @@ def attempts(usual: FitSettings, settings: TrackingSettings | None = None) -> tu
     """The ways to fit a frame, in the order in which they are tried (ours).
 
     usual   : settings of the usual way
-    returns : the usual way · from a predicted pose · with a wide reach · stiff with many steps · stiff and predicted
+    returns : the usual way · from a predicted pose · with a wide reach · stiff with many steps · stiff and predicted · from
+              swung limbs, which few points did not find to be enough
     """
     s = settings or TrackingSettings()
     wide = replace(usual, reach=(s.reach, usual.reach[1]), scale=(s.scale, usual.scale[1]))
     stiff = replace(wide, steps=s.steps, stiffness=(s.stiffness, usual.stiffness[1]), solver_steps=s.solver_steps)
-    return Attempt(usual), Attempt(usual, True), Attempt(wide), Attempt(stiff), Attempt(stiff, True)
+    ways = Attempt(usual), Attempt(usual, "predicted"), Attempt(wide), Attempt(stiff), Attempt(stiff, "predicted")
+    return *ways, Attempt(usual, "swung")
 
 
 def distant_share(graph: DeformationGraph, pose: Pose, target: Target, distance: float | None = None) -> float:

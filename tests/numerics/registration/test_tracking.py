@@ -41,6 +41,16 @@ def test_a_limb_that_moved_on_steadily_is_found_from_where_it_should_be(body):
     assert np.linalg.norm(x - body.V @ rotation((1, 0, 0), 3 * step).T, axis=1).mean() < 0.01 * LENGTH
 
 
+def test_a_limb_that_no_other_way_reaches_is_found_at_last_from_where_it_was_swung(body):
+    V, F = tube(around=29, along=57, start=0.07)
+    away = np.array([0.0, 3.0 * LENGTH, 0.0])
+    target, there = Target.of(V + away, F, body.size), rigid(body, np.eye(3), away)
+    alone, led = (tracking(body, None, at_rest(body), target, FITTING, swung=swung) for swung in (None, there))
+    assert alone.uncovered > 0.1
+    assert led.attempt == len(attempts(FITTING)) - 1
+    assert led.uncovered <= SETTINGS.uncovered
+
+
 def test_a_missing_half_is_reported_as_uncovered(body):
     V, F = tube(around=29, along=57)
     longer = V + np.where(V[:, 2:] > 0, 1.0, 0.0) * [0, 0, LENGTH]
@@ -103,6 +113,6 @@ def test_a_step_of_another_length_is_predicted_as_many_times_as_long(body):
 
 def test_later_attempts_reach_further_and_try_longer():
     first, *others = attempts(FITTING)
-    assert not first.predicted
+    assert first.start == "neighbour"
     assert max(a.settings.reach[0] for a in others) > first.settings.reach[0]
     assert max(a.settings.steps for a in others) > first.settings.steps
