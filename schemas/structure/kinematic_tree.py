@@ -37,6 +37,8 @@ class KinematicTreeParams(JointParams):
     """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
     end_joints: bool = True
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
+    surface_joints: bool = True
+    """Whether joints within limbs are moved to where the frames' surfaces have them, if halves of the frames agree."""
 
 
 class KinematicTree(ArticulatedBody):

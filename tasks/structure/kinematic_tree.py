@@ -56,7 +56,9 @@ def kinematic_tree(
         leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
         limited_confidence(evidence.confidence),
         None if given else evidence,
-        settings=tree_settings(params)._replace(hidden_bones=params.hidden_bones and given, end_joints=params.end_joints),
+        settings=tree_settings(params)._replace(
+            hidden_bones=params.hidden_bones and given, end_joints=params.end_joints, surface_joints=params.surface_joints
+        ),
         takes=take_spans(frames),
         further=[_cut(cut, alignment[frame]) for frame, cut in further_cut.items() if not cut.joined],
         carried=[np.array(cut.joints) for cut in further_cut.values() if cut.joined],

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PieceFitSettings, PiecePose, piece_fit, placed_piece
 
 BETTER = 0.98
 """What is left with another turn to start from, share of what is left without, at most. Not recorded."""
@@ -41,10 +41,12 @@ def sampled_piece(V: Floats, N: Floats, weight: Floats, far: Flags, hinge: Float
     return Piece(points, normals, np.maximum(weight[at], 1e-3) ** 2, beyond, hinge, joint)
 
 
-def laid_as_one(piece: Piece, start: PiecePose, goal: Floats, target: Target) -> PieceFit:
+def laid_as_one(
+    piece: Piece, start: PiecePose, goal: Floats, target: Target, settings: PieceFitSettings | None = None
+) -> PieceFit:
     """The part as one piece from where it is; goal (xyz,) is where the rest of the body has its joint, mesh unit."""
     y, n, _ = placed_piece(piece, start)
-    return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=False)
+    return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=False, settings=settings)
 
 
 def laid_hinged(piece: Piece, one: PieceFit, goal: Floats, target: Target, turn: Floats | None) -> HingedFit:

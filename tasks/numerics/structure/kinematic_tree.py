@@ -22,6 +22,7 @@ from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
+from kinetree.tasks.numerics.structure.surface_joints import surface_joints
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
 
 
@@ -132,7 +133,10 @@ def kinematic_tree(
         body, found = inserted_ends(body, found, confidence, evidence, chosen.noise * body.size)
     agreed = _agreed(found, others, body.size)
     F, x, tree, label, W, R, t = body.F, body.x, found.left.part_tree.tree, found.label, found.W, found.R, found.t
-    rest, off = agreed.rest, found.drift if not others else found.drift_at(agreed.rest)
+    rest = agreed.rest
+    if chosen.surface_joints and evidence is not None and confidence is not None:
+        rest = surface_joints(body, found, rest, confidence, evidence.surface)
+    off = found.drift if rest is found.rest else found.drift_at(rest)
     poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
     share = confident_share(label, area, confidence, len(x), len(tree.order))
     above = np.maximum(tree.parents, 0)

@@ -116,6 +116,24 @@ def piece_fit(
     return PieceFit(PiecePose(R, t, Q), square, match)
 
 
+def shift_stiffness(piece: Piece, fit: PieceFit, target: Target, settings: PieceFitSettings | None = None) -> Floats:
+    """(6, 6) how firmly the matches hold the piece where it lies: of a turn about the origin, radian, then a shift, mesh unit.
+
+    The mean over the piece of w [n nᵀ + along I] as it acts on the points' displacements, w as in the last step of a fit.
+    """
+    chosen = settings or PieceFitSettings()
+    y, n, _ = placed_piece(piece, fit.pose)
+    normal, d = target.N[fit.match], target.V[fit.match] - y
+    across, cosine = (d * normal).sum(axis=1), (n * normal).sum(axis=1)
+    near = (across**2 + chosen.weighed_along * (d**2).sum(axis=1)) / (chosen.scales[-1] * target.size) ** 2
+    w = np.where(cosine > chosen.least_cosine, piece.mass * cosine / (1.0 + near) ** 2, 0.0) / piece.mass.sum()
+    J = np.empty((len(y), 6, 4))
+    J[:, :3, 0], J[:, 3:, 0] = np.cross(y, normal), normal
+    J[:, :3, 1:] = np.sqrt(chosen.along) * np.cross(y[:, None], np.eye(3)).transpose(0, 2, 1)
+    J[:, 3:, 1:] = np.sqrt(chosen.along) * np.eye(3)
+    return np.asarray(np.einsum("p,pik,pjk->ij", w, J, J))
+
+
 @compiled
 def placed_piece(piece: Piece, pose: PiecePose) -> tuple[Floats, Floats, Floats]:
     """(point, xyz) the points, mesh unit · (point, xyz) their unit normals · (xyz,) the hinge."""

@@ -7,7 +7,7 @@ from limbs import rotation
 
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose, piece_fit, placed_piece, shift_stiffness
 
 HINGE = np.array([0.0, 0.0, 2.0])
 I3 = np.eye(3)
@@ -64,3 +64,21 @@ def test_a_point_off_the_surface_counts_no_more_than_the_bound() -> None:
     piece, fit, size = laid(90.0, False)
     assert fit.square.max() <= (0.02 * size) ** 2 * (1 + 1e-12)
     assert len(fit.square) == len(piece.V)
+
+
+def test_a_tube_holds_a_shift_along_its_axis_and_a_turn_about_it_less_than_others() -> None:
+    piece, fit, size = laid(0.0, False)
+    body = chain((0.0, 2.0), np.tile(I3, (1, 3, 1, 1)), around=27, along=83)
+    H = shift_stiffness(piece, fit, Target.of(body.x[0], body.F, size))
+    np.testing.assert_allclose(H, H.T, atol=1e-12)
+    turn, shift = np.diag(H)[:3], np.diag(H)[3:]
+    # the cap at its end holds it along the axis, too
+    assert shift[2] < 0.5 * shift[:2].min()
+    assert turn[2] < 0.3 * turn[:2].min()
+
+
+def test_what_no_match_holds_is_not_held() -> None:
+    piece, fit, size = laid(0.0, False)
+    body = chain((0.0, 2.0), np.tile(I3, (1, 3, 1, 1)))
+    there = Target.of(body.x[0] + 100.0, body.F, size)
+    assert shift_stiffness(piece, fit._replace(match=np.zeros(len(piece.V), np.int64)), there).max() < 1e-6
