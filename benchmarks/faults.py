@@ -532,8 +532,8 @@ def _below(pid: int) -> list[int]:
     children: dict[int, list[int]] = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
-            parent = int(stat.read_text().rpartition(")")[2].split()[1])
-            children.setdefault(parent, []).append(int(stat.parent.name))
+            one = int(stat.parent.name)
+            children.setdefault(_parent(one), []).append(one)
     found = list(children.get(pid, []))
     for child in found:
         found += children.get(child, [])
@@ -541,10 +541,17 @@ def _below(pid: int) -> list[int]:
 
 
 def _is_worker(pid: int) -> bool:
-    """Whether a process is a worker of dask and not its nanny or what watches over semaphores."""
+    """Whether a process is a worker of dask and not its nanny, what it is forked from or what watches over semaphores."""
     with contextlib.suppress(OSError):
-        return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        command = Path(f"/proc/{pid}/cmdline").read_bytes()
+        return b"spawn_main" in command or (
+            b"forkserver" in command and command == Path(f"/proc/{_parent(pid)}/cmdline").read_bytes()
+        )
     return False
+
+
+def _parent(pid: int) -> int:
+    return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
 def _quietly(module: str, *options: str, before: tuple[str, ...] = ()) -> "subprocess.Popen[str]":
