@@ -448,7 +448,11 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert "mesh.component_share = 0.05" in printed
     assert "set by rigid_parts\n" in printed
     rows = told(kinetree("tasks", "--json")[1])
-    assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {"cut_poses": "rigid_parts"}
+    assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {
+        "cut_poses": "rigid_parts",
+        "further_cut": "kinematic_tree",
+        "played_body": "report",
+    }
     mesh = next(r for r in rows if r["task"] == "mesh")
     assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "set_by", "along", "paper", "summary"}
     assert mesh["params"]["component_share"]["default"] == 0.05
