@@ -214,4 +214,5 @@ def test_shown_skeleton_marks_it_and_the_run_names_it(found, names, knee):
 def test_no_comparison_and_no_verdict_reads_it(method):
     graph = METHODS[method]
     edges = [(read.name, task.name) for task in graph.tasks for read in graph.before(task)]
-    assert nx.descendants(nx.DiGraph(edges), "assumed_joints") <= {"skeleton_json", "bvh", "glb", "blender", "usd", "report"}
+    shown = {"skeleton_json", "bvh", "glb", "blender", "usd", "played_body", "report"}
+    assert nx.descendants(nx.DiGraph(edges), "assumed_joints") <= shown
