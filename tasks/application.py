@@ -176,6 +176,7 @@ APPLICATION = Application(
         "report.frames": "excerpt.frames",
         "report.input_vertices": "coarse_mesh.vertices",
         "report.up": "up_direction.up",
+        "report.vertices": "played_body.vertices",
         "report.views": "excerpt.views",
         "rigid_parts.missed": "rigid_parts.removal_cost",
         "skeleton": "kinematic_tree",

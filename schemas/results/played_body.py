@@ -4,9 +4,17 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact
+from kinetree.schemas.array import Array, Artifact, Params
 from kinetree.schemas.dims import BYTE
+
+
+class PlayedBodyParams(Params):
+    """How finely the page shows the body."""
+
+    vertices: int = Field(default=4000, ge=50)
+    """Most vertices of the aligned mesh in the player."""
 
 
 class PlayedBody(Artifact):

@@ -4,7 +4,6 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Params
 from kinetree.schemas.dims import BYTE
@@ -14,12 +13,10 @@ RUN = "null/*what ran*/"
 
 
 class ReportParams(Params):
-    """What the page says and how finely it shows the body."""
+    """What the page says."""
 
     title: str = ""
     """Title of the page; empty: made of the numbers of joints and frames."""
-    vertices: int = Field(default=4000, ge=50)
-    """Most vertices of the aligned mesh in the player."""
 
 
 class Report(Artifact):

@@ -1,6 +1,5 @@
 """The moving body of the report, packed apart from the page, so that neither pictures nor tables wait for it."""
 
-import base64
 import json
 from collections.abc import Mapping
 
@@ -13,8 +12,7 @@ from kinetree.schemas.results.appearance import Appearance
 from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh
 from kinetree.schemas.results.excerpt import Excerpt
-from kinetree.schemas.results.played_body import PlayedBody
-from kinetree.schemas.results.report import ReportParams
+from kinetree.schemas.results.played_body import PlayedBody, PlayedBodyParams
 from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.error_bars import ErrorBars
@@ -30,7 +28,7 @@ from kinetree.tasks.results.page.scene import Limits, Scene, Trust, scene
 from kinetree.tasks.results.page.surface_colours import surface_colours
 
 
-@task(block="report")
+@task()
 def played_body(
     skeleton: Skeleton,
     intervals: Intervals,
@@ -42,7 +40,7 @@ def played_body(
     excerpt: Excerpt,
     coarse_mesh: tuple[CoarseMesh, ...],
     alignment: Mapping[int, Alignment],
-    params: ReportParams,
+    params: PlayedBodyParams,
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
     appearance: Appearance = NO_APPEARANCE,
 ) -> PlayedBody:
@@ -56,13 +54,14 @@ def played_body(
     assumed = [(in_words(joint.anatomy), joint.child, joint.place) for joint in assumed_joints.joints]
     colours = surface_colours(appearance, len(skeleton.vertices))
     made = scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours)
-    block = np.frombuffer(base64.b64decode(made.block), dtype=np.uint8)
-    return PlayedBody(description=json.dumps(made.description), omitted=made.omitted, block=block)
+    return PlayedBody(
+        description=json.dumps(made.description), omitted=made.omitted, block=np.frombuffer(made.block, dtype=np.uint8)
+    )
 
 
 def played_scene(played: PlayedBody) -> Scene:
     """What the page contains of it."""
-    return Scene(json.loads(played.description), base64.b64encode(played.block.tobytes()).decode(), played.omitted)
+    return Scene(json.loads(played.description), played.block.tobytes(), played.omitted)
 
 
 def bounds_in_frames(bars: ErrorBars) -> Floats | None:

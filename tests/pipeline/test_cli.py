@@ -451,7 +451,6 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {
         "cut_poses": "rigid_parts",
         "further_cut": "kinematic_tree",
-        "played_body": "report",
     }
     mesh = next(r for r in rows if r["task"] == "mesh")
     assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "set_by", "along", "paper", "summary"}

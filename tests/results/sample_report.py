@@ -19,7 +19,7 @@ from kinetree.schemas.results.assumed_joints import AssumedJoints
 from kinetree.schemas.results.coarse_mesh import CoarseMesh, CoarseMeshParams
 from kinetree.schemas.results.evaluation import Evaluation, JointScore, Summary
 from kinetree.schemas.results.excerpt import ExcerptParams
-from kinetree.schemas.results.report import ReportParams
+from kinetree.schemas.results.played_body import PlayedBodyParams
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.correlation import Correlation
@@ -159,7 +159,7 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))
     all_of_it["evaluation_figures"] = evaluation_figures(**some("evaluation", "sequence"))
     played = {argument.name: all_of_it[argument.name] for argument in played_body.arguments}
-    all_of_it["played_body"] = played_body(**played, params=ReportParams())
+    all_of_it["played_body"] = played_body(**played, params=PlayedBodyParams())
     return {argument.name: all_of_it[argument.name] for argument in report.arguments}
 
 

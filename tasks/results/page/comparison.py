@@ -1,5 +1,6 @@
 """The page of a comparison as one file of HTML: two players, a curve, and tables whose joints can be selected."""
 
+import base64
 import re
 from collections.abc import Sequence
 from html import escape
@@ -47,8 +48,8 @@ def comparison_document(comparison: Comparison, skeletons: tuple[Skeleton, Skele
         "comparison": as_script(_content(comparison, rows)),
         "scene_a": as_script(first),
         "scene_b": as_script({**second, **{name: first[name] for name in SHARED}}),
-        "payload_a": scenes[0].block,
-        "payload_b": scenes[1].block,
+        "payload_a": base64.b64encode(scenes[0].block).decode(),
+        "payload_b": base64.b64encode(scenes[1].block).decode(),
         "hashes": script_hashes(scripts.values()),
         **scripts,
     }

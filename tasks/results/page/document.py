@@ -91,7 +91,7 @@ def document(page: Page) -> str:
         "omitted": escape("; ".join(page.scene.omitted)) + ("." if page.scene.omitted else ""),
         "sections": _chapters(first) + _folded("Method details", details) + _folded("What ran", sections[-1:]),
         "scene": as_script(page.scene.description),
-        "payload": page.scene.block,
+        "payload": base64.b64encode(page.scene.block).decode(),
         "run": RUN,
         "hashes": script_hashes(scripts.values()),
         **scripts,

@@ -1,6 +1,5 @@
 """The moving body as the page's player reads it: a description in JSON and one block of compressed arrays."""
 
-import base64
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -65,7 +64,7 @@ class Scene(NamedTuple):
     """What the player reads: a description for JSON, the arrays in one compressed block, and sentences about omissions."""
 
     description: dict[str, Any]
-    block: str
+    block: bytes
     omitted: tuple[str, ...]
 
 
@@ -211,8 +210,8 @@ def _carried(colours: NDArray[np.uint8], skeleton: Skeleton, mesh: CoarseMesh) -
     return out
 
 
-def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], str]:
-    """The arrays in one block, which is deflated and in base64.
+def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], bytes]:
+    """The arrays in one block, which is deflated.
 
     returns : dtype, shape and offset of each array by name, offsets being multiples of 4 bytes; and the block
     """
@@ -225,7 +224,7 @@ def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]
         raw += bytes(-len(raw) % 4)
         chunks.append(raw)
         offset += len(raw)
-    return layout, base64.b64encode(zlib.compress(b"".join(chunks), _LEVEL)).decode()
+    return layout, zlib.compress(b"".join(chunks), _LEVEL)
 
 
 def _offsets(counts: list[int]) -> NDArray[np.uint32]:

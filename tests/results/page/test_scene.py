@@ -1,6 +1,5 @@
 """The scene of the player: positions are exact to half a step of the lattice, labels follow the vertices."""
 
-import base64
 import zlib
 
 import numpy as np
@@ -13,7 +12,7 @@ from kinetree.tasks.results.plots.drawing import view
 
 
 def unpacked(scene):
-    raw = zlib.decompress(base64.b64decode(scene.block))
+    raw = zlib.decompress(scene.block)
     return {
         name: np.frombuffer(raw, a["dtype"], int(np.prod(a["shape"])), a["offset"]).reshape(a["shape"])
         for name, a in scene.description["arrays"].items()
@@ -28,7 +27,7 @@ def scene():
 def test_arrays_come_back_as_they_were_and_lie_where_a_browser_can_read_them():
     given = {"a": np.arange(5, dtype=np.uint8), "b": np.arange(6, dtype=np.float32).reshape(2, 3), "c": np.zeros(0, np.uint16)}
     layout, block = packed(given)
-    raw = zlib.decompress(base64.b64decode(block))
+    raw = zlib.decompress(block)
     for name, array in given.items():
         assert layout[name]["offset"] % 4 == 0
         back = np.frombuffer(raw, layout[name]["dtype"], array.size, layout[name]["offset"]).reshape(layout[name]["shape"])
