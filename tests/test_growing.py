@@ -108,3 +108,15 @@ def test_learning_from_all_frames_is_learning_from_those_there_are(take: Any) ->
     assert {n: a for n, a in here.artifacts(THERE, ":").items() if n != "sequence"} == {
         n: a for n, a in before.items() if n != "sequence"
     }
+
+
+def test_an_appended_frame_that_is_learned_from_too_leaves_tracking_of_the_others_alone(tmp_path: Path) -> None:
+    def ran(frames: int) -> set[str]:
+        source = {"synth": {"figure": "human", "frames": 6, "vertices": 700}, "frames": f":{frames}"}
+        heard = Heard()
+        pipeline = Pipeline.of({"output": str(tmp_path), **SMALL, "source": source, "reference": {"frame": 2}})
+        pipeline.run(until=("tracking",), listeners=[heard])
+        return {node for node in heard.ran if node.startswith("tracking[")}
+
+    assert len(ran(5)) == 5
+    assert ran(6) == {"tracking[frame=5]"}

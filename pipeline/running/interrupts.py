@@ -35,6 +35,7 @@ def interruptible(interrupt: Callable[..., None], *, is_apart: bool) -> Iterator
              is raised meanwhile
     """
     if _heard.is_set():
+        _heard.clear()  # a later run of this process is not meant
         raise KeyboardInterrupt
     if not is_apart or threading.current_thread() is not threading.main_thread():
         yield

@@ -94,7 +94,7 @@ def launcher(compute: Compute, client: Any = None, parent: WorkerParent | None =
                 parent = stack.enter_context(WorkerParent()) if parent is None else parent
                 parent.begin(environment(compute))
                 watching = UNWATCHED if compute.performance_report is None else {}
-                starting = {ENVIRONMENT: environment(compute), METHOD: parent.method}
+                starting = {ENVIRONMENT: environment(compute), **({METHOD: "forkserver"} if parent.is_there else {})}
                 stack.enter_context(dask.config.set({**starting, **watching}))
             there = stack.enter_context(clusters.connected(compute, client))
             yield _on_client(there, stack.enter_context(followed(there, compute, is_ours=is_ours)), compute)

@@ -5,14 +5,21 @@ Where there can be none, workers start as dask starts them, and each imports by 
 
 import contextlib
 import os
+import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator, Mapping
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
+from pathlib import Path
 from types import TracebackType
-from typing import Any, Literal
+from typing import Any
 
 from kinetree.pipeline.running import worker_preload
+
+PATIENCE = 1.0
+"""Seconds in which its end is waited for. One that is still importing ends a little later, and one of which another part of
+this program has children ends after them."""
 
 
 class WorkerParent:
@@ -32,27 +39,63 @@ class WorkerParent:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         with self._lock:
             if self._server is not None:
-                self._server._stop()  # which lets it finish its imports, and give back what they hold of the system
+                _ended(self._server)
                 self._server = None
 
     def begin(self, environment: Mapping[str, str]) -> None:
         """Starts the process with these variables set, unless it is there; returns at once.
 
-        There is none but on Linux, and none where this program has a server of that kind already, which is somebody else's.
+        There is none but on Linux, none where this program has a server of that kind already, which is somebody else's, and
+        none where the system refuses its socket (a long path of temporary files).
         """
         with self._lock:
             server: Any = getattr(forkserver, "_forkserver", None)
-            is_known = hasattr(server, "_stop") and hasattr(server, "_forkserver_pid")
+            is_known = all(hasattr(server, name) for name in ("_forkserver_pid", "_forkserver_alive_fd", "_preload_modules"))
             if self._server is None and sys.platform == "linux" and is_known and server._forkserver_pid is None:
-                with _set({**environment, worker_preload.SETUP: self._setup}):
-                    forkserver.set_forkserver_preload([worker_preload.__name__])
-                    forkserver.ensure_running()
-                self._server = server
+                # nothing is imported from the folder that the user happens to be in
+                variables = {**environment, worker_preload.SETUP: self._setup, "PYTHONSAFEPATH": "1"}
+                preload = server._preload_modules
+                try:
+                    with _set(variables):
+                        resource_tracker.ensure_running()  # which lets interrupts through again
+                    with _set(variables), _interrupts_held_back():
+                        forkserver.set_forkserver_preload([worker_preload.__name__])
+                        forkserver.ensure_running()
+                    self._server = server
+                except OSError:
+                    server._forkserver_pid = None
+                finally:
+                    server._preload_modules = preload
 
     @property
-    def method(self) -> Literal["forkserver", "spawn"]:
-        """How workers start, in the words of multiprocessing."""
-        return "spawn" if self._server is None else "forkserver"
+    def is_there(self) -> bool:
+        """Whether workers can be forked from it."""
+        return self._server is not None
+
+
+def _ended(server: Any) -> None:
+    """Has the process end by itself, at once if it has no children left and has loaded all; forgets it either way."""
+    pid, address = server._forkserver_pid, server._forkserver_address
+    server._forkserver_pid = server._forkserver_address = None
+    with contextlib.suppress(OSError, TypeError):
+        os.close(server._forkserver_alive_fd)
+    server._forkserver_alive_fd = None
+    with contextlib.suppress(OSError, TypeError):  # ChildProcessError where a program ignores what becomes of its children
+        until = time.monotonic() + PATIENCE
+        while os.waitpid(pid, os.WNOHANG) == (0, 0) and time.monotonic() < until:
+            time.sleep(0.01)
+    with contextlib.suppress(OSError, TypeError):
+        Path(address).unlink()
+
+
+@contextlib.contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """What starts meanwhile hears no Ctrl-C until it says so; one that comes reaches this process afterwards."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager

@@ -14,6 +14,8 @@ OURS = ("distributed.nanny", "distributed.worker", "kinetree.pipeline.running.cl
 def load(setup: str) -> None:
     """Imports our own part and calls the product's; what fails, fails again in the worker that needs it, and is told there."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # what becomes of workers on Ctrl-C is for the run to say
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    os.environ.pop("PYTHONSAFEPATH", None)  # it is for this process alone
     gc.disable()  # nothing of what is imported is garbage
     for name in OURS:
         importlib.import_module(name)

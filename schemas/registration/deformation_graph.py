@@ -6,7 +6,22 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints, Params
-from kinetree.schemas.dims import BLOCK, CORNER, EDGE, END, FACE, INFLUENCE, NEIGHBOUR, NODE, PAIRING, SAMPLE, VERTEX, XYZ
+from kinetree.schemas.dims import (
+    BLOCK,
+    CORNER,
+    EDGE,
+    END,
+    FACE,
+    INFLUENCE,
+    LEAF,
+    NEIGHBOUR,
+    NODE,
+    PAIRING,
+    SAMPLE,
+    STATION,
+    VERTEX,
+    XYZ,
+)
 
 
 class DeformationGraphParams(Params):
@@ -56,6 +71,8 @@ class DeformationGraph(Artifact):
     """Vertices that stand for the surface in a fit, ascending."""
     size: float
     """Root of the area, length."""
+    stems: Annotated[Floats, Array("float64", LEAF, STATION, XYZ, unit="length")]
+    """Points along the limbs at rest, from root to tip; none where there is nothing to fit."""
     degree: Annotated[Ints, Array("int32", VERTEX)]
     """Neighbours of every vertex over edges."""
     ring: Annotated[Ints, Array("int32", NEIGHBOUR)]

@@ -6,7 +6,6 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.array import Index
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
-from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
@@ -38,7 +37,6 @@ def tracking(
     previous: Tracking | None,
     params: TrackingParams,
     index: Index,
-    reference: Reference,
     tips: Extrema,
     vertex_colour: VertexColour = NO_COLOUR,
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
@@ -53,7 +51,7 @@ def tracking(
     # few points show too little of colours, and say nothing of where a body stands in another take
     near, attempt, swung = None if is_entry or has_colours else near_pose(cloud, last, points), 0, None
     if near is not None and is_lost(near, previous.usual):
-        near, swung = _near_by_limbs(cloud, last, near, points, (reference, tips))
+        near, swung = _near_by_limbs(cloud, last, near, points, deformation_graph, tips)
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
@@ -66,11 +64,10 @@ def tracking(
 
 
 def _near_by_limbs(
-    cloud: Nodes, last: Pose, near: NearPose, points: Target, limbs: tuple[Reference, Extrema]
+    cloud: Nodes, last: Pose, near: NearPose, points: Target, rest: DeformationGraph, tips: Extrema
 ) -> tuple[NearPose, Pose | None]:
     """The near pose or that from swung limbs, whichever explains more; and the pose with swung limbs, if there are any."""
-    reference, tips = limbs
-    swung = limb_swing.swung(cloud, last, np.array(reference.stems), tips.stems, np.array(tips.centre))
+    swung = limb_swing.swung(cloud, last, np.array(rest.stems), tips.stems, np.array(tips.centre))
     if swung is None:
         return near, None
     return min(near, near_pose(cloud, swung, points), key=lambda one: one.distant), swung

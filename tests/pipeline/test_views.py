@@ -12,7 +12,7 @@ from kinetree.schemas.array import Artifact
 from kinetree.tasks import VIEWS
 from kinetree.tasks.methods import METHODS
 
-WORDED = {"paper_figures", "reeb_figures", "report"}
+WORDED = {"evaluation_figures", "paper_figures", "reeb_figures", "report"}
 """Tasks whose artifacts hold sentences for people."""
 
 

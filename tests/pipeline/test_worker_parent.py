@@ -2,7 +2,7 @@
 
 import os
 import sys
-from multiprocessing import forkserver
+from multiprocessing import forkserver, get_context
 from pathlib import Path
 
 import pytest
@@ -32,7 +32,7 @@ def test_workers_are_forked_and_have_what_the_product_has_loaded():
 
 def test_without_anything_to_compute_there_is_none():
     with WorkerParent() as parent:
-        assert parent.method == "spawn"
+        assert not parent.is_there
         assert forkserver._forkserver._forkserver_pid is None
 
 
@@ -42,7 +42,7 @@ def test_a_server_of_somebody_else_is_left_alone():
     try:
         with WorkerParent() as parent:
             parent.begin({})
-            assert parent.method == "spawn"
+            assert not parent.is_there
         os.kill(server, 0)
     finally:
         forkserver._forkserver._stop()
@@ -77,6 +77,42 @@ def test_it_is_begun_before_a_file_is_read_for_the_first_time(toys, tmp_path):
     for _ in range(2):
         files.parts(path, "kind", lambda _: (told.append("read"), ["digest"])[1])
     assert told[:2] == ["unknown", "read"]
+
+
+def test_nothing_is_imported_from_the_folder_that_the_user_is_in(tmp_path, monkeypatch):
+    for name in ("distributed", "colorsys", "trimesh"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit")
+    monkeypatch.chdir(tmp_path)
+    with WorkerParent("colorsys:rgb_to_hls") as parent, launcher(ONE, None, parent):
+        file = Client.current().submit(eval, "__import__('sys').modules['colorsys'].__file__").result(timeout=60)
+        assert not Path(file).is_relative_to(tmp_path)
+        assert "PYTHONSAFEPATH" not in Client.current().submit(eval, "dict(__import__('os').environ)").result(timeout=60)
+
+
+def test_where_the_system_has_no_socket_for_it_workers_start_as_dask_starts_them(monkeypatch):
+    def refused():
+        raise OSError("AF_UNIX path too long")
+
+    monkeypatch.setattr(forkserver, "ensure_running", refused)
+    with WorkerParent() as parent, launcher(ONE, None, parent):
+        assert not parent.is_there
+        assert Client.current().submit(int, "3").result(timeout=60) == 3
+
+
+def test_it_ends_soon_while_others_have_children_of_it_and_leaves_what_they_had_set():
+    before = forkserver._forkserver._preload_modules
+    with WorkerParent() as parent:
+        parent.begin({})
+        assert forkserver._forkserver._preload_modules == before
+        server = forkserver._forkserver._forkserver_pid
+        with get_context("forkserver").Pool(1) as pool:
+            assert pool.apply(int, ("3",)) == 3
+            began = forkserver._forkserver._forkserver_address
+            parent.__exit__(None, None, None)
+            assert pool.apply(int, ("4",)) == 4
+            assert forkserver._forkserver._forkserver_pid is None
+    os.waitpid(server, 0)  # it has gone with the last of them
+    assert not Path(began).exists()
 
 
 @pytest.mark.parametrize("executor", ["threads", "processes"])

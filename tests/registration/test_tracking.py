@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from shipped import FITTING
 from stepwise import along, walk
 
-from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.array import Floats
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.tasks.numerics.registration import first_fit as numeric_first_fit
@@ -76,7 +76,6 @@ def test_frame_that_is_another_pose_entirely_leaves_much_uncovered_and_the_chain
         take_entries=made.take_entries,
         index=made.numbers,
         params=TrackingParams(),
-        reference=made.reference,
         tips=made.extrema,
     )
     assert again[strange].attempt > 0, "few points show that a limb is lost, and all samples are asked"
@@ -93,11 +92,11 @@ def test_a_limb_far_from_where_it_was_is_brought_to_where_the_frame_shows_it_and
     assert elsewhere is not None
     last = rest.model_copy(update={"rotation": elsewhere.rotation, "translation": elsewhere.translation})
 
-    def from_there(reference: Reference) -> Tracking:
-        told = made.mesh[at], made.deformation_graph, made.take_entries, last, TrackingParams(), (at,)
-        return tracking(*told, reference, made.extrema[at])
+    def from_there(limbs: Floats) -> Tracking:
+        rest = made.deformation_graph.model_copy(update={"stems": limbs})
+        return tracking(made.mesh[at], rest, made.take_entries, last, TrackingParams(), (at,), made.extrema[at])
 
-    unknown, known = (from_there(made.reference.model_copy(update={"stems": limbs})) for limbs in (stems[:0], stems))
+    unknown, known = (from_there(limbs) for limbs in (stems[:0], stems))
     assert unknown.attempt > 0
     assert known.attempt == 0
     assert known.unexplained < 0.003
@@ -132,7 +131,6 @@ def test_every_parameter_reaches_every_fit_with_all_samples(
         take_entries=made.take_entries,
         index=made.numbers,
         params=OTHERS,
-        reference=made.reference,
         tips=made.extrema,
     )
     assert [values(fitting) for fitting in fits] == [OTHERS.model_dump()], "of a frame that few points lose"
@@ -175,9 +173,7 @@ def test_fits_where_a_take_is_entered_know_what_is_far_from_the_body_in_all_fram
         return fitted(*given, distant=distant)
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
-    tracking(
-        made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,), made.reference, made.extrema[at]
-    )
+    tracking(made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,), made.extrema[at])
     assert told == [0.05, 0.05]
 
 

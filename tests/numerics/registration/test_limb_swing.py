@@ -1,9 +1,11 @@
 """Laws of swung limbs: points in the body go with its nodes, and limbs reach stems that no fit from the last pose reaches."""
 
 import numpy as np
+import pytest
 from limbs import LENGTH, bent, rotation, tube
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
+from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
 from kinetree.tasks.numerics.registration.limb_swing import carried, stem_points, swung
 from kinetree.tasks.numerics.registration.near_pose import near_pose, thinned_body, thinned_frame
 
@@ -64,3 +66,16 @@ def test_without_limbs_nothing_is_swung(body):
     stems, centre = seen(0.3)
     assert swung(body, at_rest(body), NONE, stems, centre) is None
     assert swung(body, at_rest(body), STEMS, NONE, centre) is None
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.0])
+@pytest.mark.parametrize("away", [0.0, 300.0])
+def test_a_piece_that_lies_apart_and_has_no_limb_goes_along_with_the_body(turn, away):
+    R, shift = rotation((1, 2, 0), turn), away * np.array([1.0, -2.0, 0.5])
+    both = np.concatenate([V, 0.1 * V + [2.0, 0.0, 0.0]]) @ R.T + shift
+    graph = deformation_graph(both, np.concatenate([F, F + len(V)]), DeformationGraphSettings(200, 0.4, 0.08, 0.15, 8))
+    stems, apart = STEMS @ R.T + shift, np.arange(len(both)) >= len(V)
+    raised = np.array([0.0, 0.5, 0.0])
+    centre = shape(graph, at_rest(graph))[0][graph.sample].mean(axis=0)
+    found = swung(graph, at_rest(graph), stems, stems + raised, centre + raised)
+    np.testing.assert_allclose(shape(graph, found)[0][apart], both[apart] + raised, atol=0.02 * LENGTH)
