@@ -17,6 +17,8 @@ from typing import Any
 
 from kinetree.pipeline.running import worker_preload
 
+CHOSEN = "DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD"
+"""The variable by which a user says how dask starts processes; then there is none."""
 PATIENCE = 1.0
 """Seconds in which its end is waited for. One that is still importing ends a little later, and one of which another part of
 this program has children ends after them."""
@@ -32,6 +34,7 @@ class WorkerParent:
         self._setup = setup or ""
         self._lock = threading.Lock()
         self._server: Any = None
+        self._preload: list[str] = []
 
     def __enter__(self) -> "WorkerParent":
         return self
@@ -40,21 +43,23 @@ class WorkerParent:
         with self._lock:
             if self._server is not None:
                 _ended(self._server)
+                self._server._preload_modules = self._preload  # dask has set its own since
                 self._server = None
 
     def begin(self, environment: Mapping[str, str]) -> None:
         """Starts the process with these variables set, unless it is there; returns at once.
 
-        There is none but on Linux, none where this program has a server of that kind already, which is somebody else's, and
-        none where the system refuses its socket (a long path of temporary files).
+        There is none but on Linux and where dask starts processes as it likes; none where this program has a server of that
+        kind already, which is somebody else's; and none where the system refuses its socket (a long path of temporary files).
         """
         with self._lock:
             server: Any = getattr(forkserver, "_forkserver", None)
             is_known = all(hasattr(server, name) for name in ("_forkserver_pid", "_forkserver_alive_fd", "_preload_modules"))
-            if self._server is None and sys.platform == "linux" and is_known and server._forkserver_pid is None:
+            is_wanted = sys.platform == "linux" and CHOSEN not in os.environ
+            if self._server is None and is_wanted and is_known and server._forkserver_pid is None:
                 # nothing is imported from the folder that the user happens to be in
                 variables = {**environment, worker_preload.SETUP: self._setup, "PYTHONSAFEPATH": "1"}
-                preload = server._preload_modules
+                self._preload = server._preload_modules
                 try:
                     with _set(variables):
                         resource_tracker.ensure_running()  # which lets interrupts through again
@@ -63,9 +68,7 @@ class WorkerParent:
                         forkserver.ensure_running()
                     self._server = server
                 except OSError:
-                    server._forkserver_pid = None
-                finally:
-                    server._preload_modules = preload
+                    server._forkserver_pid, server._preload_modules = None, self._preload
 
     @property
     def is_there(self) -> bool:

@@ -1,6 +1,7 @@
 """Laws of the process that workers are forked from: it loads what they need, is begun for a reason, and ends with the run."""
 
 import os
+import signal
 import sys
 from multiprocessing import forkserver, get_context
 from pathlib import Path
@@ -89,6 +90,24 @@ def test_nothing_is_imported_from_the_folder_that_the_user_is_in(tmp_path, monke
         assert "PYTHONSAFEPATH" not in Client.current().submit(eval, "dict(__import__('os').environ)").result(timeout=60)
 
 
+def test_a_user_who_says_how_dask_starts_processes_has_none(monkeypatch):
+    monkeypatch.setenv("DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD", "spawn")
+    with WorkerParent() as parent:
+        parent.begin({})
+        assert not parent.is_there
+
+
+def test_a_program_that_ignores_what_becomes_of_its_children_sees_the_end(monkeypatch):
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with WorkerParent() as parent:
+            parent.begin({})
+            assert parent.is_there
+        assert forkserver._forkserver._forkserver_pid is None
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+
+
 def test_where_the_system_has_no_socket_for_it_workers_start_as_dask_starts_them(monkeypatch):
     def refused():
         raise OSError("AF_UNIX path too long")
@@ -103,12 +122,12 @@ def test_it_ends_soon_while_others_have_children_of_it_and_leaves_what_they_had_
     before = forkserver._forkserver._preload_modules
     with WorkerParent() as parent:
         parent.begin({})
-        assert forkserver._forkserver._preload_modules == before
         server = forkserver._forkserver._forkserver_pid
         with get_context("forkserver").Pool(1) as pool:
             assert pool.apply(int, ("3",)) == 3
             began = forkserver._forkserver._forkserver_address
             parent.__exit__(None, None, None)
+            assert forkserver._forkserver._preload_modules == before
             assert pool.apply(int, ("4",)) == 4
             assert forkserver._forkserver._forkserver_pid is None
     os.waitpid(server, 0)  # it has gone with the last of them
