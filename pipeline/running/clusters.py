@@ -33,7 +33,7 @@ REPLACE_SECONDS = 30.0
 IDLE_PATIENCE = 2.0
 """Seconds in which a worker with nothing to do ends by itself."""
 LEAST_MEMORY = 600_000_000
-"""Bytes that our own worker process may be limited to at least. It holds 210 MB when it is forked, most of it shared, and 441 MB
+"""Bytes that our own worker process may be limited to at least. It holds 210 MB when forked, most of it shared, and 441 MB
 with all tasks imported; at 80 % of its limit dask gives it no more work, at 95 % it is ended and started again, for ever."""
 WAITS = {"_data_producer": True}
 """Has a parcel wait at the scheduler until a worker has room for it: dask otherwise gives it at once to one that is busy, for
