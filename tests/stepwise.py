@@ -127,7 +127,6 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         take_entries=made.take_entries,
         index=made.numbers,
         params=TrackingParams(),
-        reference=made.reference,
         tips=made.extrema,
     )
     made.first_fit = {t: first_fit(m, graph, made.tracking[t]) for t, m in meshes.items()}
