@@ -29,8 +29,10 @@ class LimbSwingSettings(NamedTuple):
     rounds: int = 10
     """Rounds in which nodes are moved and then turned. With 5, 20 and 40 as many limbs of a dance and a wolf come back."""
     held: float = 1e-3
-    """Share of its former rotation in a node's new one, and weight of its place against that of one edge: a piece that lies
-    apart and has no limb goes along with the body as a whole."""
+    """Share of its former rotation in a node's new one, so that a node without edges has one."""
+    anchor: float = 1e-6
+    """Weight of a node's place against that of one edge: too little to be seen but in a piece that lies apart and has no limb,
+    which goes along with the body as a whole."""
 
 
 class StemPoints(NamedTuple):
@@ -106,13 +108,13 @@ def _reached(graph: DeformationGraph, pose: Pose, points: StemPoints, goal: Floa
     M = np.zeros((len(goal), nodes))
     np.put_along_axis(M, points.node, points.weight, axis=1)
     weight = settings.weight * nodes / len(goal)
-    solver = cho_factor((2.0 * difference.T @ difference).toarray() + weight * M.T @ M + settings.held * np.eye(nodes))
+    solver = cho_factor((2.0 * difference.T @ difference).toarray() + weight * M.T @ M + settings.anchor * np.eye(nodes))
     R, p = np.array(pose.rotation), np.array(pose.translation)
     along = p + (goal - carried(graph, pose, points)).mean(axis=0)
     floor = settings.held * np.square(e).sum() / nodes
     for _ in range(settings.rounds):
         both = np.einsum("exy,ey->ex", R[a] + R[b], e)
-        p = cho_solve(solver, difference.T @ both + weight * M.T @ (goal - _turned(graph, R, points)) + settings.held * along)
+        p = cho_solve(solver, difference.T @ both + weight * M.T @ (goal - _turned(graph, R, points)) + settings.anchor * along)
         outer = np.einsum("ex,ey->exy", difference @ p, e).reshape(-1, 9)
         R = nearest_rotation((abs(difference).T @ outer).reshape(-1, 3, 3) + floor * R)
     return Pose(R, p)
