@@ -34,6 +34,7 @@ from kinetree.pipeline.node import Node, parse, project
 from kinetree.pipeline.planning.ready import urgency
 from kinetree.pipeline.planning.together import STRETCH
 from kinetree.pipeline.running import execute
+from kinetree.pipeline.storage.store import Record
 from kinetree.pipeline.task import Space
 
 WORKERS = (1, 2, 4, 8, 16, 64)
@@ -109,14 +110,13 @@ def computed(folder: Path, frames: int, vertices: int) -> Pipeline:
 
 
 def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
-    """The nodes that the last runs into a folder computed, of the named tasks and what they need, with the seconds on record.
+    """The nodes of the last run into a folder, of the named tasks and what they need, with the seconds on record.
 
     raises : ValueError where nothing is on record
     """
     graph = pipeline.tasks.until(names)
-    records = History.of(pipeline.store, pipeline.config).records().items()
     found = {}
-    for label, record in records:
+    for label, record in last_records(pipeline).items():
         with contextlib.suppress(UnknownNodeError):  # of a task that is no more, or that ran over another dimension then
             found[parse(label, graph)] = record
     if not found:
@@ -132,6 +132,15 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
         before = frozenset(n for n in read if n in found and n != node)
         jobs[node] = Job(node, task.over, urgent[node.task], node.task in graph.aside, task.is_chain, record.seconds, before)
     return jobs
+
+
+def last_records(pipeline: Pipeline) -> dict[str, Record]:
+    """By label, the records of the nodes that the last run into a folder has; runs before it may have had others."""
+    history = History.of(pipeline.store, pipeline.config)
+    listed = [run for run in history.heads.of(history.output) if run["list"]]
+    labels = (pipeline.store.run_records.nodes(listed[-1]) or {}) if listed else {}
+    recalled = {label: history.recall(label) for label in labels}
+    return {label: record for label, record in recalled.items() if isinstance(record, Record)}
 
 
 def stretched(jobs: Jobs, times: int) -> Jobs:

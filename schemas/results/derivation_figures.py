@@ -4,4 +4,4 @@ from kinetree.schemas.results.figures import Figures
 
 
 class DerivationFigures(Figures):
-    """Cones, elimination, and the graph of parts."""
+    """The graph of parts."""

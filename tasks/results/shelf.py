@@ -8,6 +8,7 @@ from kinetree.tasks.results.bvh import bvh
 from kinetree.tasks.results.c3d import c3d
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
 from kinetree.tasks.results.complete_skeleton import complete_skeleton
+from kinetree.tasks.results.cut_figures import cut_figures
 from kinetree.tasks.results.derivation_figures import derivation_figures
 from kinetree.tasks.results.evaluation import evaluation
 from kinetree.tasks.results.evaluation_figures import evaluation_figures
@@ -69,7 +70,7 @@ RESULTS = (
     played_body,
     report,
 )
-FIGURES = (derivation_figures, named_figures, structure_figures)
+FIGURES = (cut_figures, derivation_figures, named_figures, structure_figures)
 FIGURES_2009 = (reeb_figures,)
 FIGURES_2014 = (paper_figures,)
 OVER_SEQUENCES = (outcomes, sequence_figures, sequence_table)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from results.rigged_bodies import spider
-from results.sample_derivation import parts_of, tree_of
+from results.sample_derivation import parts_of, reference_of, tree_of
 from results.sample_report import artifacts, judged, unjudged
 
 from kinetree.errors import ConfigError, UnknownNodeError
@@ -22,8 +22,9 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 @pytest.fixture(scope="module")
 def fetch() -> Any:
-    derived = {"rigid_parts": parts_of(spider()), "kinematic_tree": tree_of(spider())}
-    stored = artifacts() | {"evaluation": judged(spider())} | derived
+    body = spider()
+    derived = {"reference": reference_of(body), "rigid_parts": parts_of(body), "kinematic_tree": tree_of(body)}
+    stored = artifacts() | {"evaluation": judged(body)} | derived
     return lambda name, frame=None: stored[name] if frame is None else stored[name][frame]
 
 

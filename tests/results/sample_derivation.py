@@ -1,12 +1,21 @@
-"""How a skeleton was derived: rigid parts and a kinematic tree that fit a known skeleton."""
+"""How a skeleton was derived: reference, rigid parts and a kinematic tree that fit a known skeleton."""
 
 import numpy as np
 
+from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import ArticulatedBody, Skeleton
 
 RINGS = 6
+
+
+def reference_of(skeleton: Skeleton) -> Reference:
+    """The mesh that the skeleton's surface is, from its first frame."""
+    return Reference(
+        frames=skeleton.frames, frame=skeleton.frames[0], vertices=skeleton.vertices, faces=skeleton.faces, size=1.0,
+        fixed=True, leaves=0, free=True, stems=np.zeros((0, 4, 3)), score=np.zeros(len(skeleton.frames)),
+    )  # fmt: skip
 
 
 def parts_of(skeleton: Skeleton) -> RigidParts:

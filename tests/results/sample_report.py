@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from results.plain_names import plain
 from results.rigged_bodies import bars_of, skinned, spider
-from results.sample_derivation import parts_of, tree_of
+from results.sample_derivation import parts_of, reference_of, tree_of
 
 from kinetree.schemas.input.connectivity import Connectivity
 from kinetree.schemas.input.mesh import Cleaning, Mesh
@@ -30,6 +30,7 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.results.scene import evenly_spread
 from kinetree.tasks.results.alignment_figures import alignment_figures
 from kinetree.tasks.results.coarse_mesh import coarse_mesh
+from kinetree.tasks.results.cut_figures import cut_figures
 from kinetree.tasks.results.derivation_figures import derivation_figures
 from kinetree.tasks.results.evaluation_figures import evaluation_figures
 from kinetree.tasks.results.excerpt import excerpt
@@ -128,7 +129,8 @@ def derived(skeleton: Skeleton) -> StructureFigures:
     sequence = Sequence(frames=skeleton.frames, fps=skeleton.fps, unit=skeleton.unit)
     parts, tree = parts_of(skeleton), tree_of(skeleton)
     named = named_figures(parts, tree, plain(skeleton), sequence, UP)
-    return structure_figures(tree, derivation_figures(parts, tree, sequence, UP), named)
+    cut = cut_figures(reference_of(skeleton), parts, UP)
+    return structure_figures(tree, cut, derivation_figures(parts, tree, sequence, UP), named)
 
 
 def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:

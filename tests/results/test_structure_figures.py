@@ -5,9 +5,10 @@ import pytest
 from matplotlib.text import Text
 from results.plain_names import plain
 from results.rigged_bodies import spider
-from results.sample_derivation import parts_of, tree_of
+from results.sample_derivation import parts_of, reference_of, tree_of
 from results.sample_report import derived
 
+from kinetree.schemas.array import Artifact
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
@@ -22,9 +23,15 @@ def of(body: Skeleton) -> StructureFigures:
     return derived(body)
 
 
+def fetched(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> dict[str, Artifact]:
+    """What the pictures read, by name."""
+    derived = {"reference": reference_of(body), "rigid_parts": parts, "kinematic_tree": tree}
+    return {"skeleton": body, "joint_names": plain(body), **derived}
+
+
 def words(body: Skeleton, parts: RigidParts, tree: KinematicTree) -> list[str]:
     """All text of every figure."""
-    artifacts = {"skeleton": body, "rigid_parts": parts, "kinematic_tree": tree, "joint_names": plain(body)}
+    artifacts = fetched(body, parts, tree)
     figures = [draw(lambda name, frame=None: artifacts[name], []) for draw in FIGURES]
     return [" ".join(text.get_text() for text in figure.findobj(Text)) for figure in figures]
 
@@ -43,8 +50,7 @@ def test_every_picture_is_a_file_of_its_kind_and_variation_is_that_of_the_tree()
 def test_figures_are_those_of_the_finished_skeleton() -> None:
     """They are drawn before poses are refined, and show none."""
     body = spider()
-    parts, tree = parts_of(body), tree_of(body)
-    artifacts = {"skeleton": body, "rigid_parts": parts, "kinematic_tree": tree, "joint_names": plain(body)}
+    artifacts = fetched(body, parts_of(body), tree_of(body))
     drawn = [rendered(draw(lambda name, frame=None: artifacts[name], [])) for draw in FIGURES]
     assert b"".join(drawn) == of(body).content.tobytes()
 

@@ -31,13 +31,13 @@ def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
     Pale where several cones lie and none has the vertex, dark where there is none.
     """
-    skeleton, parts = fetch("skeleton"), fetch("rigid_parts")
-    V, axis = skeleton.vertices, view([skeleton.vertices], up)
+    reference, parts = fetch("reference"), fetch("rigid_parts")
+    V, axis = reference.vertices, view([reference.vertices], up)
     figure, row = blank(8.0, 4.8, 2)
-    colour = _ring_colours(parts, skeleton.faces)
+    colour = _ring_colours(parts, reference.faces)
     for axes, turn, side in zip(row, (axis, axis * [-1, 1, -1]), ("one side", "the other"), strict=True):
         X = V @ turn
-        surface(axes, X, skeleton.faces, colour)
+        surface(axes, X, reference.faces, colour)
         for k, tip in enumerate(parts.tip):
             axes.plot(*X[tip, :2], "o", color="white", mec="black", mew=1.0, ms=6, zorder=4)
             axes.annotate(f"{k}", X[tip, :2], xytext=(5, 5), textcoords="offset points", fontsize=8, bbox=LABEL_BOX)
@@ -74,11 +74,11 @@ def merging(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def elimination(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Left, all parts of the first cut; middle, the parts that the elimination left; right, what removing each one cost."""
-    skeleton, parts = fetch("skeleton"), fetch("rigid_parts")
-    axis = view([skeleton.vertices], up)
+    reference, parts = fetch("reference"), fetch("rigid_parts")
+    axis = view([reference.vertices], up)
     figure, (before, after, curve) = blank(11.0, 4.6, 3)
     for axes, label, of in ((before, parts.initial, None), (after, parts.label, parts.origin)):
-        surface(axes, skeleton.vertices @ axis, skeleton.faces, _part_colours(label, skeleton.faces, of))
+        surface(axes, reference.vertices @ axis, reference.faces, _part_colours(label, reference.faces, of))
     before.set_title(f"first cut: {int(parts.initial.max()) + 1} parts", fontsize=9)
     after.set_title(f"{len(parts.origin)} parts left, {len(parts.removed)} removed", fontsize=9)
     number = np.arange(1, len(parts.cost) + 1)
