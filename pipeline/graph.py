@@ -14,7 +14,7 @@ from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWrite
 from kinetree.pipeline.identity.key import code_parts, keep_code
 from kinetree.pipeline.suggest import nearest
 from kinetree.pipeline.task import Argument, Space, Task, space
-from kinetree.schemas.array import Artifact
+from kinetree.schemas.array import Artifact, Params
 
 if TYPE_CHECKING:  # a graph that is kept in order does without
     import networkx as nx
@@ -252,12 +252,16 @@ def _every_edge_has_a_writer(graph: Graph) -> None:
 
 def _blocks_are_those_of_tasks(graph: Graph) -> None:
     for task in graph.tasks:
-        owner = graph.by_name.get(task.block)
-        if task.params is not None and (owner is None or owner.params is not task.params):
+        if task.params is not None and not _sets(graph.by_name.get(task.block), task.params):
             raise GraphError(
                 f"{task.name} ({task.where}): is set by the block {task.block}, but there is no task of that name"
                 f" with {task.params.__name__}"
             )
+
+
+def _sets(owner: AnyTask | None, params: type[Params]) -> bool:
+    """Whether the block of that name is this task's own and has all fields of the params."""
+    return owner is not None and owner.params is not None and owner.block == owner.name and issubclass(owner.params, params)
 
 
 def _every_space_is_opened_once(graph: Graph) -> None:

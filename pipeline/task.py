@@ -162,7 +162,8 @@ def task(
                  process cannot be ended: it is given up and goes on. The executor `sync` has no limit
     memory     : bytes that one node needs; workers that declare a resource `memory` compute no more at a time than fits.
                  None takes the most that a node of the task was measured to need
-    block      : the block of the configuration that sets `params`, where that is another task's with the same class of params
+    block      : the block of the configuration that sets `params`, where that is another task's with the same class of params,
+                 or with one that extends it: the task sees the fields of its own class alone
     raises     : GraphError, at import, where the signature does not say enough
     """
 

@@ -196,7 +196,7 @@ def tasks(as_json: AsJson = False) -> None:
         out.print(f"[bold]{row['task']}[/bold]: {reads} → {row['writes']}{per}{named}  [dim]{escape(row['paper'])}[/dim]")
         out.print(f"    {escape(row['summary'])}")
         if row["set_by"]:
-            out.print(f"    set by [cyan]{row['set_by']}[/cyan]")
+            out.print(f"    set by [cyan]{', '.join(row['set_by'])}[/cyan]")
         for name, param in row["params"].items():
             out.print(f"    [cyan]{row['task']}.{name}[/cyan] = {escape(str(param['default']))}  {escape(param['what'])}")
 
@@ -219,7 +219,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         "along": task.traversed,
         "writes": task.returns.__name__,
         "params": {n: {"default": f.default, "what": texts.get(n, "")} for n, f in fields.items()},
-        "set_by": "" if task.block == task.name or task.params is None else task.block,
+        "set_by": [f"{task.block}.{n}" for n in task.params.model_fields] if task.params and not fields else [],
         "on_request": task.on_request,
         "paper": task.paper,
         "summary": task.summary,

@@ -1,8 +1,9 @@
 """Whether the store holds what a node would compute, and if not, why: its key, and how that differs from earlier ones."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
-from kinetree.pipeline.graph import Graph
+from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.identity.key import code_digest, code_parts, node_key
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
@@ -29,7 +30,7 @@ class Freshness:
         distrusted: MadeWith,
     ) -> None:
         self.graph = graph
-        self.params = {name: p.model_dump(mode="json") for name, p in params.items()}
+        self.params = {task.name: _asked_params(task, params) for task in graph.tasks}
         self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self.force = force
         self.recall = recall
@@ -73,7 +74,7 @@ class Freshness:
             for argument, nodes in entry.inputs or ()
         ]
         return Work(
-            self.params.get(entry.task.block, {}),
+            self.params[entry.node.task],
             code_parts(entry.task.module, entry.task.name),
             inputs,
             asked_index(entry),
@@ -96,6 +97,13 @@ class Freshness:
         if then == "lost":
             return (Reason("artifact", "its record is missing or damaged"),)
         return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)
+
+
+def _asked_params(task: AnyTask, params: Mapping[str, Params]) -> dict[str, Any]:
+    """What a task sees of its block: the fields of its own class of params."""
+    if task.params is None or task.block not in params:
+        return {}
+    return params[task.block].model_dump(mode="json", include=set(task.params.model_fields))
 
 
 def asked_index(entry: Entry) -> dict[str, int] | None:

@@ -38,7 +38,7 @@ def steps_of(schedule: Schedule, parcel: list[Entry]) -> tuple[Step, ...]:
             task=f"{entry.task.module}:{entry.task.name}",
             index=dict(zip(entry.task.over, entry.node.at, strict=True)),
             code=known.code[entry.node.task],
-            params=known.params.get(entry.task.block, {}),
+            params=known.params[entry.node.task],
             inputs=tuple(
                 Input(a.name, a.form, tuple(_ref(schedule, place, n) for n in nodes), known.numbers(entry, a, nodes))
                 for a, nodes in entry.inputs or ()

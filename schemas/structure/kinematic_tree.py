@@ -15,13 +15,18 @@ MOST_TOGETHER = 2
 """Uncertain frames that are refined by one task, at most."""
 
 
-class JointParams(Params):
-    """What counts as a joint."""
+class PruningParams(Params):
+    """How much a joint turns."""
 
     degrees: float = Field(default=6.0, ge=0, le=180)
     """A joint turns by at least this many degrees between some two frames, or its parts are one."""
     ratio: float = Field(default=0.8, ge=0)
     """Displacement that turning gives a joint's smaller part, in drifts of the joint; below it the part slides, like cloth."""
+
+
+class JointParams(PruningParams):
+    """What counts as a joint."""
+
     clear_motion: float = Field(default=5.0, ge=0)
     """Displacement, in roughnesses of its surface, from which on a part moves clearly, so that its joint is not tested."""
     misfit_ratio: float = Field(default=1.6, ge=0)

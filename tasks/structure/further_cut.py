@@ -11,7 +11,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import PruningParams
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
@@ -31,7 +31,7 @@ def further_cut(
     reference: Reference,
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
-    params: KinematicTreeParams,
+    params: PruningParams,
     index: Index,
 ) -> FurtherCut:
     """Divides the surface as it lies in another frame, by the settings of `rigid_parts`, and joins its parts (ours)."""

@@ -10,7 +10,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import JointParams, KinematicTree, KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import JointParams, KinematicTree, KinematicTreeParams, PruningParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.geometry.surface import surface_areas
@@ -85,6 +85,6 @@ def evidence_settings(params: JointParams) -> JointEvidenceSettings:
     return JointEvidenceSettings(params.clear_motion, params.misfit_ratio, params.misfit_ratio_if_moving)
 
 
-def tree_settings(params: JointParams) -> KinematicTreeSettings:
+def tree_settings(params: PruningParams) -> KinematicTreeSettings:
     """How parts become joints."""
     return KinematicTreeSettings(PruningSettings(params.degrees, params.ratio))

@@ -262,3 +262,45 @@ GRAPH = Graph.of((source, row, link, mark))
     assert "mark" not in toys.pipeline().config.params
     assert "mark" in toys.run(row={"first": 2}).counts
     assert toys.pipeline(row={"first": 2}).artifact("mark").first == 2
+
+
+def test_of_the_block_of_another_a_task_sees_the_fields_of_its_own_params(toys):
+    marked = '''
+
+class Mark(Artifact):
+    """What one parameter of the row says."""
+
+    first: int
+    """Frame number."""
+
+
+@task(block="row")
+def mark(source: tuple[Source, ...], params: StartParams) -> Mark:
+    assert not hasattr(params, "label")
+    return Mark(first=params.first)
+
+
+GRAPH = Graph.of((source, row, link, mark))
+'''
+    start = "class RowParams(Params):"
+    extended = '''class StartParams(Params):
+    """Where it starts."""
+
+    first: int = 0
+    """Frame number."""
+
+
+class RowParams(StartParams):
+    """Which end is first, and what it is called."""
+
+    label: str = ""
+    """Not read."""'''
+    before, _, after = CHAIN.replace("range(2000)", "range(3)").partition(start)
+    text = before + extended + after.partition('"""Frame number."""')[2]
+    (toys.folder / toys.name / "chain.py").write_text(text + marked)
+    toys.main = "chain"
+    toys.run()
+    stale = lambda **row: {n.task for n in toys.pipeline(row=row).plan().nodes if n.state == "stale"}  # noqa: E731
+    assert "row" in stale(label="second")
+    assert "mark" not in stale(label="second")
+    assert "mark" in stale(first=2)

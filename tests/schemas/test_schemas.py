@@ -93,7 +93,8 @@ def test_task_artifact_and_params_share_one_stem(name):
         assert task.returns.__module__ == f"kinetree.schemas.{place}.{stem}"
     if task.params is not None:
         owner = TASKS[task.block]  # the task itself, or another whose block sets both
-        assert task.params.__name__.lower() == f"{owner.name.replace('_', '')}params"
+        assert owner.params.__name__.lower() == f"{owner.name.replace('_', '')}params"
+        assert issubclass(owner.params, task.params)
         if owner is task:
             assert task.params.__module__ == f"kinetree.schemas.{place}.{stem}"
 

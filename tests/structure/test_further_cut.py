@@ -7,7 +7,7 @@ from articulated import three_arms
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import PruningParams
 from kinetree.schemas.structure.rigid_parts import RigidPartsParams
 from kinetree.tasks.methods import METHODS
 from kinetree.tasks.numerics.geometry.surface import surface_areas
@@ -23,7 +23,7 @@ def cut(frame: int, **params: float) -> FurtherCut:
     body = three_arms()
     reference, aligned, leaves = given(body.V, body.F, body.x)
     poses = CutPoses(frames=(frame,), settings=RigidPartsParams(**params))
-    return further_cut(poses, reference, aligned, leaves, KinematicTreeParams(), (frame,))
+    return further_cut(poses, reference, aligned, leaves, PruningParams(), (frame,))
 
 
 def doubted(trust: float, **params: float) -> tuple[FurtherCut, np.ndarray]:
@@ -32,7 +32,7 @@ def doubted(trust: float, **params: float) -> tuple[FurtherCut, np.ndarray]:
     reference, certain, leaves = given(body.V, body.F, body.x)
     trusted = {"confidence": np.full(len(body.V), trust)}
     aligned = {t: Alignment(**{**a.plain(), **a.arrays(), **trusted}) for t, a in certain.items()}
-    poses, chosen = CutPoses(frames=(frame,), settings=RigidPartsParams()), KinematicTreeParams(**params)
+    poses, chosen = CutPoses(frames=(frame,), settings=RigidPartsParams()), PruningParams(**params)
     found = further_cut(poses, reference, aligned, leaves, chosen, (frame,))
     at = leaves.frames.index(reference.frame)
     ends = leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept)
@@ -66,8 +66,11 @@ def test_its_joints_are_carried_through_all_frames_before_the_tree_is_made() -> 
     np.testing.assert_array_equal(found.joints, alone)
 
 
-def test_what_is_a_joint_is_said_by_the_block_of_the_tree() -> None:
-    assert METHODS["mesoscopic"].by_name["further_cut"].block == "kinematic_tree"
+def test_of_the_block_of_the_tree_it_sees_how_much_a_joint_turns_and_nothing_else() -> None:
+    task = METHODS["mesoscopic"].by_name["further_cut"]
+    assert task.block == "kinematic_tree"
+    assert task.params is not None
+    assert set(task.params.model_fields) == {"degrees", "ratio"}
     assert doubted(0.9, degrees=170.0)[0].joints.shape[1] == 0
 
 
