@@ -37,13 +37,15 @@ from kinetree.tasks.numerics.input.synth.body import Body
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.trees import random_tree
 from kinetree.tasks.numerics.results.evaluation.matching import joint_errors, matching
+from kinetree.tasks.numerics.structure.first_tree import first_tree
 from kinetree.tasks.numerics.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 from kinetree.tasks.numerics.structure.pruning import pruned
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
+from kinetree.tasks.numerics.structure.tree_joints import Cut
 from kinetree.tasks.numerics.topology.extrema import extrema
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
-from kinetree.tasks.structure.kinematic_tree import tree_settings
+from kinetree.tasks.structure.first_tree import tree_settings
 from kinetree.tasks.structure.rigid_parts import parts_settings
 
 PARTS, TREE = parts_settings(RigidPartsParams()), tree_settings(KinematicTreeParams())
@@ -168,10 +170,10 @@ def stages(case: Case) -> tuple[dict[str, Floats], float, float]:
     confidence = np.ones(case.x.shape[:2]) if case.group == "aligned" else None
     found = rigid_parts(case.V, case.F, case.x, confidence, leaves=tips, settings=PARTS)
     parted = time.process_time()
-    known = case.V, case.F, case.x, area, found.label, found.R, found.t, found.residual, tips, confidence
-    skeleton, _ = kinematic_tree(*known, settings=TREE)
+    body, cut = MovingSurface(case.V, case.F, case.x, area), Cut(case.V, found.label, found.R, found.t, found.residual)
+    skeleton, _ = kinematic_tree(body, first_tree(body, cut, tips, confidence, settings=TREE), tips, confidence, settings=TREE)
     done = time.process_time()
-    body, held = MovingSurface(case.V, case.F, case.x, area), MovingParts(found.label, found.R, found.t, found.residual)
+    held = MovingParts(*cut[1:])
     left = pruned(body, held, tips, settings=TREE.pruning)
     turning = np.array([kind == "joint" for kind in skeleton.kinds])
     joints = {

@@ -1,12 +1,25 @@
 """A body that is followed without error, as the tasks of the shelf `structure` read it."""
 
 import numpy as np
+from articulated import Known
 
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 
 FIRST = 10
+
+
+def rigid(body: Known, frames: tuple[int, ...]) -> RigidParts:
+    """The true parts; how they were cut decides nothing."""
+    none = np.zeros(len(body.V), int)
+    return RigidParts(
+        frames=frames, label=body.label, rigid=np.ones(len(body.V)), rotation=body.R, translation=body.t,
+        residual=body.residual, tip=none[:0], cone=none - 1, ring=none - 1, run=np.zeros((0, 4), int), merge=np.zeros((0, 4)),
+        merge_threshold=0.002, initial=body.label, removed=none[:0], cost=np.zeros(0), cost_threshold=0.0025,
+        origin=np.arange(body.R.shape[1]),
+    )  # fmt: skip
 
 
 def given(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference, dict[int, Alignment], Leaves]:

@@ -1,11 +1,14 @@
 """A tube with a joint near its end that the aligned vertices do not show, before frames that do."""
 
+from collections.abc import Callable
+
 import numpy as np
 from articulated import Known, chain, moved, swings
 from limbs import rotation
 from shipped import EVIDENCE, TREE
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
@@ -37,6 +40,15 @@ def found_in(body: Known) -> tuple[MovingSurface, TreeJoints]:
     return surface, tree_joints(surface, cut, tips, np.ones(body.x.shape[:2]), settings=TREE)
 
 
+def three_parts(frames: int = 24, scale: float = 1.0) -> tuple[MovingSurface, TreeJoints]:
+    """A tube of three parts in as many frames, aligned as it is."""
+    body = chain((0.0, END), turning()[:frames], along=60)
+    surface = moving(body)._replace(V=scale * body.V, x=scale * body.x, area=scale**2 * body.area)
+    cut = Cut(surface.V, body.label, body.R, scale * body.t, body.residual)
+    tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    return surface, tree_joints(surface, cut, tips, np.ones(body.x.shape[:2]), settings=TREE)
+
+
 def moving(body: Known) -> MovingSurface:
     return MovingSurface(body.V, body.F, body.x, body.area)
 
@@ -50,6 +62,10 @@ class Frames:
     def __call__(self, frame: int) -> tuple[Floats, Ints]:
         x = self.true.x[frame]
         return self.scale * (x + np.random.default_rng(frame).normal(0.0, self.noise, x.shape)), self.true.F
+
+    def prepared(self, size: float) -> Callable[[int], Target]:
+        """Their surfaces as pieces are laid on them; size is the root of the body's area."""
+        return lambda frame: Target.of(*self(frame), size)
 
     def evidence(self) -> FrameEvidence:
         of_aligned = np.zeros((len(self.true.x), len(chain((0.0,), along=60).V)))

@@ -107,16 +107,16 @@ def test_varied_setting_changes_results_and_computes_nothing_before_them(bench: 
 def test_task_that_a_setting_cannot_change_keeps_its_code_digest(bench: ModuleType) -> None:
     asked = {
         "rigid_parts": ("kinetree.tasks.structure.rigid_parts", 0),
-        "kinematic_tree": ("kinetree.tasks.structure.kinematic_tree", 1),
+        "first_tree": ("kinetree.tasks.structure.first_tree", 1),
     }
     before = {name: freshness.code_digest(module, name) for name, (module, _) in asked.items()}
     with bench.varied(named(bench, "structure/part_tree.PartTreeSettings.noise"), 0.5):
         for name, (module, changes) in asked.items():
             assert (freshness.code_digest(module, name) != before[name]) == bool(changes)
             assert execute.code_digest(module, name) == freshness.code_digest(module, name)
-        mine = freshness.code_digest(asked["kinematic_tree"][0], "kinematic_tree")
+        mine = freshness.code_digest(asked["first_tree"][0], "first_tree")
     with bench.varied(named(bench, "structure/part_tree.PartTreeSettings.noise"), 0.25):
-        assert freshness.code_digest(asked["kinematic_tree"][0], "kinematic_tree") != mine
+        assert freshness.code_digest(asked["first_tree"][0], "first_tree") != mine
     assert {name: freshness.code_digest(module, name) for name, (module, _) in asked.items()} == before
 
 

@@ -35,13 +35,23 @@ class JointParams(PruningParams):
     """The same where some other joint of the body moves clearly."""
 
 
-class KinematicTreeParams(JointParams):
-    """What counts as a joint, and where joints are looked for."""
+class CutJointsParams(PruningParams):
+    """What counts as a joint of a cut."""
 
     hidden_bones: bool = True
     """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
+
+
+class FirstTreeParams(JointParams, CutJointsParams):
+    """What counts as a joint, and where joints are looked for."""
+
     end_joints: bool = True
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
+
+
+class KinematicTreeParams(FirstTreeParams):
+    """What counts as a joint, and where joints are looked for and placed."""
+
     surface_joints: bool = True
     """Whether joints within limbs are moved to where the frames' surfaces have them, if halves of the frames agree."""
 

@@ -15,9 +15,12 @@ from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.paper_2009.edge_joints import NodeMotion, edge_joints
 from kinetree.tasks.numerics.paper_2009.node_clusters import part_motions, rigid_clusters
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
+from kinetree.tasks.numerics.structure.first_tree import first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
-from kinetree.tasks.structure.kinematic_tree import evidence_settings, tree_settings
+from kinetree.tasks.numerics.structure.tree_joints import Cut
+from kinetree.tasks.structure.first_tree import evidence_settings, tree_settings
 
 
 @task()
@@ -64,10 +67,9 @@ def _centres(
     part = part_motions(V, x, confidence, area, label, params.removal_cost)
     leaves = np.array(s.leaf_vertex)
     settings = tree_settings(params)._replace(second_ends=params.second_ends, root_amid_limbs=params.root == "limbs")
-    return numerics.kinematic_tree(
-        V, F, x, area, part.label, part.R, part.t, part.residual, leaves, confidence, evidence,
-        settings=settings,
-    )  # fmt: skip
+    body = MovingSurface(V, F.astype(np.int64), x, area)
+    first = first_tree(body, Cut(V, *part), leaves, confidence, evidence, settings=settings)
+    return numerics.kinematic_tree(body, first, leaves, confidence, settings=settings)
 
 
 def _edges(s: IntegratedStructure, motions: Mapping[int, GraphMotion]) -> numerics.KinematicTree:

@@ -2,6 +2,7 @@
 
 from kinetree.tasks.structure.cut_poses import cut_poses
 from kinetree.tasks.structure.error_bars import error_bars
+from kinetree.tasks.structure.first_tree import first_tree
 from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.joint_names import joint_names
@@ -14,6 +15,7 @@ STRUCTURE = (
     rigid_parts,
     cut_poses,
     further_cut,
+    first_tree,
     kinematic_tree,
     pose_refinement,
     further_pose,

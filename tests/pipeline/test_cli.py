@@ -446,11 +446,23 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert code == 0
     assert "mesh: Source, Isosurface of all → Mesh per frame" in printed
     assert "mesh.component_share = 0.05" in printed
-    assert "set by kinematic_tree.degrees, kinematic_tree.ratio\n" in printed
+    assert "set by kinematic_tree.degrees, kinematic_tree.ratio, kinematic_tree.hidden_bones\n" in printed
     rows = told(kinetree("tasks", "--json")[1])
     assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {
         "cut_poses": [f"rigid_parts.{name}" for name in ("rings", "patches", "removal_cost", "cuts")],
-        "further_cut": ["kinematic_tree.degrees", "kinematic_tree.ratio"],
+        "further_cut": [f"kinematic_tree.{name}" for name in ("degrees", "ratio", "hidden_bones")],
+        "first_tree": [
+            f"kinematic_tree.{name}"
+            for name in (
+                "degrees",
+                "ratio",
+                "hidden_bones",
+                "clear_motion",
+                "misfit_ratio",
+                "misfit_ratio_if_moving",
+                "end_joints",
+            )
+        ],
     }
     mesh = next(r for r in rows if r["task"] == "mesh")
     assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "set_by", "along", "paper", "summary"}

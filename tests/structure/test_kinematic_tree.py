@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from aligned_body import FIRST, rigid
 from articulated import Known, chain, swings, three_arms
 from pydantic import ValidationError
 from smeared import END, Frames, aligned, turning
@@ -12,23 +13,10 @@ from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
-from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.structure import kinematic_tree as numerics
+from kinetree.tasks.numerics.structure import first_tree as numerics
+from kinetree.tasks.structure.first_tree import first_tree
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
-
-FIRST = 10
-
-
-def rigid(body: Known, frames: tuple[int, ...]) -> RigidParts:
-    """The true parts; how they were cut decides nothing."""
-    none = np.zeros(len(body.V), int)
-    return RigidParts(
-        frames=frames, label=body.label, rigid=np.ones(len(body.V)), rotation=body.R, translation=body.t,
-        residual=body.residual, tip=none[:0], cone=none - 1, ring=none - 1, run=np.zeros((0, 4), int), merge=np.zeros((0, 4)),
-        merge_threshold=0.002, initial=body.label, removed=none[:0], cost=np.zeros(0), cost_threshold=0.0025,
-        origin=np.arange(body.R.shape[1]),
-    )  # fmt: skip
 
 
 def surface(V: np.ndarray, F: np.ndarray) -> Mesh:
@@ -57,7 +45,9 @@ def told(
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
     mesh = {f: surface(*(shown(k) if shown else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))}
-    return kinematic_tree(reference, parts, {}, aligned, mesh, leaves, KinematicTreeParams(**params))
+    chosen = KinematicTreeParams(**params)
+    first = first_tree(reference, parts, aligned, mesh, leaves, chosen)
+    return kinematic_tree(reference, first, {}, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
@@ -93,13 +83,13 @@ def test_what_counts_as_a_joint_can_be_set() -> None:
 
 def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
     body, asked = chain((0.0,), swings(16, 2)), []
-    made = numerics.kinematic_tree
+    made = numerics.first_tree
 
-    def listening(*given: Any, settings: Any, takes: Any, further: Any, carried: Any) -> Any:
-        asked.append(given[10].settings)
-        return made(*given[:10], None, settings=settings)
+    def listening(*given: Any, settings: Any) -> Any:
+        asked.append(given[4].settings)
+        return made(*given[:4], None, settings=settings)
 
-    monkeypatch.setattr(numerics, "kinematic_tree", listening)
+    monkeypatch.setattr(numerics, "first_tree", listening)
     told(body, np.full(body.x.shape[:2], 0.9), clear_motion=7.0, misfit_ratio=1.5, misfit_ratio_if_moving=1.2)
     assert [tuple(settings[:3]) for settings in asked] == [(7.0, 1.5, 1.2)]
 

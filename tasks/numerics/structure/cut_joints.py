@@ -22,18 +22,28 @@ def cut_tree(
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
     found = tree_joints(body, cut, leaves, confidence, evidence, settings=settings)
-    if confidence is not None or not settings.hidden_bones:
-        return found
-    return inserted_bones(body, found, settings.noise * body.size)
+    return _with_bones(body, found, confidence, settings)
 
 
 def cut_joints(
     body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, settings: KinematicTreeSettings
-) -> Floats:
+) -> tuple[Floats, Floats]:
     """The joints of another cut of the same body, but for its root; the frames need not show them.
 
+    Whether the body has bones that no cut can find is for the first cut to say, so that both are given.
+
     leaves, confidence : as in `cut_tree`
-    returns            : (frame, joint, xyz) mesh unit
+    returns            : (frame, joint, xyz) without such bones · (frame, joint, xyz) with them, mesh unit
     """
-    found = cut_tree(body._replace(V=cut.V), cut, leaves, confidence, None, settings)
-    return found.motion.carried(found.rest[1:])
+    posed = body._replace(V=cut.V)
+    found = tree_joints(posed, cut, leaves, confidence, settings=settings)
+    whole = _with_bones(posed, found, confidence, settings)
+    return found.motion.carried(found.rest[1:]), whole.motion.carried(whole.rest[1:])
+
+
+def _with_bones(
+    body: MovingSurface, found: TreeJoints, confidence: Floats | None, settings: KinematicTreeSettings
+) -> TreeJoints:
+    if confidence is not None or not settings.hidden_bones:
+        return found
+    return inserted_bones(body, found, settings.noise * body.size)

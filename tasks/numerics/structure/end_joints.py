@@ -16,14 +16,7 @@ from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
-from kinetree.tasks.numerics.structure.hinged_piece import (
-    SAMPLE,
-    HingedFit,
-    laid_as_one,
-    laid_hinged,
-    motions,
-    sampled_piece,
-)
+from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, motions, sampled_piece
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
 from kinetree.tasks.numerics.structure.ring_evidence import RingEvidence, judged_frames, ring_evidence
@@ -87,12 +80,11 @@ class _Ring(NamedTuple):
 
 
 class _Frames(NamedTuple):
-    """The tree, which frames show its parts (frame, part), their surfaces as in `end_joints`, the size of the body."""
+    """The tree, which frames show its parts (frame, part), their surfaces as in `end_joints`."""
 
     found: TreeJoints
     shown: Flags
-    surface: Callable[[int], tuple[Floats, Ints]]
-    size: float
+    surface: Callable[[int], Target]
 
     def above(self, part: int) -> int:
         """The part on which a part hangs."""
@@ -108,27 +100,27 @@ class _Frames(NamedTuple):
         for f in map(int, which):
             there = [k for k, ring in enumerate(rings) if self.shown[f, ring.cut.part]]
             if there:
-                yield f, Target.of(*self.surface(f), self.size, SAMPLE), there
+                yield f, self.surface(f), there
 
 
 def end_joints(
     body: MovingSurface,
     found: TreeJoints,
     confidence: Floats,
-    surface: Callable[[int], tuple[Floats, Ints]],
+    surface: Callable[[int], Target],
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
     """The joints that the frames show within the last parts of limbs, at most one in a part.
 
     confidence : (frame, vertex) 0 to 1
-    surface    : gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner), by its place among the frames
+    surface    : gives a frame's surface, prepared, by its place among the frames
     """
     chosen = settings or EndJointsSettings()
     parents = found.left.part_tree.tree.parents
     rings = _rings(body, found, list(end_cuts(body, found.label, parents, found.rest)))
     share = confident_share(found.label, body.area, confidence, len(body.x), len(parents))
     shown = np.minimum(share, share[:, np.maximum(parents, 0)]) >= FramePosesSettings().seen
-    frames = _Frames(found, shown, surface, body.size)
+    frames = _Frames(found, shown, surface)
     judged, pairs = judged_frames(len(body.x), body.takes, chosen.most_frames)
     _lay(frames, judged, rings)
     evident = _evident(frames, rings, pairs, score_spans(len(body.x), body.takes), chosen)

@@ -1,15 +1,15 @@
 """A tree with the joints within the last parts of its limbs that the frames' surfaces show (ours, see `end_joints`)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
-from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.rotation_centres import Borders, Joints, drift
@@ -20,14 +20,15 @@ from kinetree.tasks.numerics.structure.tree_joints import TreeJoints, both_resid
 
 
 def inserted_ends(
-    body: MovingSurface, found: TreeJoints, confidence: Floats, evidence: FrameEvidence, noise: float
+    body: MovingSurface, found: TreeJoints, confidence: Floats, surface: Callable[[int], Target], noise: float
 ) -> tuple[MovingSurface, TreeJoints]:
     """The same tree with a part more beyond every such joint, and the surface with these parts where the frames show them.
 
     confidence : (frame, vertex) 0 to 1
+    surface    : gives a frame's surface, prepared, by its place among the frames
     noise      : error of a vertex below which its motion says nothing of its skinning weights, mesh unit
     """
-    ends = end_joints(body, found, confidence, evidence.surface)
+    ends = end_joints(body, found, confidence, surface)
     if not ends:
         return body, found
     x = body.x.copy()

@@ -24,6 +24,18 @@ class JointMotion(NamedTuple):
     t: Floats
     weight: Floats
 
+    @classmethod
+    def of(cls, R: Floats, t: Floats, parents: Ints, seen: Floats | None) -> "JointMotion":
+        """At every joint but the root.
+
+        R, t    : (frame, part, 3, 3) · (frame, part, xyz) from the reference
+        parents : (part,) −1 for the root, which is the first
+        seen    : (frame, part) share of its surface that is certain, 0 to 1; None where all of it is
+        """
+        own, above = np.arange(1, len(parents)), parents[1:]
+        weight = np.ones((len(R), len(own))) if seen is None else np.minimum(seen[:, own], seen[:, above])
+        return cls(np.stack([R[:, own], R[:, above]]), np.stack([t[:, own], t[:, above]]), weight + 1e-3)
+
     def carried(self, rest: Floats) -> Floats:
         """(frame, joint, xyz) where the two parts carry the joints in the mean; rest (joint, xyz) in the reference."""
         return np.asarray((np.einsum("stjxy,jy->stjx", self.R, rest) + self.t).mean(axis=0))

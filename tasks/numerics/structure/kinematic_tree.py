@@ -1,4 +1,4 @@
-"""From rigid parts to the finished articulated body: tree, joints, skin, poses, end effectors, names (2014, Sec. 6.3)."""
+"""From the first cut's tree to the finished articulated body: joints, poses, end effectors, names (2014, Sec. 6.3)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -8,22 +8,19 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
-from kinetree.tasks.numerics.structure.cut_joints import cut_joints, cut_tree
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
-from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
-from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
 from kinetree.tasks.numerics.structure.surface_joints import surface_joints
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
+from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings
 
 
 class KinematicTree(NamedTuple):
@@ -90,73 +87,50 @@ class Derivation(NamedTuple):
 
 
 def kinematic_tree(
-    V: Floats,
-    F: Ints,
-    x: Floats,
-    area: Floats,
-    label: Ints,
-    R: Floats,
-    t: Floats,
-    residual: Floats,
+    body: MovingSurface,
+    first: FirstTree,
     leaves: Ints,
     confidence: Floats | None = None,
-    evidence: FrameEvidence | None = None,
     *,
     settings: KinematicTreeSettings,
-    takes: Sequence[slice] | None = None,
-    further: Sequence[Cut] = (),
-    carried: Sequence[Floats] = (),
+    further: Sequence[Floats] = (),
 ) -> tuple[KinematicTree, Derivation]:
-    """Joins the parts in one tree, places its joints and poses it in every frame; and how that came about.
+    """Places the joints of a tree and poses it in every frame; and how that came about.
 
-    V, F       : (vertex, xyz) mesh unit · (face, corner)
-    x          : (frame, vertex, xyz) mesh unit
-    area       : (vertex,) mesh unit²
-    label      : (vertex,) rigid part, −1 for none
-    R, t       : (frame, part, 3, 3), (frame, part, xyz) from the reference
-    residual   : (frame, part) what a part's motion leaves unexplained, mesh unit
+    body       : as it was aligned
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
-    evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
-    takes      : positions of the frames of each take; None takes all as one
-    further    : other cuts of the same body; its joints are then the mean over all cuts that have them
-    carried    : (frame, joint, xyz) of every further cut, as `cut_joints` gives them, where they are known already
+    further    : (frame, joint, xyz) of every further cut of the body, see `cut_joints`; joints of the tree are then the mean
+                 over all cuts that have them
     """
-    chosen = settings
-    V, x = np.array(V, dtype=np.float64), np.array(x, dtype=np.float64)
-    body = MovingSurface(V, np.array(F, dtype=np.int64), x, area, takes)
-    given = R.shape[1]
-    found = cut_tree(body, Cut(V, label, R, t, residual), leaves, confidence, evidence, chosen)
-    alike = chosen._replace(hidden_bones=bool((found.left.origin == NO_PART).any()))
-    others, before = carried or [cut_joints(body, cut, leaves, confidence, alike) for cut in further], len(found.rest)
-    if chosen.end_joints and evidence is not None and confidence is not None:
-        body, found = inserted_ends(body, found, confidence, evidence, chosen.noise * body.size)
-    agreed = _agreed(found, others, body.size)
-    F, x, tree, label, W, R, t = body.F, body.x, found.left.part_tree.tree, found.label, found.W, found.R, found.t
-    rest = agreed.rest
-    if chosen.surface_joints and evidence is not None and confidence is not None:
-        rest = surface_joints(body, found, rest, confidence, evidence.surface)
-    off = found.drift if rest is found.rest else found.drift_at(rest)
-    poses = frame_poses(V, x, area, label, W, Motion(rest, R, t[:, 0].copy()), tree.parents, confidence, takes=takes)
-    share = confident_share(label, area, confidence, len(x), len(tree.order))
-    above = np.maximum(tree.parents, 0)
-    support = (np.minimum(share, share[:, above]) >= FramePosesSettings().seen).sum(axis=0)
-    if chosen.second_ends:
-        leaves = np.concatenate([leaves, second_ends(V, F, label, tree.parents, leaves)])
-    ends = end_effectors(V, F, label, tree.parents, leaves)
-    spans = score_spans(len(x), takes)
-    made, order = _assembled(V, label, W, ends, tree.parents, poses.motion, poses.confidence, off, support, spans, chosen)
-    return made, _derivation(found, agreed, given, before, made, order)
+    V, x, area, tree, label = body.V, body.x, body.area, first.parents, first.label
+    if first.ends:
+        x = x.copy()
+        x[:, first.at_ends] = first.end_x
+    agreed = _agreed(first, further, body.size)
+    share = confident_share(label, area, confidence, len(x), len(tree))
+    rest = surface_joints(first, agreed.rest, share) if settings.surface_joints else agreed.rest
+    off = first.drift if rest is first.rest else first.drift_at(rest)
+    poses = frame_poses(
+        V, x, area, label, first.W, Motion(rest, first.R, first.t[:, 0].copy()), tree, confidence, takes=body.takes
+    )
+    support = (np.minimum(share, share[:, np.maximum(tree, 0)]) >= FramePosesSettings().seen).sum(axis=0)
+    if settings.second_ends:
+        leaves = np.concatenate([leaves, second_ends(V, body.F, label, tree, leaves)])
+    ends = end_effectors(V, body.F, label, tree, leaves)
+    spans = score_spans(len(x), body.takes)
+    made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans, settings)
+    return made, _derivation(first, agreed, made, order)
 
 
-def _agreed(found: TreeJoints, further: Sequence[Floats], size: float) -> JointConsensus:
+def _agreed(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
     """Joints of the first cut as all cuts place them; the root as it is."""
-    count = len(found.rest)
+    count = len(first.rest)
     if not further:
-        return JointConsensus(found.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))
-    mean = joint_consensus(found.rest[1:], found.motion, further, size)
+        return JointConsensus(first.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))
+    mean = joint_consensus(first.rest[1:], first.motion, further, size)
     return JointConsensus(
-        np.concatenate([found.rest[:1], mean.rest]), np.append(np.nan, mean.spread), np.append(0, mean.agreeing)
+        np.concatenate([first.rest[:1], mean.rest]), np.append(np.nan, mean.spread), np.append(0, mean.agreeing)
     )
 
 
@@ -204,39 +178,21 @@ def _assembled(
     return body, order
 
 
-def _derivation(
-    found: TreeJoints, agreed: JointConsensus, given: int, before: int, body: KinematicTree, order: Ints
-) -> Derivation:
+def _derivation(first: FirstTree, agreed: JointConsensus, body: KinematicTree, order: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    given  : how many parts there were
-    before : how many of the tree's parts are not those beyond end joints
-    order  : (joint,) part in the tree's order, or beyond them an end effector
+    order : (joint,) part in the tree's order, or beyond them an end effector
     """
-    left, used, parts = found.left, found.used, len(found.rest)
-    joint_of_part = np.full(given, -1)
-    origin = left.origin[left.part_tree.tree.order]
-    joint_of_part[used[origin[origin != NO_PART]]] = np.argsort(order)[:parts][origin != NO_PART]
-    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), found.R, found.t)
+    parts, joint = len(first.rest), np.argsort(order)
+    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), first.R, first.t)
     is_part, part = order < parts, np.minimum(order, parts - 1)
     return Derivation(
-        pair=used[left.before.borders.pair],
-        centre=left.before.joints.rest,
-        border_drift=left.before.joints.drift,
-        border_degrees=_border_degrees(left.before),
-        joint_of_part=joint_of_part,
-        dropped=tuple(d._replace(part=int(used[d.part])) for d in left.dropped),
+        **first.graph._asdict(),
+        joint_of_part=np.where(first.place < 0, -1, joint[first.place]),
         free_length=length.mean(axis=0),
         free_deviation=length.std(axis=0),
         spread=np.where(is_part, agreed.spread[part], np.nan),
         agreeing=np.where(is_part, agreed.agreeing[part], 0),
-        joint_residual=np.where(is_part, found.residual[part], 0.0),
-        end_joints=tuple(np.argsort(order)[before:parts].tolist()),
+        joint_residual=np.where(is_part, first.residual[part], 0.0),
+        end_joints=tuple(joint[parts - first.ends : parts].tolist()),
     )
-
-
-def _border_degrees(tree: PartTree) -> Floats:
-    """(border,) range of turning across the borders of the tree, NaN across the others."""
-    degrees = np.full(len(tree.borders.pair), np.nan)
-    degrees[tree.tree.border[1:]] = tree.degrees[1:]
-    return degrees

@@ -10,30 +10,21 @@ with c₀ the joint as it is, r the radius of its border, and S_f = Σ over both
 against a shift of the joint, its rotation free. A joint is moved only where halves of the frames move it alike.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.frame_poses import confident_share
-from kinetree.tasks.numerics.structure.hinged_piece import SAMPLE, laid_as_one, sampled_piece
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFitSettings, PiecePose, shift_stiffness
-from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.laid_parts import within_limbs
 
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
 trace: keeps them invertible where no match holds a part."""
 
-EXACT = 1e-4
-"""Least distance of a part from a surface, share of the root of the area: a reference has none from its own."""
-
 
 class SurfaceJointsSettings(NamedTuple):
-    """How far joints go, and which.
+    """How far joints go.
 
     The first three were chosen on wave, dance, ballet, wolf, generated bodies of seeds 0 to 6 and people 0 to 6 in takes.
     """
@@ -45,18 +36,10 @@ class SurfaceJointsSettings(NamedTuple):
     agree: float = 0.5
     """Distance between the places that two halves of the frames give, share of the way that all go, at most. At 0.7 more joints
     move, of which more get worse."""
-    rigid_weight: float = 0.75
-    """Skinning weight from which on a vertex is laid on the surface with its part. Not varied."""
-    least_vertices: int = 12
-    """Such vertices of a part, at least. Not varied."""
     outlier: float = 3.0
     """Distance in medians over the frames at which a frame counts a half. Not varied."""
     rounds: int = 3
     """Rounds of weighting frames anew. Not varied."""
-    least_frames: int = 8
-    """Frames that show both parts, at least. Not varied."""
-    most_frames: int = 40
-    """Frames that are looked at, evenly spread; for time. Not varied."""
 
 
 class _Laid(NamedTuple):
@@ -77,75 +60,21 @@ class _Pull(NamedTuple):
     seen: Floats
 
 
-def surface_joints(
-    body: MovingSurface,
-    found: TreeJoints,
-    rest: Floats,
-    confidence: Floats,
-    surface: Callable[[int], tuple[Floats, Ints]],
-    settings: SurfaceJointsSettings | None = None,
-) -> Floats:
+def surface_joints(tree: FirstTree, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None) -> Floats:
     """(part, xyz) the joints in the reference, those within limbs moved where the frames agree on it, mesh unit.
 
-    rest       : (part, xyz) the joints in the reference, mesh unit
-    confidence : (frame, vertex) 0 to 1
-    surface    : gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner), by its place among the frames
+    rest : (part, xyz) the joints in the reference, mesh unit
+    seen : (frame, part) share of its surface that is certain, 0 to 1
     """
-    chosen, parents = settings or SurfaceJointsSettings(), found.left.part_tree.tree.parents
-    joints, moved = np.flatnonzero(within_limbs(parents)), rest.copy()
-    frames = _even(len(body.x), chosen.most_frames)
-    parts = np.union1d(joints, parents[joints])
-    laid = _laid(body, found, parts, frames, surface, chosen) if len(frames) >= chosen.least_frames else {}
-    share = confident_share(found.label, body.area, confidence, len(body.x), len(parents))[frames]
-    border = found.left.part_tree.tree.border
-    for joint in joints.tolist():
-        above = int(parents[joint])
-        if joint in laid and above in laid:
-            pull = _pull(laid[above], laid[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
-            radius = float(found.left.part_tree.borders.radius[border[joint]])
-            moved[joint] = _agreed(pull, rest[joint], chosen.spread * radius, chosen)
+    chosen, moved, laid = settings or SurfaceJointsSettings(), rest.copy(), tree.laid
+    parts = {part: _Laid(*(a[:, k] for a in laid[2:])) for k, part in enumerate(laid.joint.tolist())}
+    share = seen[laid.frame]
+    for joint in np.flatnonzero(within_limbs(tree.parents)).tolist():
+        above = int(tree.parents[joint])
+        if joint in parts and above in parts:
+            pull = _pull(parts[above], parts[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
+            moved[joint] = _agreed(pull, rest[joint], chosen.spread * float(tree.radius[joint]), chosen)
     return moved
-
-
-def within_limbs(parents: Ints) -> Flags:
-    """(part,) whether a part hangs on one that is not the root and has no other part below it.
-
-    Flesh around hips, shoulders and necks bends on its own: there rigid pieces lead away from the joint.
-    """
-    below = np.bincount(parents[1:], minlength=len(parents))
-    above = np.maximum(parents, 0)
-    return np.asarray((parents > 0) & (below[above] == 1))
-
-
-def _even(count: int, most: int) -> Ints:
-    """Frames that are looked at, ascending."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
-
-
-def _laid(
-    body: MovingSurface, found: TreeJoints, parts: Ints, frames: Ints, surface: Callable[[int], tuple[Floats, Ints]],
-    chosen: SurfaceJointsSettings,
-) -> dict[int, _Laid]:  # fmt: skip
-    """Parts by themselves on the frames' surfaces, from where they are aligned; those with enough vertices."""
-    pieces, N = {}, smoothed_normals(body.V, body.F)
-    for part in parts.tolist():
-        own = np.flatnonzero((found.label == part) & (found.W[:, part] > chosen.rigid_weight))
-        if len(own) >= chosen.least_vertices:
-            mass = found.W[own, part] * np.sqrt(body.area[own] / body.area.sum())
-            pieces[part] = sampled_piece(body.V[own], N[own], mass, np.zeros(len(own), np.bool_), np.zeros(3), np.zeros(3))
-    rows: dict[int, list[_Laid]] = {part: [] for part in pieces}
-    for f in frames.tolist() if pieces else ():
-        target = Target.of(*surface(f), body.size, SAMPLE)
-        for part, piece in pieces.items():
-            rows[part].append(_on_surface(piece, PiecePose(found.R[f, part], found.t[f, part], np.eye(3)), target))
-    return {part: _Laid(*(np.stack(of) for of in zip(*row, strict=True))) for part, row in rows.items()}
-
-
-def _on_surface(piece: Piece, start: PiecePose, target: Target) -> _Laid:
-    """One part in one frame."""
-    fit = laid_as_one(piece, start, np.zeros(3), target, PieceFitSettings(anchor=0.0))
-    H = shift_stiffness(piece, fit, target)
-    return _Laid(fit.pose.R, fit.pose.t, H, np.asarray(max(fit.cost(piece.mass), (EXACT * target.size) ** 2)))
 
 
 def _pull(above: _Laid, own: _Laid, c: Floats, seen: Floats, chosen: SurfaceJointsSettings) -> _Pull:

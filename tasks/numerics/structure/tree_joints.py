@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
-from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, drift, rotation_centres
+from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
 
 
@@ -46,7 +46,7 @@ class KinematicTreeSettings(NamedTuple):
     end_joints: bool = False
     """Whether joints within the last parts of limbs are looked for on the frames' surfaces, see `end_joints`."""
     surface_joints: bool = False
-    """Whether joints within limbs are moved to where the frames' surfaces have them, see `surface_joints`."""
+    """Whether parts of limbs are laid on the frames' surfaces, and joints within limbs moved there, see `surface_joints`."""
     second_ends: bool = False
     """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
     root_amid_limbs: bool = False
@@ -95,18 +95,8 @@ class TreeJoints(NamedTuple):
     @property
     def motion(self) -> JointMotion:
         """Of the two parts at every joint but the root."""
-        own, above = np.arange(1, len(self.rest)), self.left.part_tree.tree.parents[1:]
-        seen, order = self.left.parts.confidence, self.left.part_tree.tree.order
-        weight = np.ones((len(self.R), len(own))) if seen is None else np.minimum(seen[:, order[own]], seen[:, order[above]])
-        return JointMotion(
-            np.stack([self.R[:, own], self.R[:, above]]), np.stack([self.t[:, own], self.t[:, above]]), weight + 1e-3
-        )
-
-    def drift_at(self, rest: Floats) -> Floats:
-        """(part,) the drift of joints elsewhere; rest (part, xyz) in the reference, mesh unit."""
-        tree, parts = self.left.part_tree.tree, self.left.parts
-        pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
-        return np.append(0.0, drift(parts.R, parts.t, pair, rest[1:], parts.confidence))
+        tree, seen = self.left.part_tree.tree, self.left.parts.confidence
+        return JointMotion.of(self.R, self.t, tree.parents, None if seen is None else seen[:, tree.order])
 
 
 def tree_joints(

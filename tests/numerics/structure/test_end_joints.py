@@ -12,7 +12,8 @@ from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSett
 
 def found(degrees: float, noise: float = 0.0, settings: EndJointsSettings | None = None, bent: float = 0.0) -> list[EndJoint]:
     surface, tree = found_in(aligned(turning(degrees), bent))
-    return end_joints(surface, tree, np.ones(surface.x.shape[:2]), Frames(turning(degrees), noise), settings)
+    shown = Frames(turning(degrees), noise).prepared(surface.size)
+    return end_joints(surface, tree, np.ones(surface.x.shape[:2]), shown, settings)
 
 
 def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJoint]:
@@ -20,7 +21,8 @@ def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJ
     turn = np.concatenate([turning(one) if isinstance(one, float) else one for one in degrees])
     surface, tree = found_in(aligned(turn))
     takes = [slice(24 * k, 24 * k + 24) for k in range(len(degrees))]
-    return end_joints(surface._replace(takes=takes), tree, np.ones(surface.x.shape[:2]), Frames(turn, noise))
+    shown = Frames(turn, noise).prepared(surface.size)
+    return end_joints(surface._replace(takes=takes), tree, np.ones(surface.x.shape[:2]), shown)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
@@ -60,14 +62,14 @@ def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joi
 def test_a_part_that_no_frame_shows_has_no_joint() -> None:
     surface, tree = found_in(aligned(turning()))
     confidence = np.where(surface.V[:, 2] > 0.0, 0.1, 1.0) * np.ones((len(surface.x), 1))
-    assert end_joints(surface, tree, confidence, Frames(turning())) == []
+    assert end_joints(surface, tree, confidence, Frames(turning()).prepared(surface.size)) == []
 
 
 def test_in_frames_that_do_not_show_it_the_piece_goes_with_its_part() -> None:
     surface, tree = found_in(aligned(turning()))
     confidence = np.ones(surface.x.shape[:2])
     confidence[10:13, surface.V[:, 2] > 0.0] = 0.1
-    (joint,) = end_joints(surface, tree, confidence, Frames(turning()))
+    (joint,) = end_joints(surface, tree, confidence, Frames(turning()).prepared(surface.size))
     assert np.flatnonzero(~joint.shown).tolist() == [10, 11, 12]
     for piece in (0, 1):
         np.testing.assert_array_equal(joint.R[10:13, piece], tree.R[10:13, joint.cut.part])

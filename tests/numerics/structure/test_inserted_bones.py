@@ -3,9 +3,10 @@
 import numpy as np
 from articulated import Known, chain, neck, neck_ends, swings
 from shipped import TREE
+from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
-from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
@@ -28,8 +29,9 @@ def whole(
 ) -> tuple[KinematicTree, Derivation]:
     ends = [0, body.R.shape[1] - 1]
     label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    known = body.V, body.F, body.x, body.area, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends]
-    return kinematic_tree(*known, tips, confidence, settings=TREE._replace(hidden_bones=hidden_bones), further=further)
+    cut = Cut(body.V, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends])
+    surface = MovingSurface(body.V, body.F, body.x, body.area)
+    return whole_tree(surface, cut, tips, confidence, settings=TREE._replace(hidden_bones=hidden_bones), further=further)
 
 
 def test_the_bone_stands_between_its_two_parts() -> None:

@@ -4,28 +4,27 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from shipped import TREE
-from smeared import END, Frames, aligned, found_in, turning
+from smeared import END, Frames, aligned, found_in, moving, turning
+from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
-from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 
 def with_ends(degrees: float = 25.0) -> tuple[MovingSurface, TreeJoints, MovingSurface, TreeJoints]:
     before, found = found_in(aligned(turning(degrees)))
     ones = np.ones(before.x.shape[:2])
-    return before, found, *inserted_ends(before, found, ones, Frames(turning(degrees)).evidence(), 0.002)
+    return before, found, *inserted_ends(before, found, ones, Frames(turning(degrees)).prepared(before.size), 0.002)
 
 
 def whole(end_joints: bool, degrees: float = 25.0) -> tuple[KinematicTree, Derivation]:
     body, ones = aligned(turning(degrees)), np.ones((24, len(aligned(turning(degrees)).V)))
     label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    known = body.V, body.F, body.x, body.area, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2]
-    return kinematic_tree(
-        *known, tips, ones, Frames(turning(degrees)).evidence(), settings=TREE._replace(end_joints=end_joints)
-    )
+    cut, evidence = Cut(body.V, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2]), Frames(turning(degrees)).evidence()
+    return whole_tree(moving(body), cut, tips, ones, evidence, settings=TREE._replace(end_joints=end_joints))
 
 
 def test_the_new_part_hangs_on_the_one_that_it_was_cut_from() -> None:
@@ -84,7 +83,8 @@ def test_the_piece_before_the_joint_moves_as_in_the_frames_too() -> None:
     smeared[:, part] = np.einsum("txy,vy->tvx", R, body.V[part]) + body.t[:, 1, None]
     body = body._replace(x=smeared, R=np.stack([body.R[:, 0], R, R], axis=1))
     surface, found = found_in(body)
-    moved, after = inserted_ends(surface, found, np.ones(smeared.shape[:2]), Frames(turning()).evidence(), 0.002)
+    shown = Frames(turning()).prepared(surface.size)
+    moved, after = inserted_ends(surface, found, np.ones(smeared.shape[:2]), shown, 0.002)
     axis = [off(tree.R[:, 1], true.R[:, 1]) for tree in (found, after)]
     assert axis[0].max() > 10.0
     assert axis[1].max() < 5.0

@@ -6,12 +6,10 @@ import trimesh
 from articulated import Known, chain, moved, swings, three_arms
 from limbs import bent, rotation
 from shipped import PARTS, TREE
+from whole_tree import whole_tree
 
-from kinetree.tasks.numerics.structure.kinematic_tree import (
-    Derivation,
-    KinematicTree,
-    kinematic_tree,
-)
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
 
@@ -23,8 +21,12 @@ def both(
     settings: KinematicTreeSettings = TREE,
 ) -> tuple[KinematicTree, Derivation]:
     tips = np.array(leaves, dtype=np.int64)
-    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
-    return kinematic_tree(*known, tips, confidence, settings=settings)
+    return whole_tree(*known(body), tips, confidence, settings=settings)
+
+
+def known(body: Known) -> tuple[MovingSurface, Cut]:
+    """The body in motion, and its true parts."""
+    return MovingSurface(body.V, body.F, body.x, body.area), Cut(body.V, body.label, body.R, body.t, body.residual)
 
 
 def of(body: Known, leaves: tuple[int, ...] = (), confidence: np.ndarray | None = None) -> KinematicTree:
@@ -88,7 +90,8 @@ def test_noise_at_every_vertex_moves_no_joint_by_half_a_percent() -> None:
     for x in (body.x, rough):
         p = rigid_parts(x[0], body.F, x, settings=PARTS)
         no_leaf = np.zeros(0, dtype=np.int64)
-        found = kinematic_tree(x[0], body.F, x, body.area, p.label, p.R, p.t, p.residual, no_leaf, settings=TREE)[0]
+        cut = Cut(x[0], p.label, p.R, p.t, p.residual)
+        found = whole_tree(MovingSurface(x[0], body.F, x, body.area), cut, no_leaf, settings=TREE)[0]
         joints.append(found.positions[:, [kind == "joint" for kind in found.kinds]])
     assert joints[0].shape == joints[1].shape == (24, 2, 3)
     assert np.linalg.norm(joints[0] - joints[1], axis=2).mean(axis=0).max() < 0.005 * 10.0
@@ -140,7 +143,8 @@ def test_a_ring_with_no_leaf_or_one_has_one_tree(leaves: tuple[int, ...]) -> Non
     V, F, tips = np.array(ring.vertices), np.array(ring.faces), np.array(leaves, dtype=np.int64)
     x = np.stack([bent(V[:, [2, 1, 0]], 0.2 * f, 0.5)[:, [2, 1, 0]] for f in range(5)])
     held = rigid_parts(V, F, x, leaves=tips, settings=PARTS)
-    found = kinematic_tree(V, F, x, np.ones(len(V)), held.label, held.R, held.t, held.residual, tips, settings=TREE)[0]
+    cut = Cut(V, held.label, held.R, held.t, held.residual)
+    found = whole_tree(MovingSurface(V, F, x, np.ones(len(V))), cut, tips, settings=TREE)[0]
     assert (found.parents < 0).sum() == 1
     assert found.kinds.count("joint") >= 1
     assert found.kinds.count("joint") + found.kinds.count("leaf") + 1 == len(found.kinds)
@@ -234,9 +238,8 @@ def shifted(cut: Cut, part: int, by: np.ndarray) -> Cut:
 
 def test_cuts_in_other_poses_that_agree_change_nothing_and_have_no_spread() -> None:
     body = chain((0.0,), swings(16, 2))
-    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
-    alone, lone = kinematic_tree(*known, np.zeros(0, int), settings=TREE)
-    found, told = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[in_pose(body, k) for k in (3, 9)])
+    alone, lone = whole_tree(*known(body), np.zeros(0, int), settings=TREE)
+    found, told = whole_tree(*known(body), np.zeros(0, int), settings=TREE, further=[in_pose(body, k) for k in (3, 9)])
     size = np.sqrt(body.area.sum())
     assert found.names == alone.names
     assert found.rest == pytest.approx(alone.rest, abs=0.01 * size)
@@ -250,11 +253,10 @@ def test_cuts_in_other_poses_that_agree_change_nothing_and_have_no_spread() -> N
 
 def test_a_cut_that_places_a_joint_elsewhere_moves_it_half_way_and_is_its_spread() -> None:
     body = chain((0.0,), swings(16, 2))
-    known = body.V, body.F, body.x, body.area, body.label, body.R, body.t, body.residual
     size, turning = np.sqrt(body.area.sum()), 1
-    same, _ = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[in_pose(body, 3)])
+    same, _ = whole_tree(*known(body), np.zeros(0, int), settings=TREE, further=[in_pose(body, 3)])
     off = shifted(in_pose(body, 3), 1, np.array([0.0, 0.0, 0.02 * size]))
-    found, told = kinematic_tree(*known, np.zeros(0, int), settings=TREE, further=[off])
+    found, told = whole_tree(*known(body), np.zeros(0, int), settings=TREE, further=[off])
     moved_by = np.linalg.norm(found.rest[turning] - same.rest[turning])
     assert 0.002 * size < moved_by < 0.02 * size
     assert told.spread[turning] == pytest.approx(moved_by, rel=0.3)

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import pytest
 from matplotlib.text import Text
 from results.rigged_bodies import spider
-from results.sample_derivation import parts_of, tree_of
+from results.sample_derivation import parts_of, reference_of, tree_of
 from results.sample_report import artifacts, judged
 
 from kinetree.errors import ConfigError
@@ -22,8 +22,9 @@ from kinetree.tasks.results.plots.style import COLUMN, HEADING, LIGHTNESS, PAGE,
 
 @pytest.fixture(scope="module")
 def fetch() -> Any:
-    derived = {"rigid_parts": parts_of(spider()), "kinematic_tree": tree_of(spider())}
-    stored = artifacts() | {"evaluation": judged(spider())} | derived
+    body = spider()
+    derived = {"reference": reference_of(body), "rigid_parts": parts_of(body), "kinematic_tree": tree_of(body)}
+    stored = artifacts() | {"evaluation": judged(body)} | derived
     return lambda name, frame=None: stored[name] if frame is None else stored[name][frame]
 
 

@@ -1,0 +1,82 @@
+"""The tree of the first cut: which joints there are, and how far off its joints may be (2014, Sec. 6.3)."""
+
+from typing import Annotated, Literal
+
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
+from kinetree.schemas.dims import (
+    END,
+    END_VERTEX,
+    FRAME,
+    FREEDOM,
+    JOINT,
+    LIMB,
+    OTHER_FRAME,
+    OTHER_FREEDOM,
+    PAIR,
+    PART,
+    ROW,
+    VERTEX,
+    XYZ,
+)
+
+Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident"]]
+"""A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, or the frames show no
+joint."""
+
+
+class FirstTree(Artifact):
+    """The rigid parts in one tree, each with the joint about which it turns, a part after its parent.
+
+    "part" are the parts as RigidParts numbers them, "joint" those of the tree, "limb" those laid on surfaces.
+    """
+
+    parents: tuple[int, ...]
+    """Parent of every joint, −1 for the root, which is the first."""
+    place: Annotated[Ints, Array("int32", PART)]
+    """Joint about which each part turns; −1 for parts that were dropped."""
+    ends: int
+    """How many of the joints, the last ones, the frames' surfaces alone show."""
+    followed: bool
+    """Whether every vertex was followed with certainty."""
+    label: Annotated[Ints, Array("int32", VERTEX)]
+    """Joint about which each vertex of the reference mesh turns."""
+    skin: Annotated[Floats, Array("float64", VERTEX, JOINT)]
+    """Skinning weights, not negative, summing to 1."""
+    rotation: Annotated[Floats, Array("float64", FRAME, JOINT, ROW, XYZ)]
+    """Of every joint's part from the reference mesh to each frame."""
+    translation: Annotated[Floats, Array("float64", FRAME, JOINT, XYZ, unit="length")]
+    """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
+    seen: Annotated[Floats, Array("float64", FRAME, JOINT)]
+    """Share of the surface of every joint's part that is certain in each frame."""
+    rest: Annotated[Floats, Array("float64", JOINT, XYZ, unit="length")]
+    """Position of every joint in the reference mesh, as this cut has it."""
+    drift: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Root mean square distance between the joint as one of its parts and as the other carries it; 0 for the root."""
+    residual: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Root mean square of what the motions of the joint's two parts leave unexplained; 0 for the root."""
+    radius: Annotated[Floats, Array("float64", JOINT, unit="length")]
+    """Radius of the border between the joint's two parts; 0 for the root."""
+    end_positions: Annotated[Floats, Array("float64", FRAME, END_VERTEX, XYZ, unit="length")]
+    """Where the frames have the vertices on either side of the joints that their surfaces alone show, by number."""
+    pair: Annotated[Ints, Array("int32", PAIR, END)]
+    """Parts that meet, before any was dropped."""
+    centre: Annotated[Floats, Array("float64", PAIR, XYZ, unit="length")]
+    """The point of the reference mesh that the two turn about best."""
+    border_drift: Annotated[Floats, Array("float64", PAIR, unit="length")]
+    """Root mean square distance between that point as one part and as the other carries it."""
+    border_degrees: Annotated[Floats, Array("float64", PAIR, unit="°", finite=False)]
+    """Range of their turning against each other; NaN for borders that the spanning tree of all parts does not have."""
+    dropped: tuple[Drop, ...]
+    """Parts that were dropped, in that order, and why."""
+    laid_frame: Annotated[Ints, Array("int32", OTHER_FRAME)]
+    """Frames on whose surfaces parts of limbs were laid by themselves, counted from 0."""
+    laid_joint: Annotated[Ints, Array("int32", LIMB)]
+    """Joints of these parts."""
+    laid_rotation: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, ROW, XYZ)]
+    """Of such a part from the reference mesh to the frame's surface."""
+    laid_translation: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, XYZ, unit="length")]
+    """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
+    laid_stiffness: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, FREEDOM, OTHER_FREEDOM)]
+    """How firmly the surface holds the part against a turn about the origin and a shift."""
+    laid_square: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, unit="length²")]
+    """Mean squared distance of the part from the surface."""

@@ -1,0 +1,173 @@
+"""The tree of the first cut: which joints there are, before other cuts say where these lie (2014, Sec. 6.3; ours)."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.cut_joints import cut_tree
+from kinetree.tasks.numerics.structure.hinged_piece import SAMPLE
+from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
+from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
+from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.laid_parts import NOTHING_LAID, LaidParts, laid_parts
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.pruning import Dropped
+from kinetree.tasks.numerics.structure.rotation_centres import drift
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
+
+READY = 64
+"""Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take, twice, and parts laid on 40."""
+
+
+class PartGraph(NamedTuple):
+    """The parts before any was dropped, numbered as they were given.
+
+    pair           : (border, 2) parts that meet
+    centre         : (border, xyz) the point of the reference that the two turn about best, mesh unit
+    border_drift   : (border,) root mean square distance between that point as its two parts carry it, mesh unit
+    border_degrees : (border,) range of turning against each other, NaN for borders outside the spanning tree of all parts
+    dropped        : parts that pruning dropped, in that order, and why
+    """
+
+    pair: Ints
+    centre: Floats
+    border_drift: Floats
+    border_degrees: Floats
+    dropped: tuple[Dropped, ...]
+
+
+class FirstTree(NamedTuple):
+    """Parts in one tree, each with the joint about which it turns, in the tree's order: a part after its parent.
+
+    parents  : (part,) −1 for the root
+    place    : (given,) place in the tree of every part that was given, −1 for those dropped and those without vertices
+    ends     : how many of the parts, the last ones, lie beyond joints that the frames' surfaces alone show
+    label    : (vertex,) part
+    W        : (vertex, part) skinning weights
+    R, t     : (frame, part, 3, 3) · (frame, part, xyz) from the reference
+    seen     : (frame, part) share of its surface that is certain, 0 to 1; None where every vertex was followed
+    rest     : (part, xyz) the joint in the reference, mesh unit
+    drift    : (part,) distance between the joint as its two parts carry it, mesh unit; 0 for the root
+    residual : (part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root
+    radius   : (part,) of the border at the joint, mesh unit; 0 for the root
+    end_x    : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
+    graph    : of all parts
+    laid     : parts of limbs on the frames' surfaces
+    """
+
+    parents: Ints
+    place: Ints
+    ends: int
+    label: Ints
+    W: Floats
+    R: Floats
+    t: Floats
+    seen: Floats | None
+    rest: Floats
+    drift: Floats
+    residual: Floats
+    radius: Floats
+    end_x: Floats
+    graph: PartGraph
+    laid: LaidParts
+
+    @property
+    def has_bones(self) -> bool:
+        """Whether some of its parts are bones that no cut can find, see `hidden_bones`."""
+        return bool(len(self.parents) - self.ends > (self.place >= 0).sum())
+
+    @property
+    def at_ends(self) -> Flags:
+        """(vertex,) whether a vertex is of a part on either side of a joint that the frames' surfaces alone show."""
+        beyond = np.arange(len(self.parents) - self.ends, len(self.parents))
+        return np.isin(self.label, np.append(beyond, self.parents[beyond]))
+
+    @property
+    def motion(self) -> JointMotion:
+        """Of the two parts at every joint but the root."""
+        return JointMotion.of(self.R, self.t, self.parents, self.seen)
+
+    def drift_at(self, rest: Floats) -> Floats:
+        """(part,) the drift of joints elsewhere; rest (part, xyz) in the reference, mesh unit."""
+        pair = np.stack([np.arange(1, len(rest)), self.parents[1:]], axis=1)
+        return np.append(0.0, drift(self.R, self.t, pair, rest[1:], self.seen))
+
+
+def first_tree(
+    body: MovingSurface,
+    cut: Cut,
+    leaves: Ints,
+    confidence: Floats | None = None,
+    evidence: FrameEvidence | None = None,
+    *,
+    settings: KinematicTreeSettings,
+) -> FirstTree:
+    """Joins the parts of a cut in one tree, drops those that are none, and adds those that the cut cannot find.
+
+    leaves     : (leaf,) vertices at the ends of limbs
+    confidence : (frame, vertex) 0 to 1; None where every vertex was followed
+    evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
+    """
+    found, ends, laid = cut_tree(body, cut, leaves, confidence, evidence, settings), 0, NOTHING_LAID
+    if evidence is not None and confidence is not None:
+        size, meshes = body.size, evidence.surface
+
+        @lru_cache(maxsize=READY)
+        def surface(f: int) -> Target:
+            return Target.of(*meshes(f), size, SAMPLE)
+
+        if settings.end_joints:
+            parts = len(found.rest)
+            body, found = inserted_ends(body, found, confidence, surface, settings.noise * size)
+            ends = len(found.rest) - parts
+        if settings.surface_joints:
+            laid = laid_parts(body, found, surface)
+    tree = in_tree_order(found, cut.R.shape[1], ends, laid)
+    return tree._replace(end_x=body.x[:, tree.at_ends])
+
+
+def in_tree_order(found: TreeJoints, given: int, ends: int = 0, laid: LaidParts = NOTHING_LAID) -> FirstTree:
+    """A tree of so many given parts, of which so many were added at ends, whose vertices at ends are not looked up yet."""
+    left, tree = found.left, found.left.part_tree.tree
+    origin, place = left.origin[tree.order], np.full(given, -1)
+    place[found.used[origin[origin != NO_PART]]] = np.flatnonzero(origin != NO_PART)
+    return FirstTree(
+        parents=tree.parents,
+        place=place,
+        ends=ends,
+        label=found.label,
+        W=found.W,
+        R=found.R,
+        t=found.t,
+        seen=None if left.parts.confidence is None else left.parts.confidence[:, tree.order],
+        rest=found.rest,
+        drift=found.drift,
+        residual=found.residual,
+        radius=np.append(0.0, left.part_tree.borders.radius[tree.border[1:]]),
+        end_x=np.zeros((len(found.R), 0, 3)),
+        graph=_graph(found),
+        laid=laid,
+    )
+
+
+def _graph(found: TreeJoints) -> PartGraph:
+    """All parts by the numbers that they were given."""
+    before, used = found.left.before, found.used
+    return PartGraph(
+        pair=used[before.borders.pair],
+        centre=before.joints.rest,
+        border_drift=before.joints.drift,
+        border_degrees=_border_degrees(before),
+        dropped=tuple(d._replace(part=int(used[d.part])) for d in found.left.dropped),
+    )
+
+
+def _border_degrees(tree: PartTree) -> Floats:
+    """(border,) range of turning across the borders of the tree, NaN across the others."""
+    degrees = np.full(len(tree.borders.pair), np.nan)
+    degrees[tree.tree.border[1:]] = tree.degrees[1:]
+    return degrees

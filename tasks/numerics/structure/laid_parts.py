@@ -1,0 +1,104 @@
+"""Parts of a body laid by themselves on the frames' own surfaces (ours, see `surface_joints`)."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.hinged_piece import laid_as_one, sampled_piece
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFitSettings, PiecePose, shift_stiffness
+from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
+
+EXACT = 1e-4
+"""Least distance of a part from a surface, share of the root of the area: a reference has none from its own."""
+
+
+class LaidPartsSettings(NamedTuple):
+    """Which parts are laid on which frames. Not varied."""
+
+    rigid_weight: float = 0.75
+    """Skinning weight from which on a vertex is laid on the surface with its part."""
+    least_vertices: int = 12
+    """Such vertices of a part, at least."""
+    least_frames: int = 8
+    """Frames, at least."""
+    most_frames: int = 40
+    """Frames that are looked at, evenly spread; for time."""
+
+
+class LaidParts(NamedTuple):
+    """Parts on the surfaces of some frames.
+
+    frame                 : (laid,) place among the frames, ascending
+    joint                 : (limb,) about which each part turns, in the tree's order, ascending
+    rotation, translation : (laid, limb, 3, 3) · (laid, limb, xyz) from the reference, mesh unit
+    stiffness             : (laid, limb, 6, 6) of the fit about the origin, see `shift_stiffness`
+    square                : (laid, limb) mean squared distance from the surface, mesh unit²
+    """
+
+    frame: Ints
+    joint: Ints
+    rotation: Floats
+    translation: Floats
+    stiffness: Floats
+    square: Floats
+
+
+NOTHING_LAID = LaidParts(
+    np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 0, 3, 3)), np.zeros((0, 0, 3)), np.zeros((0, 0, 6, 6)),
+    np.zeros((0, 0)),
+)  # fmt: skip
+
+
+def laid_parts(
+    body: MovingSurface, found: TreeJoints, surface: Callable[[int], Target], settings: LaidPartsSettings | None = None
+) -> LaidParts:
+    """The parts at joints within limbs, each by itself from where it is aligned; none where there are few frames.
+
+    surface : gives a frame's surface, prepared, by its place among the frames
+    """
+    chosen, parents = settings or LaidPartsSettings(), found.left.part_tree.tree.parents
+    frames = np.unique(np.linspace(0, len(body.x) - 1, min(len(body.x), chosen.most_frames)).round().astype(np.int64))
+    joints = np.flatnonzero(within_limbs(parents))
+    pieces = _pieces(body, found, np.union1d(joints, parents[joints]), chosen) if len(frames) >= chosen.least_frames else {}
+    if not pieces:
+        return NOTHING_LAID
+    rows = []
+    for f in frames.tolist():
+        target = surface(f)
+        starts = {p: PiecePose(found.R[f, p], found.t[f, p], np.eye(3)) for p in pieces}
+        rows.append([_on_surface(piece, starts[p], target) for p, piece in pieces.items()])
+    R, t, H, square = (np.array([[fit[k] for fit in row] for row in rows]) for k in range(4))
+    return LaidParts(frames, np.array(list(pieces)), R, t, H, square)
+
+
+def within_limbs(parents: Ints) -> Flags:
+    """(part,) whether a part hangs on one that is not the root and has no other part below it.
+
+    Flesh around hips, shoulders and necks bends on its own: there rigid pieces lead away from the joint.
+    """
+    below = np.bincount(parents[1:], minlength=len(parents))
+    above = np.maximum(parents, 0)
+    return np.asarray((parents > 0) & (below[above] == 1))
+
+
+def _pieces(body: MovingSurface, found: TreeJoints, parts: Ints, chosen: LaidPartsSettings) -> dict[int, Piece]:
+    """Points of the parts that have enough vertices."""
+    pieces, N = {}, smoothed_normals(body.V, body.F)
+    for part in parts.tolist():
+        own = np.flatnonzero((found.label == part) & (found.W[:, part] > chosen.rigid_weight))
+        if len(own) >= chosen.least_vertices:
+            mass = found.W[own, part] * np.sqrt(body.area[own] / body.area.sum())
+            pieces[part] = sampled_piece(body.V[own], N[own], mass, np.zeros(len(own), np.bool_), np.zeros(3), np.zeros(3))
+    return pieces
+
+
+def _on_surface(piece: Piece, start: PiecePose, target: Target) -> tuple[Floats, Floats, Floats, float]:
+    """One part in one frame: rotation, shift, stiffness and squared distance."""
+    fit = laid_as_one(piece, start, np.zeros(3), target, PieceFitSettings(anchor=0.0))
+    H = shift_stiffness(piece, fit, target)
+    return fit.pose.R, fit.pose.t, H, max(fit.cost(piece.mass), (EXACT * target.size) ** 2)
