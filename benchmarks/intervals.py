@@ -68,7 +68,7 @@ def measured(V: Floats, F: Ints, bases: int) -> Frame:
         peaks=superlevel_peaks(integral, faces, 0.02 * span).persistence / span,
         loops=loop_spans(loop_counts(integral, faces)),
         euler=cleaned.euler,
-        components=int(cleaned.kept.sum()),
+        components=int(cleaned.is_body.sum()),
         stems=stems(X, faces, integral, surface.area, tips),
         value=x[tips.vertex],
         size=float(np.sqrt(surface.area.sum())),

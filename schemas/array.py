@@ -54,14 +54,14 @@ class Array:
     def check(self, value: Any, name: str | None = None) -> NDArray[Any]:
         """Returns `value` as a read-only contiguous array of this dtype, or says what is wrong with it."""
         try:
-            given = np.asarray(value)
+            untyped = np.asarray(value)
         except ValueError as error:
             raise ArtifactError(f"{name}: expected an array of dimensions {self.layout}, got {error}") from None
-        if given.dtype.kind not in "biuf":
-            raise ArtifactError(f"{name}: expected numbers of dtype {self.dtype}, got dtype {given.dtype}")
-        if not _castable(given, np.dtype(self.dtype)):
-            raise ArtifactError(f"{name}: expected dtype {self.dtype}, got {given.dtype}, which does not fit into it")
-        array = np.ascontiguousarray(given, dtype=self.dtype).reshape(given.shape)
+        if untyped.dtype.kind not in "biuf":
+            raise ArtifactError(f"{name}: expected numbers of dtype {self.dtype}, got dtype {untyped.dtype}")
+        if not _castable(untyped, np.dtype(self.dtype)):
+            raise ArtifactError(f"{name}: expected dtype {self.dtype}, got {untyped.dtype}, which does not fit into it")
+        array = np.ascontiguousarray(untyped, dtype=self.dtype).reshape(untyped.shape)
         if array.ndim != len(self.dims):
             raise ArtifactError(f"{name}: expected dimensions {self.layout}, got shape {array.shape}")
         for dim, size in zip(self.dims, map(int, array.shape), strict=True):
@@ -192,21 +192,21 @@ class Params(BaseModel):
     def path_fields(cls) -> frozenset[tuple[str, ...]]:
         """The parameters that are paths, each as the keys that lead to it."""
         fields = cls.model_fields.items()
-        found: set[tuple[str, ...]] = {(n,) for n, f in fields if any(isinstance(m, PathLike) for m in f.metadata)}
+        paths: set[tuple[str, ...]] = {(n,) for n, f in fields if any(isinstance(m, PathLike) for m in f.metadata)}
         for name, field in cls.model_fields.items():
             for inner in (field.annotation, *get_args(field.annotation)):
                 if isinstance(inner, type) and issubclass(inner, Params):
-                    found |= {(name, *rest) for rest in inner.path_fields()}
-        return frozenset(found)
+                    paths |= {(name, *rest) for rest in inner.path_fields()}
+        return frozenset(paths)
 
 
-def _castable(given: NDArray[Any], dtype: np.dtype[Any]) -> bool:
-    if np.can_cast(given.dtype, dtype, "safe"):
+def _castable(array: NDArray[Any], dtype: np.dtype[Any]) -> bool:
+    if np.can_cast(array.dtype, dtype, "safe"):
         return True
-    if given.dtype.kind in "iu" and dtype.kind in "iu":
+    if array.dtype.kind in "iu" and dtype.kind in "iu":
         limits = np.iinfo(dtype)
-        return given.size == 0 or (int(given.min()) >= limits.min and int(given.max()) <= limits.max)
-    return given.dtype.kind == dtype.kind == "f"
+        return array.size == 0 or (int(array.min()) >= limits.min and int(array.max()) <= limits.max)
+    return array.dtype.kind == dtype.kind == "f"
 
 
 @cache

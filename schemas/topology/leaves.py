@@ -49,7 +49,7 @@ class Leaves(Artifact):
         known: Floats = self.positions[:, self.frames.index(frame)] if frame in self.frames else self.positions[:, 0] * np.nan
         return known
 
-    def seen(self, frame: int) -> Bools:
+    def is_seen(self, frame: int) -> Bools:
         """(leaf,) whether each leaf is seen in a source frame."""
-        seen: Bools = self.rows[:, self.frames.index(frame)] >= 0 if frame in self.frames else self.rows[:, 0] < -1
-        return seen
+        is_seen: Bools = self.rows[:, self.frames.index(frame)] >= 0 if frame in self.frames else self.rows[:, 0] < -1
+        return is_seen

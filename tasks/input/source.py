@@ -7,7 +7,7 @@ from kinetree.pipeline.identity.key import digest
 from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.task import origin
 from kinetree.schemas.input.source import BadFrame, Source, SourceParams
-from kinetree.tasks.input.frames.found import frames_at
+from kinetree.tasks.input.frames.listing import frames_at
 from kinetree.tasks.input.frames.measured import measures_of_frames
 from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.numerics.input.bad_frames import (
@@ -50,7 +50,7 @@ def _several(params: SourceParams, files: Files) -> dict[int, Source]:
             f"source.takes: {', '.join(names)}: each take needs an input, and a name that differs from the others in more than"
             " capitals"
         )
-    found: dict[int, Source] = {}
+    numbered: dict[int, Source] = {}
     measured: dict[str, list[FrameMeasures]] = {}
     known: dict[str, dict[int, Source]] = {}
     for k, take in enumerate(params.takes):
@@ -64,9 +64,9 @@ def _several(params: SourceParams, files: Files) -> dict[int, Source]:
         known[take.name] = own
         for t, frame in own.items():
             dropped = tuple(bad.model_copy(update={"frame": k * TAKE + bad.frame}) for bad in frame.dropped)
-            found[k * TAKE + t] = frame.model_copy(update={"take": take.name, "dropped": dropped})
+            numbered[k * TAKE + t] = frame.model_copy(update={"take": take.name, "dropped": dropped})
     refuse_other_bodies(measured)
-    return found
+    return numbered
 
 
 def _are_same(
@@ -127,7 +127,7 @@ def _chosen(sources: Mapping[int, Source], frames: str, where: str) -> dict[int,
     """The frames wanted, by number, each of which knows the first and last number of all."""
     chosen = selected_frames(frames, list(sources), where)
     if len(chosen) < 2:
-        held = f"frames {frames!r} selects" if len(sources) > 1 else f"{where}: there is"
-        raise SourceError(f"{held} a single frame; kinematics are seen in motion, give at least two frames")
+        selection = f"frames {frames!r} selects" if len(sources) > 1 else f"{where}: there is"
+        raise SourceError(f"{selection} a single frame; kinematics are seen in motion, give at least two frames")
     series = min(sources), max(sources)
     return {frame: sources[frame].model_copy(update={"series": series}) for frame in chosen}

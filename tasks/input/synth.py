@@ -55,11 +55,11 @@ def body(written: str) -> Body:
 @lru_cache(maxsize=4)
 def paint(written: str) -> Paint | None:
     """The colours of the body that a recipe describes; None where it is not painted."""
-    told: dict[str, Any] = json.loads(written)
-    if "paint" not in told:
+    recipe: dict[str, Any] = json.loads(written)
+    if "paint" not in recipe:
         return None
-    skinned = {**told, "connectivity": "fixed", "noise": 0.0, "holes": 0, "dropped": []}
-    return Paint(body(written), body(json.dumps(skinned, sort_keys=True)), told["paint"], told["illumination"], told["grain"])
+    skinned = body(json.dumps({**recipe, "connectivity": "fixed", "noise": 0.0, "holes": 0, "dropped": []}, sort_keys=True))
+    return Paint(body(written), skinned, recipe["paint"], recipe["illumination"], recipe["grain"])
 
 
 def write_sequence(params: SynthParams, folder: Path, *, volumes: bool = False, cameras: int = 0) -> None:
@@ -94,8 +94,8 @@ def _write_frames(generated: Body, colours: Paint | None, folder: Path, volumes:
         np.savez_compressed(folder / "cameras.npz", **{f.name: getattr(ring, f.name) for f in fields(ring)})
     for t in range(len(generated.X)):
         V, F = generated.frame(t)
-        shown = None if colours is None else np.round(255.0 * colours.colours(t, V, F)).astype(np.uint8)
-        ply = trimesh.Trimesh(V, F, vertex_colors=shown, process=False).export(file_type="ply", vertex_normal=False)
+        vertex_colours = None if colours is None else np.round(255.0 * colours.colours(t, V, F)).astype(np.uint8)
+        ply = trimesh.Trimesh(V, F, vertex_colors=vertex_colours, process=False).export(file_type="ply", vertex_normal=False)
         (folder / f"frame_{t:04d}.ply").write_bytes(ply)
         if volumes:
             np.savez_compressed(folder / f"volume_{t:04d}.npz", **generated.volume(t)._asdict())

@@ -39,8 +39,8 @@ def compiled(function: Function) -> Function:
     """Numba's `njit` without the lock and without checks for division by nought, kept where only this code can find it."""
     folder = _kept_at(function.__module__)
     with _configured(CACHE_DIR=folder, CACHE_LOCATOR_CLASSES=LOCATOR):
-        made: Function = numba.njit(cache=bool(folder), nogil=True, error_model="numpy")(function)
-    return made
+        dispatcher: Function = numba.njit(cache=bool(folder), nogil=True, error_model="numpy")(function)
+    return dispatcher
 
 
 @contextlib.contextmanager

@@ -10,5 +10,5 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def inlined(function: Function) -> Function:
     """Numba's `njit`, put in place of every call in compiled code; called from Python it is compiled by itself each time."""
-    made: Function = numba.njit(inline="always", nogil=True, error_model="numpy")(function)
-    return made
+    dispatcher: Function = numba.njit(inline="always", nogil=True, error_model="numpy")(function)
+    return dispatcher

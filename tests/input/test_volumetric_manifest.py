@@ -11,7 +11,7 @@ from kinetree.errors import SourceError
 from kinetree.pipeline.storage.files import Files, Settling
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.input.source import SourceParams
-from kinetree.tasks.input.frames.found import frames_at
+from kinetree.tasks.input.frames.listing import frames_at
 from kinetree.tasks.input.frames.read import surface
 from kinetree.tasks.input.source import source
 

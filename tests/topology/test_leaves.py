@@ -66,6 +66,6 @@ def test_body_without_tips_has_no_leaves() -> None:
 def test_in_a_frame_in_which_none_were_followed_no_leaf_is_known() -> None:
     told = leaves({t: seen((0, 0, 1), (0, 1, 0)) for t in (3, 4, 5)}, cut(2), LeavesParams())
     assert (told.at(4) == told.positions[:, 1]).all()
-    assert told.seen(4).tolist() == [True, True]
+    assert told.is_seen(4).tolist() == [True, True]
     assert np.isnan(told.at(6)).all()
-    assert told.seen(6).tolist() == [False, False]
+    assert told.is_seen(6).tolist() == [False, False]

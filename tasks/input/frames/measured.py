@@ -29,8 +29,8 @@ def measures_of_frames(sources: Mapping[int, Source], files: Files) -> dict[int,
     kinds = {s.kind for s in sources.values()}
     if kinds <= {"npz", "zarr", "animated"}:
         first = next(iter(sources.values()))
-        held = files.parts(first.path, memory(first, "measures/2"), lambda where: _measures_of_parts(where, first))
-        return {t: _parsed(held[s.part or 0]) for t, s in sources.items()}
+        texts = files.parts(first.path, memory(first, "measures/2"), lambda where: _measures_of_parts(where, first))
+        return {t: _parsed(texts[s.part or 0]) for t, s in sources.items()}
     if kinds == {"file"}:
         return {t: _parsed(_measures(s.path, files)) for t, s in sources.items()}
     return {}
@@ -77,8 +77,8 @@ def memory(of: Source, what: str) -> str:
 
 def _parsed(text: str) -> FrameMeasures | str:
     """Measures, or the reason why there are none, from JSON."""
-    held = json.loads(text)
-    if isinstance(held, str):
-        return held
-    area, size, (x, y, z), vertices, pieces, volume = held
+    measures = json.loads(text)
+    if isinstance(measures, str):
+        return measures
+    area, size, (x, y, z), vertices, pieces, volume = measures
     return FrameMeasures(area, size, (x, y, z), vertices, pieces, volume)

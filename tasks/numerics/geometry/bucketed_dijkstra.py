@@ -118,10 +118,10 @@ def _relax_band(now: np.uint64, mesh: Links, per_band: float, work: Workspace) -
         due[v] = IDLE
         begin, end = np.uint64(first[v]), np.uint64(first[v + _1])
         ahead = np.uint64(onward[v, mark & _SECTOR])
-        k, left = begin + (ahead >> _8), ahead & _LOW
+        k, remaining = begin + (ahead >> _8), ahead & _LOW
         if ahead == _0:
-            k, left = begin, end - begin
-        for _ in range(left):
+            k, remaining = begin, end - begin
+        for _ in range(remaining):
             code, far = np.uint64(link[k].target), own + link[k].length
             w = code >> _BITS
             if far < distance[w]:

@@ -56,8 +56,8 @@ def _read(path: Path, size: int, mtime_ns: int, clip: str, is_segment: bool) -> 
         try:
             return AnimatedGlb(_glb_bytes(path), str(path), clip, targets_are_frames=is_segment)
         except (SourceError, MeshError) as error:
-            told = str(error)
-            raise SourceError(told if told.startswith(str(path)) else f"{path}: {told}") from None
+            message = str(error)
+            raise SourceError(message if message.startswith(str(path)) else f"{path}: {message}") from None
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
             raise SourceError(f"{path}: cannot be read as GLB ({reason}); the file is damaged or cut short") from error

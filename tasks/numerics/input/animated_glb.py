@@ -145,7 +145,7 @@ class AnimatedGlb:
 
     def _channels_of(self, animation: Mapping[str, Any]) -> list[Channel]:
         samplers = animation.get("samplers", [])
-        made = []
+        channels = []
         for channel in animation.get("channels", []):
             target, k = channel.get("target", {}), channel.get("sampler")
             if target.get("node") not in self._parents or target.get("path") not in ("weights", *_WIDTH):
@@ -160,10 +160,10 @@ class AnimatedGlb:
                 raise SourceError(f"{self.name}: the keys of an animation do not fit its times; the file is damaged")
             if not np.isfinite(times).all():
                 raise SourceError(f"{self.name}: an animation has times without end; the file is damaged")
-            made.append(Channel(target["node"], target["path"], times, values.reshape(*rows, width), way))
-        if not made:
+            channels.append(Channel(target["node"], target["path"], times, values.reshape(*rows, width), way))
+        if not channels:
             raise SourceError(f"{self.name}: its animation moves nothing that is shown")
-        return made
+        return channels
 
     def _frames(self) -> tuple[float, Floats]:
         """Frames a second, and the time of each frame: those of the densest channel, where it is sampled."""
@@ -186,8 +186,8 @@ class AnimatedGlb:
         """How many morph targets each piece has; raises SourceError where there is none, or they differ."""
         counts = {len(piece.targets) for piece in self._pieces}
         if counts == {0} or len(counts) > 1:
-            told = " and ".join(map(str, sorted(counts)))
-            raise SourceError(f"{self.name}: its meshes have {told} morph targets, which are no frames")
+            different_counts = " and ".join(map(str, sorted(counts)))
+            raise SourceError(f"{self.name}: its meshes have {different_counts} morph targets, which are no frames")
         if (count := counts.pop()) > _MOST_FRAMES:
             raise SourceError(f"{self.name}: {count} morph targets, more than {_MOST_FRAMES} frames; export a shorter segment")
         return count
@@ -236,9 +236,9 @@ class AnimatedGlb:
         if V.ndim != 2 or V.shape[1] != 3 or corners.ndim != 1 or len(corners) % 3:
             raise SourceError(f"{self.name}: a mesh is not made of triangles in space; the file is damaged")
         V, F = checked(V, corners.astype(np.int64).reshape(-1, 3), self.name)
-        held = primitive.get("targets", [])
-        self._refuse_beyond(len(held) * V.nbytes)  # a target without positions takes three bytes of the file
-        targets = [self._gltf.array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in held]
+        target_attributes = primitive.get("targets", [])
+        self._refuse_beyond(len(target_attributes) * V.nbytes)  # a target without positions takes three bytes of the file
+        targets = [self._gltf.array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in target_attributes]
         if any(t.shape != V.shape for t in targets):
             raise SourceError(f"{self.name}: a morph target has not as many vertices as its mesh; the file is damaged")
         at_rest = node.get("weights", mesh.get("weights", [0.0] * len(targets)))
@@ -278,12 +278,12 @@ class AnimatedGlb:
         return joints, np.where(total > 0, weights / np.maximum(total, 1e-12), np.eye(1, weights.shape[1])), nodes, inverse
 
 
-def _numbers(held: Any, n: int | None, name: str) -> Floats:
+def _numbers(value: Any, n: int | None, name: str) -> Floats:
     """A list of n numbers; raises SourceError where it is none."""
     try:
-        numbers = np.array(held, dtype=np.float64)
+        numbers = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         numbers = np.array(np.nan)
     if numbers.ndim != 1 or (n is not None and len(numbers) != n) or not np.isfinite(numbers).all():
-        raise SourceError(f"{name}: {str(held)[:40]} is no list of {n or 'some'} numbers; the file is damaged")
+        raise SourceError(f"{name}: {str(value)[:40]} is no list of {n or 'some'} numbers; the file is damaged")
     return numbers

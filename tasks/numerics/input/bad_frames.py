@@ -129,9 +129,9 @@ def refuse_bad(bad: Mapping[int, str], count: int, share: float | None) -> None:
     """Refuses a sequence with bad frames, or with more of them than a share; None allows none. Raises SourceError."""
     if not bad or (share is not None and len(bad) <= share * count):
         return
-    told = list(dict.fromkeys(text if text.startswith("frames ") else f"frame {t}: {text}" for t, text in bad.items()))
-    named = "; ".join(told[:3])
-    more = f"; and {len(told) - 3} more" if len(told) > 3 else ""
+    reasons = list(dict.fromkeys(text if text.startswith("frames ") else f"frame {t}: {text}" for t, text in bad.items()))
+    named = "; ".join(reasons[:3])
+    more = f"; and {len(reasons) - 3} more" if len(reasons) > 3 else ""
     remedy = "set source.on_bad_frame=drop to go on without them" if share is None else f"source.bad_share allows {share:g}"
     raise SourceError(f"{len(bad)} of {count} frames cannot be used ({remedy}): {named}{more}")
 

@@ -66,14 +66,14 @@ def read_calibration(files: Sequence[Path]) -> Calibration:
         if path.stat().st_size > LARGEST:
             raise SourceError(f"{path}: {path.stat().st_size} bytes are no calibration; a camera needs less than a kilobyte")
     try:
-        found = _READERS[files[0].suffix.lower()](files, where)
+        calibration = _READERS[files[0].suffix.lower()](files, where)
     except SourceError:
         raise
     except Exception as error:
         raise SourceError(f"{where}: cannot be read as a calibration ({type(error).__name__}: {error})") from error
-    if len(found.names) != len(set(found.names)):
-        raise SourceError(f"{where}: two cameras have one name; there are {', '.join(found.names)}")
-    return found
+    if len(calibration.names) != len(set(calibration.names)):
+        raise SourceError(f"{where}: two cameras have one name; there are {', '.join(calibration.names)}")
+    return calibration
 
 
 def written_calibration(calibration: Calibration) -> str:
@@ -86,12 +86,12 @@ def written_calibration(calibration: Calibration) -> str:
 
 
 def _json(files: Sequence[Path], where: str) -> Calibration:
-    held = small_json(small_text(files[0], SourceError, LARGEST), where, SourceError)
-    if not isinstance(held, dict) or not isinstance(held.get("cameras"), list) or not held["cameras"]:
+    document = small_json(small_text(files[0], SourceError, LARGEST), where, SourceError)
+    if not isinstance(document, dict) or not isinstance(document.get("cameras"), list) or not document["cameras"]:
         what = 'one entry a camera with "name", "size" and "P", or "K", "R" and "t"'
         raise SourceError(f'{where}: no list "cameras"; {FORMAT} has {what}')
     names, P, sizes = [], [], []
-    for c, camera in enumerate(held["cameras"]):
+    for c, camera in enumerate(document["cameras"]):
         name = str(camera.get("name", f"cam_{c:02d}"))
         names.append(name)
         P.append(_projection(camera, f"{where}: camera {name}"))
@@ -99,7 +99,7 @@ def _json(files: Sequence[Path], where: str) -> Calibration:
         sizes.append(None if size is None else (int(size[1]), int(size[0])))
         if size is not None and min(sizes[-1] or ()) < 1:
             raise SourceError(f"{where}: camera {name}: size is {size}; width and height of its images in pixels are needed")
-    fps, unit = held.get("fps"), held.get("unit")
+    fps, unit = document.get("fps"), document.get("unit")
     if fps is not None and not 0 < float(fps) < np.inf:
         raise SourceError(f"{where}: fps is {fps}; one positive number of frames a second is needed, or null")
     if unit is not None and not isinstance(unit, str):
@@ -125,24 +125,24 @@ def _npz(files: Sequence[Path], where: str) -> Calibration:
 
 def _opencv(files: Sequence[Path], where: str) -> Calibration:
     """Nodes K_name, Rot_name or R_name (a matrix or a rotation vector), T_name and dist_name or P_name, for every name."""
-    held: dict[str, Any] = {}
+    nodes: dict[str, Any] = {}
     for path in files:
         text = re.sub(r"^%YAML:?\s?\d\.\d\s*(---)?", "", small_text(path, SourceError, LARGEST))
-        held.update(small_yaml(text, str(path), SourceError, _OpenCV) or {})
-    listed = held.get("names") or sorted({k.partition("_")[2] for k in held if k.startswith(("K_", "P_"))}, key=natural_order)
+        nodes.update(small_yaml(text, str(path), SourceError, _OpenCV) or {})
+    listed = nodes.get("names") or sorted({k.partition("_")[2] for k in nodes if k.startswith(("K_", "P_"))}, key=natural_order)
     if not listed:
         raise SourceError(f"{where}: no list names and no nodes K_name or P_name, of which a calibration is made")
     P = []
     for name in listed:
-        own = {key: held.get(f"{node}_{name}") for key, node in (("P", "P"), ("K", "K"), ("t", "T"), ("distortion", "dist"))}
-        own["R"] = held.get(f"Rot_{name}", held.get(f"R_{name}"))
+        own = {key: nodes.get(f"{node}_{name}") for key, node in (("P", "P"), ("K", "K"), ("t", "T"), ("distortion", "dist"))}
+        own["R"] = nodes.get(f"Rot_{name}", nodes.get(f"R_{name}"))
         P.append(_projection({k: v for k, v in own.items() if v is not None}, f"{where}: camera {name}"))
-    sizes = tuple(_opencv_size(held, str(name)) for name in listed)
+    sizes = tuple(_opencv_size(nodes, str(name)) for name in listed)
     return Calibration(tuple(map(str, listed)), np.array(P), sizes)
 
 
-def _opencv_size(held: Mapping[str, Any], name: str) -> tuple[int, int] | None:
-    rows, columns = (held.get(f"{key}_{name}", held.get(word)) for key, word in (("H", "image_height"), ("W", "image_width")))
+def _opencv_size(nodes: Mapping[str, Any], name: str) -> tuple[int, int] | None:
+    rows, columns = (nodes.get(f"{key}_{name}", nodes.get(word)) for key, word in (("H", "image_height"), ("W", "image_width")))
     return None if rows is None or columns is None else (int(rows), int(columns))
 
 

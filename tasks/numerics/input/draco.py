@@ -61,5 +61,5 @@ def unpacked(raw: bytes) -> tuple[Floats, Ints]:
         raise MeshError(f"its {len(raw)} bytes {last}; the file is damaged or no mesh of a body")
     if done.returncode:
         raise MeshError(f"cannot be read as DRC ({last[:200]}); the file is damaged or cut short")
-    held = BytesIO(done.stdout)
-    return np.load(held, allow_pickle=False), np.load(held, allow_pickle=False)
+    npy_stream = BytesIO(done.stdout)
+    return np.load(npy_stream, allow_pickle=False), np.load(npy_stream, allow_pickle=False)

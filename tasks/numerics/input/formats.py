@@ -155,9 +155,9 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
         ) from error
     refuse_wrong_faces(mesh.get("metadata", {}).get("_ply_raw", {}).get("face", {}))
     V, F = mesh.get("vertices", ()), _triangles(mesh.get("faces", ()))
-    for key, held in (("vertex", len(V)), ("face", len(F))):
-        if held < claimed.get(key, 0):
-            raise MeshError(f"its header claims {claimed[key]} × {key}, only {held} are whole; the file is cut short")
+    for key, whole_rows in (("vertex", len(V)), ("face", len(F))):
+        if whole_rows < claimed.get(key, 0):
+            raise MeshError(f"its header claims {claimed[key]} × {key}, only {whole_rows} are whole; the file is cut short")
     return V, F
 
 

@@ -103,9 +103,9 @@ def _refuse_several(files: Sequence[PurePath], kinds: Sequence[tuple[str, ...]])
 
 def _refuse_repeated(files: Sequence[PurePath], numbers: Sequence[Sequence[int]], running: Sequence[int]) -> None:
     """Files of one folder whose last number begins again, such as walk1_0001 and walk2_0001."""
-    seen: dict[tuple[PurePath, int], PurePath] = {}
+    file_of_number: dict[tuple[PurePath, int], PurePath] = {}
     for path, row in zip(files, numbers, strict=True):
-        other = seen.setdefault((path.parent, row[running[-1]]), path)
+        other = file_of_number.setdefault((path.parent, row[running[-1]]), path)
         if other is not path:
             _refuse_equal(other, path)
 

@@ -56,17 +56,17 @@ class Gltf:
 
     def items(self, kind: str) -> Sequence[Mapping[str, Any]]:
         """The objects of one kind: nodes, meshes, skins, animations, accessors …; raises SourceError where they are none."""
-        held = _list(self.document.get(kind))
-        if not all(isinstance(one, dict) for one in held):
+        objects = _list(self.document.get(kind))
+        if not all(isinstance(one, dict) for one in objects):
             raise SourceError(f"{kind} is no list of objects; the file is damaged")
-        return held
+        return objects
 
     def item(self, kind: str, index: Any) -> Mapping[str, Any]:
         """One of them by its number; raises SourceError where there is none."""
-        held = self.items(kind)
-        if not isinstance(index, int) or isinstance(index, bool) or not 0 <= index < len(held):
-            raise SourceError(f"names {kind} {index!r}, but there are {len(held)}; the file is damaged")
-        return held[index]
+        objects = self.items(kind)
+        if not isinstance(index, int) or isinstance(index, bool) or not 0 <= index < len(objects):
+            raise SourceError(f"names {kind} {index!r}, but there are {len(objects)}; the file is damaged")
+        return objects[index]
 
     def array(self, index: Any) -> Floats:
         """An accessor's numbers, (count,), (count, width) or (count, 4, 4) for matrices; normalized ones within [-1, 1].
@@ -79,28 +79,28 @@ class Gltf:
         if width is None or dtype is None or count * width * 8 > _MOST_BYTES:
             raise SourceError(f"accessor {index} is of no known or of too large a layout; the file is damaged")
         if "bufferView" in accessor:
-            held = self._view(accessor["bufferView"], accessor.get("byteOffset", 0), dtype, count, width)
+            stored = self._view(accessor["bufferView"], accessor.get("byteOffset", 0), dtype, count, width)
         else:
-            held = np.zeros((count, width), dtype)
+            stored = np.zeros((count, width), dtype)
         if isinstance(sparse := accessor.get("sparse"), dict):
-            held = self._replaced(held, sparse, dtype, index)
-        values = held.astype(np.float64)
+            stored = self._replaced(stored, sparse, dtype, index)
+        values = stored.astype(np.float64)
         if accessor.get("normalized") and np.dtype(dtype).kind in "iu":
             values = np.maximum(values / np.iinfo(dtype).max, -1.0)
         if width == 16:
             return values.reshape(count, 4, 4).transpose(0, 2, 1)  # columns first in the file
         return values[:, 0] if width == 1 else values
 
-    def _replaced(self, held: Any, sparse: Mapping[str, Any], dtype: str, index: Any) -> Any:
+    def _replaced(self, dense: Any, sparse: Mapping[str, Any], dtype: str, index: Any) -> Any:
         """An array some of whose rows are given apart."""
         count = _whole(sparse.get("count"))
         indices, values = _dict(sparse.get("indices")), _dict(sparse.get("values"))
         kind = _DTYPES.get(indices.get("componentType", 0), "<u4")
         rows = self._view(indices.get("bufferView"), indices.get("byteOffset", 0), kind, count, 1)[:, 0].astype(np.int64)
-        if ((rows < 0) | (rows >= len(held))).any():
+        if ((rows < 0) | (rows >= len(dense))).any():
             raise SourceError(f"accessor {index} replaces rows that it has not; the file is damaged")
-        changed = held.copy()
-        changed[rows] = self._view(values.get("bufferView"), values.get("byteOffset", 0), dtype, count, held.shape[1])
+        changed = dense.copy()
+        changed[rows] = self._view(values.get("bufferView"), values.get("byteOffset", 0), dtype, count, dense.shape[1])
         return changed
 
     def _view(self, index: Any, offset: Any, dtype: str, count: int, width: int) -> Any:
@@ -122,33 +122,33 @@ class Gltf:
     @cached_property
     def _buffers(self) -> list[bytes]:
         """The bytes of each buffer; raises SourceError where they lie in another file."""
-        held = []
+        buffers = []
         for buffer in self.items("buffers"):
             uri = buffer.get("uri")
             if uri is None:
-                held.append(self.binary)
+                buffers.append(self.binary)
             elif str(uri).startswith("data:") and ";base64," in str(uri)[:200]:
                 try:
-                    held.append(base64.b64decode(str(uri).partition(",")[2], validate=True))
+                    buffers.append(base64.b64decode(str(uri).partition(",")[2], validate=True))
                 except binascii.Error:
                     raise SourceError("a buffer is no base64; the file is damaged") from None
             else:
                 raise SourceError(
                     f"keeps its data outside itself, in {str(uri)[:80]!r}, which is not opened; export it as one file"
                 )
-        return held
+        return buffers
 
 
-def _list(held: Any) -> list[Any]:
-    return held if isinstance(held, list) else []
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
 
 
-def _dict(held: Any) -> Mapping[str, Any]:
-    return held if isinstance(held, dict) else {}
+def _dict(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, dict) else {}
 
 
-def _whole(held: Any) -> int:
+def _whole(value: Any) -> int:
     """A count or an offset; raises SourceError where it is none."""
-    if not isinstance(held, int) or isinstance(held, bool) or not 0 <= held < 2**40:
-        raise SourceError(f"a count or an offset is {str(held)[:20]!r}; the file is damaged")
-    return held
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < 2**40:
+        raise SourceError(f"a count or an offset is {str(value)[:20]!r}; the file is damaged")
+    return value

@@ -52,14 +52,14 @@ def glb_appearance(raw: bytes, F: Faces, moves: bool) -> SurfaceAppearance | Non
     raises : SourceError where it is damaged, or shows other faces
     """
     gltf = Gltf.of(raw)
-    shown = _as_animated(gltf) if moves else _as_scene(gltf, raw)
-    if sum(_count(gltf, p) for p in shown) != F.size:
+    primitives = _as_animated(gltf) if moves else _as_scene(gltf, raw)
+    if sum(_count(gltf, p) for p in primitives) != F.size:
         raise SourceError("shows other faces than its surface has")
     pictures, at, missing = _pictures(gltf)
     materials = [Material("body", (1.0, 1.0, 1.0, 1.0), None), *(_material(gltf, m, at) for m in gltf.items("materials"))]
     faces, uv, colour, material, begin, face = [], [], [], [], 0, 0
-    has_uv, has_colour = (any(name in p.get("attributes", {}) for p in shown) for name in ("TEXCOORD_0", "COLOR_0"))
-    for primitive in shown:
+    has_uv, has_colour = (any(name in p.get("attributes", {}) for p in primitives) for name in ("TEXCOORD_0", "COLOR_0"))
+    for primitive in primitives:
         attributes = primitive["attributes"]
         n = len(gltf.array(attributes["POSITION"]))
         own = gltf.array(primitive["indices"]).astype(np.int64) if "indices" in primitive else np.arange(n)
@@ -79,26 +79,26 @@ def glb_appearance(raw: bytes, F: Faces, moves: bool) -> SurfaceAppearance | Non
     )  # fmt: skip
 
 
-Shown = Sequence[Mapping[str, Any]]
+Primitives = Sequence[Mapping[str, Any]]
 """Primitives in the order in which a surface is made of them."""
 
 
-def _as_animated(gltf: Gltf) -> Shown:
+def _as_animated(gltf: Gltf) -> Primitives:
     """As `AnimatedGlb` reads them: nodes of the scene, the last first."""
     nodes = gltf.items("nodes")
     below = {c for node in nodes for c in node.get("children", [])}
     scenes = gltf.items("scenes")
     roots = gltf.item("scenes", gltf.document.get("scene", 0)).get("nodes", []) if scenes else set(range(len(nodes))) - below
-    waiting, shown = list(roots), list[Mapping[str, Any]]()
-    while waiting and len(shown) < _MOST_PRIMITIVES:
+    waiting, primitives = list(roots), list[Mapping[str, Any]]()
+    while waiting and len(primitives) < _MOST_PRIMITIVES:
         node = gltf.item("nodes", waiting.pop())
         mesh = gltf.item("meshes", node["mesh"]) if "mesh" in node else {}
-        shown += [p for p in mesh.get("primitives", []) if p.get("mode", _TRIANGLES) == _TRIANGLES]
+        primitives += [p for p in mesh.get("primitives", []) if p.get("mode", _TRIANGLES) == _TRIANGLES]
         waiting += node.get("children", [])
-    return shown
+    return primitives
 
 
-def _as_scene(gltf: Gltf, raw: bytes) -> Shown:
+def _as_scene(gltf: Gltf, raw: bytes) -> Primitives:
     """As `formats` reads a GLB without motion: geometries by name, placed as trimesh's graph says."""
     scene = load_glb(BytesIO(raw), resolver=None, skip_materials=True)
     triangles = {key for key, mesh in scene["geometry"].items() if "faces" in mesh}
@@ -128,18 +128,18 @@ def _rows(gltf: Gltf, accessor: Any, n: int, default: tuple[float, ...]) -> Floa
 
 def _pictures(gltf: Gltf) -> tuple[list[Picture], dict[int, int], list[str]]:
     """All pictures that can be had, the place of each by its number in the file, and what could not be had."""
-    held: list[Picture] = []
+    pictures: list[Picture] = []
     at: dict[int, int] = {}
     missing = []
     for i, image in enumerate(gltf.items("images")):
         raw = _bytes(gltf, image)
-        found = picture(raw) if raw is not None else "lies outside the file"
-        if isinstance(found, str):
-            missing.append(f"picture {image.get('name', i)}: {found}")
+        texture = picture(raw) if raw is not None else "lies outside the file"
+        if isinstance(texture, str):
+            missing.append(f"picture {image.get('name', i)}: {texture}")
         else:
-            at[i] = len(held)
-            held.append(found)
-    return held, at, missing
+            at[i] = len(pictures)
+            pictures.append(texture)
+    return pictures, at, missing
 
 
 def _bytes(gltf: Gltf, image: Mapping[str, Any]) -> bytes | None:

@@ -110,9 +110,9 @@ def _half_spaces(masks: Sequence[Flags], P: Floats) -> tuple[Floats, Floats, Int
         cut = cut_sides(mask)
         planes = [M[0] - (left - 0.5) * M[2], M[1] - (top - 0.5) * M[2]]
         planes += [(right + 0.5) * M[2] - M[0], (bottom + 0.5) * M[2] - M[1]]
-        kept = [M[2], *(plane for plane, side in zip(planes, cut, strict=True) if not side)]
-        rows += [plane / np.linalg.norm(plane[:3]) for plane in kept]
-        camera += [c] * len(kept)
+        uncut = [M[2], *(plane for plane, side in zip(planes, cut, strict=True) if not side)]
+        rows += [plane / np.linalg.norm(plane[:3]) for plane in uncut]
+        camera += [c] * len(uncut)
     stacked = np.array(rows)
     return -stacked[:, :3], stacked[:, 3], np.array(camera)
 
@@ -179,14 +179,14 @@ def _disagreement(views: _Views, sampled: Field, names: Sequence[str]) -> str:
     """Which cameras keep the point that most silhouettes hold out of the hull."""
     spacing = float(sampled.spacing[0])
     votes = np.zeros(sampled.values.shape, dtype=np.int32)
-    held = []
+    inside_silhouette = []
     for c in range(len(names)):
         one = _Views(views.P[c : c + 1], views.focal[c : c + 1], views.values, views.layout[c : c + 1])
         upper = sampled.origin + (np.array(votes.shape) - 1) * spacing
-        held.append(one.sampled(sampled.origin, upper, spacing, spacing).values > -0.9 * spacing)
-        votes += held[-1]
+        inside_silhouette.append(one.sampled(sampled.origin, upper, spacing, spacing).values > -0.9 * spacing)
+        votes += inside_silhouette[-1]
     at = np.unravel_index(int(votes.argmax()), votes.shape)
-    others = ", ".join(name for name, inside in zip(names, held, strict=True) if not inside[at])
+    others = ", ".join(name for name, inside in zip(names, inside_silhouette, strict=True) if not inside[at])
     return (
         f"no point is inside all {len(names)} silhouettes; at most {votes.max()} of them share one, without camera {others}: "
         "check its calibration and its masks, and that all masks show the same moment"

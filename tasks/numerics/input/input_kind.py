@@ -10,10 +10,10 @@ from kinetree.tasks.numerics.input.calibration import calibration_files
 from kinetree.tasks.numerics.input.formats import suffixes
 from kinetree.tasks.numerics.input.source import natural_order, regular
 
-Held = Literal["meshes", "silhouettes", "packed silhouettes", "volumes", "packed volumes"]
+InputKind = Literal["meshes", "silhouettes", "packed silhouettes", "volumes", "packed volumes"]
 
 
-def input_kind(where: str) -> tuple[Held, list[Path]]:
+def input_kind(where: str) -> tuple[InputKind, list[Path]]:
     """What lies at a path or pattern, and the files of it, one a frame, in natural order.
 
     Meshes come first: silhouettes or volumes beside meshes are chosen by a pattern such as walk/volume_*.npz.
@@ -41,18 +41,19 @@ def input_kind(where: str) -> tuple[Held, list[Path]]:
     return "meshes", []
 
 
-def _of_files(there: list[Path]) -> tuple[Held, list[Path]]:
+def _of_files(there: list[Path]) -> tuple[InputKind, list[Path]]:
     """Silhouettes or volumes among the files of one suffix; meshes where they are neither."""
     files = [p for p in there if p.is_file()]
     kinds = {p.suffix.lower() for p in files}
-    found = sorted(files, key=lambda p: [natural_order(part) for part in p.parts])
+    frame_files = sorted(files, key=lambda p: [natural_order(part) for part in p.parts])
     if len(kinds) != 1 or not kinds <= set(volumes.SUFFIXES):
         if kinds and kinds <= set(silhouettes.SUFFIXES):
             raise SourceError(
-                f"{found[0].parent}: images, but no folder for each camera; silhouettes are CAMERA/FRAME.png and a calibration"
+                f"{frame_files[0].parent}: images, but no folder for each camera; "
+                "silhouettes are CAMERA/FRAME.png and a calibration"
             )
         return "meshes", []
     regular(there, kinds)
-    if kinds == {".npz"} and silhouettes.ARRAY in volumes.npz_shapes(found[0]):
-        return "packed silhouettes", found
-    return "volumes", found
+    if kinds == {".npz"} and silhouettes.ARRAY in volumes.npz_shapes(frame_files[0]):
+        return "packed silhouettes", frame_files
+    return "volumes", frame_files

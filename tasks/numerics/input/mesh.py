@@ -53,7 +53,7 @@ class Cleaned:
     needles       : faces without height, kept because taking one out would open the surface
     flipped       : faces of F turned the other way round
     shares        : (component,) share of the surface's area, in the order of the components' first faces
-    kept          : (component,) True where it is in F
+    is_body       : (component,) True where it is in F
     nested        : components dropped only because they lie wholly inside another
     left_out_vertices, left_out_faces  : those of the dropped components
     boundary_edges, non_manifold_edges : edges of F with one face, with more than two
@@ -74,7 +74,7 @@ class Cleaned:
     needles: int
     flipped: int
     shares: Floats
-    kept: Flags
+    is_body: Flags
     nested: int
     left_out_vertices: int
     left_out_faces: int
@@ -143,7 +143,7 @@ def clean(
         needles=int(_needles(X, G[keep], area[keep], chosen.needle)),
         flipped=int(turned[keep].sum()),
         shares=shares,
-        kept=keep_component,
+        is_body=keep_component,
         nested=int(inside.sum()),
         left_out_vertices=referenced - len(V_new),
         left_out_faces=len(G) - len(F_new),

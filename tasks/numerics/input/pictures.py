@@ -32,8 +32,8 @@ def picture(raw: bytes) -> Picture | str:
             if image.format in _KEPT:
                 image.verify()
                 return Picture(raw, _KEPT[image.format])
-            made = BytesIO()
-            image.convert("RGBA" if "A" in image.getbands() else "RGB").save(made, "PNG")
-            return Picture(made.getvalue(), "image/png")
+            png = BytesIO()
+            image.convert("RGBA" if "A" in image.getbands() else "RGB").save(png, "PNG")
+            return Picture(png.getvalue(), "image/png")
     except Exception as error:  # of many kinds, some of them undocumented
         return f"cannot be read as a picture ({type(error).__name__})"

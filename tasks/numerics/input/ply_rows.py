@@ -23,14 +23,14 @@ class Element(NamedTuple):
 
 def elements(header: bytes) -> list[Element]:
     """What a header claims, in its order; other lines are passed over."""
-    found: list[Element] = []
+    claimed: list[Element] = []
     for line in header.splitlines():
         words = line.decode("utf-8", "replace").split()
         if len(words) >= 3 and words[0] == "element" and re.fullmatch(r"-?[0-9]{1,300}", words[2]):
-            found.append(Element(words[1], int(words[2]), ()))
-        elif len(words) >= 3 and words[0] == "property" and found:
-            found[-1] = found[-1]._replace(lists=(*found[-1].lists, words[1] == "list"))
-    return found
+            claimed.append(Element(words[1], int(words[2]), ()))
+        elif len(words) >= 3 and words[0] == "property" and claimed:
+            claimed[-1] = claimed[-1]._replace(lists=(*claimed[-1].lists, words[1] == "list"))
+    return claimed
 
 
 def refuse_wrong_rows(claimed: list[Element], body: bytes) -> None:

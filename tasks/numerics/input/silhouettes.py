@@ -36,14 +36,14 @@ MOST_BYTES = 1_000_000_000
 
 def image_files(folder: Path) -> list[Path]:
     """The images of a folder in natural order, hidden files left out."""
-    found = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith(".") and p.is_file()]
-    return sorted(found, key=lambda p: natural_order(p.name))
+    images = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith(".") and p.is_file()]
+    return sorted(images, key=lambda p: natural_order(p.name))
 
 
 def camera_folders(folder: Path) -> dict[str, Path]:
     """The sub-folders that hold images, by name."""
-    found = [p for p in folder.iterdir() if p.is_dir() and not p.name.startswith(".") and image_files(p)]
-    return {p.name: p for p in sorted(found, key=lambda p: natural_order(p.name))}
+    cameras = [p for p in folder.iterdir() if p.is_dir() and not p.name.startswith(".") and image_files(p)]
+    return {p.name: p for p in sorted(cameras, key=lambda p: natural_order(p.name))}
 
 
 def mask_files(folder: Path, calibration: Calibration) -> list[tuple[int, tuple[Path | None, ...]]]:
@@ -109,23 +109,23 @@ def _refuse_large(path: Path) -> None:
     import zipfile
 
     with zipfile.ZipFile(path) as archive:
-        held = sum(entry.file_size for entry in archive.infolist())
-    if held > MOST_BYTES:
-        raise HullError(f"{path}: unpacks to {held} bytes, more than {MOST_BYTES}; one frame's silhouettes need less")
+        unpacked_bytes = sum(entry.file_size for entry in archive.infolist())
+    if unpacked_bytes > MOST_BYTES:
+        raise HullError(f"{path}: unpacks to {unpacked_bytes} bytes, more than {MOST_BYTES}; one frame's silhouettes need less")
 
 
 def _by_number(folder: Path) -> Mapping[int, Path]:
     """The images of one camera by the last number in their names."""
-    found: dict[int, Path] = {}
+    image_of: dict[int, Path] = {}
     for path in image_files(folder):
         digits = re.findall(r"[0-9]+", path.stem)
         if not digits:
             raise SourceError(f"{path}: no number in its name; the last number of an image's name says which frame it is of")
         frame = int(digits[-1])
-        if frame in found:
-            raise SourceError(f"{folder}: {found[frame].name} and {path.name} are both of frame {frame}; leave one out")
-        found[frame] = path
-    return found
+        if frame in image_of:
+            raise SourceError(f"{folder}: {image_of[frame].name} and {path.name} are both of frame {frame}; leave one out")
+        image_of[frame] = path
+    return image_of
 
 
 def _image(path: Path) -> NDArray[Any]:
@@ -139,8 +139,8 @@ def _image(path: Path) -> NDArray[Any]:
                 if image.width * image.height > MOST_PIXELS:
                     raise HullError(f"{path}: {image.width} × {image.height} pixels are more than {MOST_PIXELS}")
                 plain = image.mode not in ("P", "PA", "CMYK", "YCbCr", "HSV", "LAB")
-                shown = image if plain else image.convert("RGB")
-                values, bands = np.asarray(shown), shown.getbands()
+                plain_image = image if plain else image.convert("RGB")
+                values, bands = np.asarray(plain_image), plain_image.getbands()
     except HullError:
         raise
     except FileNotFoundError:

@@ -88,8 +88,8 @@ def one_format(files: Sequence[AnyPath], where: str, folder: Path | None = None)
     if not meshes:
         others = ", ".join(f"{n} × {kind or 'no suffix'}" for kind, n in sorted(kinds.items())) or "nothing"
         known = " ".join(suffixes())
-        told = advice(set(kinds))
-        raise SourceError(f"{where}: no mesh among its files ({others}); {known} are read, one file a frame{told}")
+        hint = advice(set(kinds))
+        raise SourceError(f"{where}: no mesh among its files ({others}); {known} are read, one file a frame{hint}")
     if len(meshes) > 1:
         counts = ", ".join(f"{n} × {kind}" for kind, n in meshes.items())
         likely = max(meshes, key=lambda kind: meshes[kind])
@@ -176,13 +176,13 @@ def read_npz(path: Path | str) -> Frames:
     return _frames(str(path.resolve()), state.st_size, state.st_mtime_ns)
 
 
-def regular(found: Iterable[Path], frames: Collection[str]) -> list[Path]:
-    """The files among what was found; what is none is passed over.
+def regular(paths: Iterable[Path], frames: Collection[str]) -> list[Path]:
+    """The files among paths; what is none is passed over.
 
     frames : suffixes of frames, in lower case
     raises : SourceError where what has such a suffix is no file: leaving it out would be a frame that vanishes
     """
-    there = list(found)
+    there = list(paths)
     files = [path for path in there if path.is_file()]
     lost = sorted(path for path in set(there) - set(files) if path.suffix.lower() in frames)
     if lost:
@@ -241,8 +241,8 @@ def _offsets(arrays: Mapping[str, Any], key: str, of: str, name: str) -> Ints:
         t = int(np.flatnonzero(np.diff(offsets) <= 0)[0])
         raise SourceError(f"{name}: {key} must increase, but {offsets[t + 1]} follows {offsets[t]} after frame {t}")
     if offsets[0] < 0 or offsets[-1] > arrays[of].shape[0]:
-        held = arrays[of].shape[0]
-        raise SourceError(f"{name}: {key} run from {offsets[0]} to {offsets[-1]}, but there are {held} {of}")
+        rows = arrays[of].shape[0]
+        raise SourceError(f"{name}: {key} run from {offsets[0]} to {offsets[-1]}, but there are {rows} {of}")
     return offsets
 
 
@@ -274,8 +274,8 @@ def _not_a_file(path: Path) -> str:
 def _not_a_folder(path: Path) -> str:
     """What to say about a path that is neither a folder nor a pattern: the nearest that exists, and likely names."""
     if path.exists():
-        if told := advice({path.suffix}):
-            return f"{path}{told}"
+        if advised := advice({path.suffix}):
+            return f"{path}{advised}"
         return f"{path}: one file, not a sequence; give the folder of the frames' files, or a pattern such as *{path.suffix}"
     missing = path.absolute()
     while not missing.parent.is_dir():

@@ -39,10 +39,10 @@ def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, mo
     read = {".obj": _obj, ".ply": _ply, ".drc": _draco, ".glb": lambda raw, _: glb_appearance(raw, faces, moves)}
     if suffix.lower() not in read:
         return None
-    found = read[suffix.lower()](raw, beside)
-    if found is not None and (found.faces.shape != faces.shape or (found.faces != faces).any()):
+    appearance = read[suffix.lower()](raw, beside)
+    if appearance is not None and (appearance.faces.shape != faces.shape or (appearance.faces != faces).any()):
         raise MeshError("its texture coordinates and colours are of other faces than its surface")
-    return found
+    return appearance
 
 
 def names_appearance(raw: bytes, suffix: str) -> bool:
@@ -98,13 +98,13 @@ def _obj(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
             _add_polygon(corners, words, vertices, len(uv), current)
     F, V_of, at = _triangulated(corners)
     materials, pictures, missing = _materials(list(used), libraries, beside)
-    held = np.array([*uv, [0.0, 0.0]]) * (1.0, -1.0) + (0.0, 1.0)  # glTF's begin in the upper left
+    coordinates = np.array([*uv, [0.0, 0.0]]) * (1.0, -1.0) + (0.0, 1.0)  # glTF's begin in the upper left
     colour = _linear(np.array(colours)) if colours and len(colours) == vertices else None
     if not uv and colour is None and len(used) == 1:
         return None
     return SurfaceAppearance(
         faces=V_of[F],
-        uv=held[np.array(corners.coordinate)[F]] if uv else None,
+        uv=coordinates[np.array(corners.coordinate)[F]] if uv else None,
         colour=None if colour is None else colour[V_of[F]],
         material=np.array(corners.material)[at],
         materials=materials,
@@ -137,7 +137,7 @@ def _materials(
     used: list[str], libraries: list[str], beside: Beside
 ) -> tuple[tuple[Material, ...], tuple[Picture, ...], tuple[str, ...]]:
     """The materials of an OBJ by name, from the files that it names; the first is that of faces without one."""
-    told: dict[str, dict[str, str]] = {}
+    properties: dict[str, dict[str, str]] = {}
     missing: list[str] = []
     for name in libraries:
         text = beside(name)
@@ -146,21 +146,21 @@ def _materials(
         for line in (text or b"").decode("utf-8", "replace").splitlines():
             key, _, rest = line.strip().partition(" ")
             if key == "newmtl":
-                current = told.setdefault(rest.strip(), {})
+                current = properties.setdefault(rest.strip(), {})
             else:
                 current[key.lower()] = rest.strip()
     pictures: list[Picture] = []
-    held: dict[str, int | None] = {}
+    index_of: dict[str, int | None] = {}
     materials = []
     for name in used:
-        own = told.get(name, {})
+        own = properties.get(name, {})
         file = own.get("map_kd", "")
-        if file and file not in held:
-            held[file] = _entered(file, beside, pictures, missing)
-        shown = held.get(file)
+        if file and file not in index_of:
+            index_of[file] = _entered(file, beside, pictures, missing)
+        picture_index = index_of.get(file)
         rgb = [float(w) for w in own.get("kd", "").split()[:3]]
-        colour = (*rgb, 1.0) if len(rgb) == 3 and shown is None else (1.0, 1.0, 1.0, 1.0)
-        materials.append(Material(name or "body", tuple(float(np.clip(c, 0, 1)) for c in colour), shown))
+        colour = (*rgb, 1.0) if len(rgb) == 3 and picture_index is None else (1.0, 1.0, 1.0, 1.0)
+        materials.append(Material(name or "body", tuple(float(np.clip(c, 0, 1)) for c in colour), picture_index))
     return tuple(materials), tuple(pictures), tuple(missing)
 
 
@@ -170,13 +170,13 @@ def _entered(file: str, beside: Beside, pictures: list[Picture], missing: list[s
     if raw is None and file.split()[-1] != file:  # options may stand before the name
         name = file.split()[-1]
         raw = beside(name)
-    found = picture(raw) if raw is not None else f"{name} is not there"
-    if not isinstance(found, str) and sum(len(p.raw) for p in pictures) + len(found.raw) > MOST_PICTURE_BYTES:
-        found = f"with it all pictures have more than {MOST_PICTURE_BYTES} bytes"
-    if isinstance(found, str):
-        missing.append(found if raw is None else f"{name}: {found}")
+    texture = picture(raw) if raw is not None else f"{name} is not there"
+    if not isinstance(texture, str) and sum(len(p.raw) for p in pictures) + len(texture.raw) > MOST_PICTURE_BYTES:
+        texture = f"with it all pictures have more than {MOST_PICTURE_BYTES} bytes"
+    if isinstance(texture, str):
+        missing.append(texture if raw is None else f"{name}: {texture}")
         return None
-    pictures.append(found)
+    pictures.append(texture)
     return len(pictures) - 1
 
 
@@ -197,13 +197,13 @@ def _ply(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
     pictures: list[Picture] = []
     missing: list[str] = []
     names = [line.split(None, 2)[2].strip() for line in header.splitlines() if line.lower().startswith("comment texturefile ")]
-    shown = _entered(names[0], beside, pictures, missing) if names and at_corners is not None else None
+    picture_index = _entered(names[0], beside, pictures, missing) if names and at_corners is not None else None
     return SurfaceAppearance(
         faces=F,
         uv=None if at_corners is None else at_corners * (1.0, -1.0) + (0.0, 1.0),
         colour=None if colour is None else _linear(colour / 255.0)[F],
         material=np.zeros(len(F), np.int64),
-        materials=(Material("body", (1.0, 1.0, 1.0, 1.0), shown),),
+        materials=(Material("body", (1.0, 1.0, 1.0, 1.0), picture_index),),
         pictures=tuple(pictures),
         missing=tuple(missing),
     )
@@ -215,16 +215,16 @@ _PLY_UV = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 def _columns(rows: Any, names: tuple[str, ...]) -> Floats | None:
     """(row, name) some properties of a PLY's element; None where one is lacking."""
     columns = [_column(rows, name) for name in names]
-    held = [np.ravel(c) for c in columns if c is not None and c.size]
-    return np.column_stack(held) if len(held) == len(names) else None
+    present = [np.ravel(c) for c in columns if c is not None and c.size]
+    return np.column_stack(present) if len(present) == len(names) else None
 
 
 def _column(rows: Any, name: str) -> Floats | None:
     """One property, a list's as (row, item)."""
-    held = rows if isinstance(rows, dict) else {key: rows[key] for key in rows.dtype.names or ()}
-    if name not in held:
+    columns = rows if isinstance(rows, dict) else {key: rows[key] for key in rows.dtype.names or ()}
+    if name not in columns:
         return None
-    values = held[name]
+    values = columns[name]
     if getattr(values, "dtype", None) is not None and values.dtype.names:
         values = values["f1"]
     return np.asarray(values, dtype=np.float64)

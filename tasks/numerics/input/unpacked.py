@@ -46,26 +46,26 @@ def unpacks_beyond(file: BinaryIO, encoding: str, stored: int, most: int) -> boo
     if is_deflate and _DEFLATE_RATIO * stored <= most:
         return False
     unpacker = zlib.decompressobj(zlib.MAX_WBITS | 16) if is_deflate else bz2.BZ2Decompressor()
-    held = 0
-    while not unpacker.eof and held <= most:
+    size = 0
+    while not unpacker.eof and size <= most:
         packed = file.read(_CHUNK_BYTES)
         if not packed:
             break
-        held += _unpacked(unpacker, packed, most - held)
-    return held > most
+        size += _unpacked(unpacker, packed, most - size)
+    return size > most
 
 
 def _unpacked(unpacker: "zlib._Decompress | bz2.BZ2Decompressor", packed: bytes, most: int) -> int:
     """How many bytes some packed bytes become, counted up to a little more than `most`."""
-    held = 0
-    while held <= most:
-        made = unpacker.decompress(packed, _CHUNK_BYTES)
-        held += len(made)
+    size = 0
+    while size <= most:
+        piece = unpacker.decompress(packed, _CHUNK_BYTES)
+        size += len(piece)
         packed = b"" if isinstance(unpacker, bz2.BZ2Decompressor) else unpacker.unconsumed_tail
         is_done = unpacker.needs_input if isinstance(unpacker, bz2.BZ2Decompressor) else not packed
-        if unpacker.eof or (is_done and len(made) < _CHUNK_BYTES):
+        if unpacker.eof or (is_done and len(piece) < _CHUNK_BYTES):
             break
-    return held
+    return size
 
 
 def too_large(path: Path, most: int) -> str:

@@ -121,12 +121,12 @@ def read_volumes(path: Path) -> Volumes:
     try:
         if path.suffix.lower() == ".npy":
             return Volumes.of(np.load(path, mmap_mode="r", allow_pickle=False), {}, str(path))
-        held = _npz_arrays(path)
+        arrays = _npz_arrays(path)
     except (SourceError, HullError) as error:
         raise SourceError(str(error)) from None
     except Exception as error:
         raise SourceError(f"{path}: cannot be read as volumes ({type(error).__name__}: {error})") from None
-    return Volumes.of(held["values"], held, str(path))
+    return Volumes.of(arrays["values"], arrays, str(path))
 
 
 def npz_shapes(path: Path) -> dict[str, tuple[int, ...]]:
@@ -163,8 +163,8 @@ def _npz_arrays(path: Path) -> dict[str, Any]:
 
 
 def _npz(path: Path) -> tuple[Any, Any, Any]:
-    held = _npz_arrays(path)
-    return held["values"], held.get("origin", np.zeros(3)), held.get("voxel", 1.0)
+    arrays = _npz_arrays(path)
+    return arrays["values"], arrays.get("origin", np.zeros(3)), arrays.get("voxel", 1.0)
 
 
 def _npy(path: Path) -> tuple[Any, Any, Any]:
@@ -216,15 +216,15 @@ def _tiff(path: Path) -> tuple[Any, Any, Any]:
 
 def _refuse_circle(file: tifffile.TiffFile, path: Path) -> None:
     """Refuses pages of which one names an earlier one as its next, which tifffile would follow for ever."""
-    seen: set[int] = set()
+    offsets: set[int] = set()
     for k in range(_MOST_PAGES + 1):
         try:
             offset = file.pages[k].offset
         except IndexError:
             return
-        if offset in seen:
+        if offset in offsets:
             raise HullError(f"{path}: its pages follow each other in a circle; the file is damaged")
-        seen.add(offset)
+        offsets.add(offset)
     raise HullError(f"{path}: more than {_MOST_PAGES} pages; no volume needs as many")
 
 

@@ -53,17 +53,18 @@ def manifest_in(folder: Path, *, beside_meshes: bool = False) -> Path | None:
     raises        : SourceError where there are several
     """
     files = [(path.stat().st_size, path) for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()]
-    found, read = [], 0
+    manifests, read = [], 0
     for size, path in sorted(files):  # a manifest is small; a take may have a large file for every frame
         read += size
         if read > LARGEST:
             break
-        held = _held_or_none(path)
-        if _is_manifest(held) and not (beside_meshes and (_is_version_1(held) or "output" in held)):
-            found.append(path)
-    if len(found) > 1:
-        raise SourceError(f"{folder}: {' and '.join(path.name for path in sorted(found)[:3])} are manifests; name one of them")
-    return found[0] if found else None
+        document = _document_or_none(path)
+        if _is_manifest(document) and not (beside_meshes and (_is_version_1(document) or "output" in document)):
+            manifests.append(path)
+    if len(manifests) > 1:
+        names = " and ".join(path.name for path in sorted(manifests)[:3])
+        raise SourceError(f"{folder}: {names} are manifests; name one of them")
+    return manifests[0] if manifests else None
 
 
 def read_manifest(path: Path, target: str = "", *, is_growing: bool = False) -> VolumetricManifest:
@@ -73,32 +74,32 @@ def read_manifest(path: Path, target: str = "", *, is_growing: bool = False) -> 
     is_growing : fewer or more files than the manifest has frames are no fault
     raises     : SourceError where it is no manifest of version 2, or files are not there
     """
-    held = _held(path)
-    if not _is_manifest(held):
+    manifest = _document(path)
+    if not _is_manifest(manifest):
         raise SourceError(f"{path}: no manifest of Universal Volumetric 2: it has no geometry; name the folder of the frames")
-    if _is_version_1(held):
+    if _is_version_1(manifest):
         raise SourceError(f"{path}: {VOLUMETRIC_1}")
-    name, template, chosen = _target(held, target, path)
+    name, template, chosen = _target(manifest, target, path)
     holds, ending = _EXTENSIONS.get(str(chosen.get("format", "draco")).lower(), ("file", ""))
     if not ending:
         raise SourceError(f"{path}: {name or 'its geometry'} is {chosen['format']!r}; {', '.join(_EXTENSIONS)} are read")
-    found = _files(path, template, name, ending)
+    file_of = _files(path, template, name, ending)
     length = _count(chosen, "segmentFrameCount", path) if holds == "segment" else 1
     if length is None:
         raise SourceError(f"{path}: {name} has no segmentFrameCount, the frames of one file; the manifest is not complete")
-    if (max(found) + 1) * length > TAKE:
-        raise SourceError(f"{path}: frame {max(found) * length} is beyond the last number that a frame may have, {TAKE - 1}")
+    if (max(file_of) + 1) * length > TAKE:
+        raise SourceError(f"{path}: frame {max(file_of) * length} is beyond the last number that a frame may have, {TAKE - 1}")
     claimed = _count(chosen, "frameCount", path)
     if claimed is not None and not is_growing:
-        _refuse_other_count(path, name, claimed, list(found.values()), length)
-    return VolumetricManifest(tuple(found.values()), tuple(found), holds, length, _rate(chosen, path))
+        _refuse_other_count(path, name, claimed, list(file_of.values()), length)
+    return VolumetricManifest(tuple(file_of.values()), tuple(file_of), holds, length, _rate(chosen, path))
 
 
-def _held(path: Path) -> Any:
+def _document(path: Path) -> Any:
     return small_json(small_text(path, SourceError, LARGEST), str(path), SourceError)
 
 
-def _held_or_none(path: Path) -> Any:
+def _document_or_none(path: Path) -> Any:
     """What a file beside others holds; None where that cannot be read, since it need not be a manifest."""
     try:
         text = small_text(path, SourceError, LARGEST)
@@ -107,31 +108,31 @@ def _held_or_none(path: Path) -> Any:
         return None
 
 
-def _is_manifest(held: Any) -> bool:
+def _is_manifest(document: Any) -> bool:
     """Whether a JSON value has what only manifests have, of either version."""
-    if not isinstance(held, dict):
+    if not isinstance(document, dict):
         return False
-    geometry = _mapping(held, "geometry") or _mapping(_mapping(held, "output"), "geometry")
-    return bool({"targets", "path", "frameData"} & set(geometry)) or "DRCURLPattern" in held or "frameData" in held
+    geometry = _mapping(document, "geometry") or _mapping(_mapping(document, "output"), "geometry")
+    return bool({"targets", "path", "frameData"} & set(geometry)) or "DRCURLPattern" in document or "frameData" in document
 
 
-def _is_version_1(held: Mapping[str, Any]) -> bool:
+def _is_version_1(manifest: Mapping[str, Any]) -> bool:
     """Whether a manifest lists its frames, which lie in one file."""
-    return "frameData" in held or "frameData" in _mapping(held, "geometry")
+    return "frameData" in manifest or "frameData" in _mapping(manifest, "geometry")
 
 
-def _mapping(held: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+def _mapping(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     """What lies under a key, if it is a mapping."""
-    value = held.get(key)
+    value = document.get(key)
     return value if isinstance(value, dict) else {}
 
 
-def _target(held: Mapping[str, Any], wanted: str, path: Path) -> tuple[str, str, Mapping[str, Any]]:
+def _target(manifest: Mapping[str, Any], wanted: str, path: Path) -> tuple[str, str, Mapping[str, Any]]:
     """Name, path and description of a target; manifests of the first kind of version 2 have one without a name."""
-    if "DRCURLPattern" in held:
-        early = {"frameRate": held.get("GeometryFrameRate"), "frameCount": held.get("GeometryFrameCount")}
-        return "", str(held["DRCURLPattern"]), {key: value for key, value in early.items() if value is not None}
-    geometry = _mapping(held, "geometry") or _mapping(_mapping(held, "output"), "geometry")
+    if "DRCURLPattern" in manifest:
+        early = {"frameRate": manifest.get("GeometryFrameRate"), "frameCount": manifest.get("GeometryFrameCount")}
+        return "", str(manifest["DRCURLPattern"]), {key: value for key, value in early.items() if value is not None}
+    geometry = _mapping(manifest, "geometry") or _mapping(_mapping(manifest, "output"), "geometry")
     targets = {name: value for name, value in _mapping(geometry, "targets").items() if isinstance(value, dict)}
     template = str(geometry.get("path", ""))
     if not targets and "[target]" not in template:
@@ -169,27 +170,27 @@ def _files(path: Path, template: str, name: str, ending: str) -> dict[int, Path]
     except (OSError, RecursionError) as error:  # names too long, folders in folders without end
         raise SourceError(f"{path}: {whole[:80]!r} is no path of frames ({type(error).__name__})") from None
     named = ((number.fullmatch(file.relative_to(path.parent).as_posix()), file) for file in there)
-    found = sorted((int(match[1]), file) for match, file in named if match)
-    if not found:
+    numbered = sorted((int(match[1]), file) for match, file in named if match)
+    if not numbered:
         raise SourceError(
             f"{path}: no file at {before}0000000{after}; copy the frames beside the manifest, or name their folder"
             " or a pattern (*.ply)"
         )
-    if twice := {file for (n, _), (m, file) in pairwise(found) if n == m}:
+    if twice := {file for (n, _), (m, file) in pairwise(numbered) if n == m}:
         raise SourceError(f"{path}: {min(twice).name} has the number of another file; take one of them away")
-    return dict(found)
+    return dict(numbered)
 
 
 def _refuse_other_count(path: Path, name: str, claimed: int, files: Sequence[Path], length: int) -> None:
     """Raises SourceError where files of this many frames each are not as many as the manifest claims frames."""
-    told = f"{path}: {name or 'its geometry'} has {claimed} frames, but"
+    claim = f"{path}: {name or 'its geometry'} has {claimed} frames, but"
     if len(files) > -(-claimed // length):
-        raise SourceError(f"{told} {len(files)} files are there; take the others away")
+        raise SourceError(f"{claim} {len(files)} files are there; take the others away")
     if len(files) * length < claimed:
         folder = files[0].parent
         alone = f"{folder}/*{files[0].suffix}" if folder == path.parent else f"their folder {folder}"
         remedy = "copy the others too" + (f", or name {alone}" if length == 1 else "")
-        raise SourceError(f"{told} only {len(files) * length} are there, in {len(files)} files; {remedy}")
+        raise SourceError(f"{claim} only {len(files) * length} are there, in {len(files)} files; {remedy}")
 
 
 def _rate(target: Mapping[str, Any], path: Path) -> float | None:

@@ -33,9 +33,9 @@ class Zipped:
             raise SourceError(
                 f"{path}: the name {out!r} leads out of the zip; nothing of it is read, zip the folder itself again"
             )
-        shown = {PurePosixPath(i.filename): i for i in there if not _is_hidden(PurePosixPath(i.filename))}
-        self.names = one_format(list(shown), self.name)
-        self._members = [shown[name] for name in self.names]
+        members = {PurePosixPath(i.filename): i for i in there if not _is_hidden(PurePosixPath(i.filename))}
+        self.names = one_format(list(members), self.name)
+        self._members = [members[name] for name in self.names]
         for info in self._members:
             if info.flag_bits & 1:
                 raise SourceError(f"{path}: {info.filename} is encrypted; zip it without a password")

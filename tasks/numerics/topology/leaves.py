@@ -130,13 +130,13 @@ def gaps_in(tracks: Ints, takes: Sequence[slice]) -> list[Gap]:
 
     takes : positions of the frames of each
     """
-    found = []
+    within_takes = []
     for gap in gaps(tracks):
         first = int(np.argmax(tracks[gap.track] >= 0))
         last = next(span.stop for span in takes if span.start <= first < span.stop) - 1
         if gap.begin <= last:
-            found.append(gap._replace(end=min(gap.end, last)))
-    return found
+            within_takes.append(gap._replace(end=min(gap.end, last)))
+    return within_takes
 
 
 def bridged(tracks: Ints, stems: Sequence[Floats], longest: int = 3) -> tuple[Floats, Flags]:

@@ -42,8 +42,8 @@ def up_direction(X: Floats, settings: UpDirectionSettings | None = None) -> Dire
     returns : y with confidence 0 where fewer than two leaves are seen together
     """
     chosen = settings or UpDirectionSettings()
-    seen = np.isfinite(X[:, :, 0])
-    X, seen = X[:, seen.sum(axis=0) > 1], seen[:, seen.sum(axis=0) > 1]
+    is_seen = np.isfinite(X[:, :, 0])
+    X, is_seen = X[:, is_seen.sum(axis=0) > 1], is_seen[:, is_seen.sum(axis=0) > 1]
     if not X.size:
         return Direction(1, 0.0)
     reach = np.nanmax(X, axis=0) - np.nanmin(X, axis=0)
@@ -52,15 +52,15 @@ def up_direction(X: Floats, settings: UpDirectionSettings | None = None) -> Dire
         return Direction(1, 0.0)
     spread = np.median(reach, axis=0) / size
     heights = [sign * X[:, :, a] / size for sign in (1.0, -1.0) for a in range(3)]
-    stand = np.array([_standing(height, seen, chosen) for height in heights]) * np.tile(spread, 2)
+    stand = np.array([_standing(height, is_seen, chosen) for height in heights]) * np.tile(spread, 2)
     score = np.array(chosen.expected) * (stand - chosen.opposite * np.roll(stand, 3))
     best, second = np.argsort(-score, kind="stable")[:2]
     return Direction(int(best), float(np.clip(1.0 - score[second] / score[best], 0.0, 1.0)) if score[best] > 0.0 else 0.0)
 
 
-def _standing(height: Floats, seen: Flags, settings: UpDirectionSettings) -> float:
+def _standing(height: Floats, is_seen: Flags, settings: UpDirectionSettings) -> float:
     """Share of the leaves (leaf, frame) on the ground, plus that of those with the lowest of their frame."""
     lowest = np.nanmin(height, axis=0)
     on_ground = height - np.quantile(lowest, settings.lowest) < settings.ground
     with_lowest = height - lowest < settings.with_lowest
-    return float(on_ground[seen].mean() + with_lowest[seen].mean())
+    return float(on_ground[is_seen].mean() + with_lowest[is_seen].mean())

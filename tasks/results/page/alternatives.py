@@ -80,7 +80,7 @@ def correlation_words(series: Correlation, cut: Intervals) -> str:
 
 def mu_words(leaves: Leaves, frames: Sequence[int]) -> str:
     """How many leaves are seen in each frame drawn."""
-    seen = ", ".join(f"{int(np.sum(leaves.seen(frame)))} in frame {frame}" for frame in frames)
+    seen = ", ".join(f"{int(np.sum(leaves.is_seen(frame)))} in frame {frame}" for frame in frames)
     return f"The body coloured by μ, dark in its middle and bright at its ends. Leaves that are seen: {seen}."
 
 

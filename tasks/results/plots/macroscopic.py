@@ -57,7 +57,7 @@ def mu(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def _draw_leaves(axes: "Axes", leaves: Any, frame: int, axis: Floats) -> None:
     """The leaves of one frame with their numbers; hollow where the position is interpolated."""
-    for leaf, (position, is_seen) in enumerate(zip(leaves.at(frame), leaves.seen(frame), strict=True)):
+    for leaf, (position, is_seen) in enumerate(zip(leaves.at(frame), leaves.is_seen(frame), strict=True)):
         if not np.isnan(position).any():
             x, y, _ = position @ axis
             colour = COLOURS[leaf % len(COLOURS)]

@@ -260,7 +260,7 @@ def test_moebius_strip_is_told_from_a_band():
 def test_debris_is_dropped_and_a_second_body_kept():
     V, F = together(sphere(1, radius=0.1, centre=(3, 0, 0)), sphere(), sphere(radius=0.7, centre=(-3, 0, 0)))
     cleaned = clean(V, F)
-    np.testing.assert_array_equal(cleaned.kept, [False, True, True])
+    np.testing.assert_array_equal(cleaned.is_body, [False, True, True])
     assert cleaned.shares.sum() == pytest.approx(1)
     assert cleaned.shares[2] / cleaned.shares[1] == pytest.approx(0.49)
     assert (cleaned.vertex_map[:42] == -1).all()
@@ -270,7 +270,7 @@ def test_debris_is_dropped_and_a_second_body_kept():
 def test_largest_component_is_kept_whatever_its_share():
     many = [sphere(1, radius=1 + 0.01 * i, centre=(4 * i, 0, 0)) for i in range(30)]
     cleaned = clean(*together(*many))
-    np.testing.assert_array_equal(np.flatnonzero(cleaned.kept), [29])
+    np.testing.assert_array_equal(np.flatnonzero(cleaned.is_body), [29])
 
 
 def test_pieces_that_touch_in_one_vertex_are_two_components():
@@ -278,7 +278,7 @@ def test_pieces_that_touch_in_one_vertex_are_two_components():
     other_V, other_F = sphere(1, radius=0.1)
     cleaned = clean(*together((V, F), (other_V - other_V[0] + V[0] * 1.0, other_F)))
     assert cleaned.merged == 1
-    np.testing.assert_array_equal(cleaned.kept, [True, False])
+    np.testing.assert_array_equal(cleaned.is_body, [True, False])
 
 
 def test_shell_inside_a_body_is_recognised_and_dropped_and_one_beside_it_is_not():
@@ -287,7 +287,7 @@ def test_shell_inside_a_body_is_recognised_and_dropped_and_one_beside_it_is_not(
     for cavity in (inner, inside_out):
         cleaned = clean(*together(cavity, outer))
         assert cleaned.nested == 1
-        np.testing.assert_array_equal(cleaned.kept, [False, True])
+        np.testing.assert_array_equal(cleaned.is_body, [False, True])
         assert cleaned.volume == pytest.approx(clean(*outer).volume)
     assert clean(*together(sphere(radius=0.6, centre=(0.7, 0, 0)), outer)).nested == 0
     assert clean(*together(sphere(radius=0.3), torus())).nested == 0  # in the hole, not in the ring

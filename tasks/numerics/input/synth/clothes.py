@@ -81,8 +81,8 @@ def tubes(
     earlier : per garment, X its lag before
     seconds : (frame,)
     """
-    told = [_tube(g, rest, X, G, past, seconds, knots) for g, past in zip(garments, earlier, strict=True)]
-    return Tubes(*(np.stack(arrays, axis=1) for arrays in zip(*told, strict=True)))
+    of_garment = [_tube(g, rest, X, G, past, seconds, knots) for g, past in zip(garments, earlier, strict=True)]
+    return Tubes(*(np.stack(arrays, axis=1) for arrays in zip(*of_garment, strict=True)))
 
 
 def dressed(cones: Cones, worn: Tubes, t: int) -> Cones:
@@ -147,11 +147,11 @@ def _sideways(rest: Floats, g: Garment, G: Floats) -> Floats:
 
 def _joints(where: str, key: str, value: object, names: Sequence[str]) -> tuple[int, ...]:
     """Indices of the joints of a list of names."""
-    told = _list(where, key, value, None)
-    for name in told:
+    listed = _list(where, key, value, None)
+    for name in listed:
         if name not in names:
             raise FigureError(f"{where}: {key} {name!r} is no joint{suggestion(str(name), names)}")
-    return tuple(list(names).index(name) for name in told)
+    return tuple(list(names).index(name) for name in listed)
 
 
 def _list(where: str, key: str, value: object, count: int | None) -> Sequence[Any]:

@@ -122,12 +122,12 @@ def touching(figure: Figure, flesh: Flesh, contact: Contact, R: Floats, shift: F
     chain = bending_chain(figure, contact.limb)
     goal, away = _goal(figure, flesh, contact, R, shift, chain)
     bent, miss = _reach(figure, contact.limb, chain, goal[busy], away[busy], R[busy], shift[busy])
-    held = weight[busy] == 1.0
-    if miss[held].max() > _SETTINGS.tolerance * figure.height:
+    in_contact = weight[busy] == 1.0
+    if miss[in_contact].max() > _SETTINGS.tolerance * figure.height:
         names = ", ".join(figure.joints[j].name for j in chain)
         raise FigureError(
             f"contact of {figure.joints[contact.limb].name!r} with {figure.joints[contact.target].name!r}: turning "
-            f"{names} leaves the limb {miss[held].max():.3g} {figure.unit} short of it; choose a nearer target"
+            f"{names} leaves the limb {miss[in_contact].max():.3g} {figure.unit} short of it; choose a nearer target"
         )
     blended = R.copy()
     for j in chain:

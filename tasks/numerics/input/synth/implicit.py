@@ -90,9 +90,9 @@ def grid_values(cones: Cones, origin: Floats, spacing: float, shape: tuple[int, 
 def extent(cones: Cones) -> tuple[Floats, Floats]:
     """Corners (xyz), (xyz) of the box that holds every limb that is present."""
     r = cones.table.max(axis=1)
-    held = r > 0.0
-    ends = np.stack([cones.A[held], cones.A[held] + cones.D[held]])
-    grow = (r[held] + np.linalg.norm(cones.bow[held], axis=1) + 0.25 * cones.reach.max(initial=0.0))[:, None]
+    present = r > 0.0
+    ends = np.stack([cones.A[present], cones.A[present] + cones.D[present]])
+    grow = (r[present] + np.linalg.norm(cones.bow[present], axis=1) + 0.25 * cones.reach.max(initial=0.0))[:, None]
     return (ends - grow).min(axis=(0, 1)), (ends + grow).max(axis=(0, 1))
 
 
@@ -198,23 +198,23 @@ def _limb_distance(cones, b, x, y, z, of_limb):  # type: ignore[no-untyped-def]
 @compiled
 def _nearest_limbs(cones, P):  # type: ignore[no-untyped-def]
     """A limb's value is at least the distance to its axis less what it bows and its largest radius, times its flatness."""
-    nearest, of_limb, held = np.empty(len(P), np.int64), np.empty((len(cones.A), 4)), np.empty(len(cones.A))
+    nearest, of_limb, thickness = np.empty(len(P), np.int64), np.empty((len(cones.A), 4)), np.empty(len(cones.A))
     for b in range(len(cones.A)):
-        held[b] = np.sqrt((cones.bow[b] ** 2).sum()) + max(cones.table[b].max(), 0.0) * (1.0 + max(cones.folds[b, 1], 0.0))
-    found = 0
+        thickness[b] = np.sqrt((cones.bow[b] ** 2).sum()) + max(cones.table[b].max(), 0.0) * (1.0 + max(cones.folds[b, 1], 0.0))
+    nearest_limb = 0
     for i in range(len(P)):
-        least = _limb_distance(cones, found, P[i, 0], P[i, 1], P[i, 2], of_limb)
+        least = _limb_distance(cones, nearest_limb, P[i, 0], P[i, 1], P[i, 2], of_limb)
         for b in range(len(cones.A)):
             dx, dy, dz = cones.D[b, 0], cones.D[b, 1], cones.D[b, 2]
             x, y, z = P[i, 0] - cones.A[b, 0], P[i, 1] - cones.A[b, 1], P[i, 2] - cones.A[b, 2]
             t = min(max((x * dx + y * dy + z * dz) / (dx * dx + dy * dy + dz * dz), 0.0), 1.0)
-            away = np.sqrt((x - t * dx) ** 2 + (y - t * dy) ** 2 + (z - t * dz) ** 2) - held[b]
+            away = np.sqrt((x - t * dx) ** 2 + (y - t * dy) ** 2 + (z - t * dz) ** 2) - thickness[b]
             if away > 0.0 and away * min(cones.flat[b], 1.0) > least * _SAFE:
                 continue
             d = _limb_distance(cones, b, P[i, 0], P[i, 1], P[i, 2], of_limb)
-            if d < least or (d == least and b < found):
-                least, found = d, b
-        nearest[i] = found
+            if d < least or (d == least and b < nearest_limb):
+                least, nearest_limb = d, b
+        nearest[i] = nearest_limb
     return nearest
 
 

@@ -39,8 +39,8 @@ def curve_values(curve: Curve, seconds: Floats) -> Floats:
         knots = np.array(curve.keys, dtype=np.float64)
         if curve.period:
             return _repeated(knots, curve.period, seconds) + curve.offset
-        held = np.clip(seconds, knots[0, 0], knots[-1, 0])
-        return np.asarray(PchipInterpolator(knots[:, 0], knots[:, 1])(held) + curve.offset, dtype=np.float64)
+        clamped = np.clip(seconds, knots[0, 0], knots[-1, 0])
+        return np.asarray(PchipInterpolator(knots[:, 0], knots[:, 1])(clamped) + curve.offset, dtype=np.float64)
     return curve.offset + curve.amplitude * np.sin(2.0 * np.pi * (curve.frequency * seconds + curve.phase))
 
 

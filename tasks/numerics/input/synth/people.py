@@ -79,12 +79,12 @@ def person(description: Mapping[str, Any], motion: str | None, seed: int, clothe
         raise FigureError(f"the figures {description['name']}:SEED have no motion {name!r}{suggestion(name, motions)}")
     rng = np.random.default_rng([seed, 1760])
     drafts = (_proportioned(description, rng) for _ in range(_SETTINGS.drafts))
-    made = next(_apart({**draft, "motions": {}} for draft in drafts))
-    size = Figure.of(made).height / Figure.of(description).height
-    own = _own_motion(made, motions[name], size, np.random.default_rng([seed, 1761, zlib.crc32(name.encode())]))
+    unmoved = next(_apart({**draft, "motions": {}} for draft in drafts))
+    size = Figure.of(unmoved).height / Figure.of(description).height
+    own = _own_motion(unmoved, motions[name], size, np.random.default_rng([seed, 1761, zlib.crc32(name.encode())]))
     softness = {"frequency": _uniform(rng, _SETTINGS.frequency), "bulge": _uniform(rng, _SETTINGS.bulge), "skin": 1.2}
-    told = {**made, "name": f"{description['name']}-{seed}", "motions": {name: own}, "softness": softness}
-    return {**told, "clothes": outfit(made["joints"], seed)} if clothed else told
+    figure = {**unmoved, "name": f"{description['name']}-{seed}", "motions": {name: own}, "softness": softness}
+    return {**figure, "clothes": outfit(unmoved["joints"], seed)} if clothed else figure
 
 
 def _uniform(rng: np.random.Generator, between: tuple[float, float]) -> float:
@@ -178,26 +178,26 @@ def _of_joint(name: str, share: Mapping[str, float], limbs: Mapping[str, Any]) -
     return one, limb if name == "neck" else share["head"], even
 
 
-def _own_motion(made: Mapping[str, Any], curves: Mapping[str, Any], size: float, rng: np.random.Generator) -> dict[str, Any]:
+def _own_motion(figure: Mapping[str, Any], curves: Mapping[str, Any], size: float, rng: np.random.Generator) -> dict[str, Any]:
     """One motion as this person does it: the first draft whose limbs stay apart, calmed where that is needed."""
-    calmed = ({"m": _varied(made, curves, calm, size, rng)} for _ in range(_SETTINGS.drafts) for calm in _SETTINGS.calming)
-    motion: dict[str, Any] = next(_apart({**made, "motions": m} for m in calmed))["motions"]["m"]
+    calmed = ({"m": _varied(figure, curves, calm, size, rng)} for _ in range(_SETTINGS.drafts) for calm in _SETTINGS.calming)
+    motion: dict[str, Any] = next(_apart({**figure, "motions": m} for m in calmed))["motions"]["m"]
     return motion
 
 
 def _varied(
-    made: Mapping[str, Any], curves: Mapping[str, Any], calm: float, size: float, rng: np.random.Generator
+    figure: Mapping[str, Any], curves: Mapping[str, Any], calm: float, size: float, rng: np.random.Generator
 ) -> dict[str, Any]:
     """The curves with other extents, timing, tempo and start, and slow small movements of every joint they name."""
     tempo, start = float(rng.uniform(0.9, 1.12)), float(rng.uniform(0.0, 3.0))
-    carries = {row.get("parent") for row in made["joints"]}
-    told = {}
+    carries = {row.get("parent") for row in figure["joints"]}
+    varied = {}
     for joint, rows in curves.items():
         late, extent = float(rng.normal(0.0, 0.03)), calm * float(rng.uniform(0.85, 1.15))
-        told[joint] = [_varied_curve(row, tempo, start + late, extent * (size if _slides(row) else 1.0)) for row in rows]
-    for joint in sorted({row["name"] for row in made["joints"]} & carries):
-        told[joint] = [*told.get(joint, []), *(_wobble(rng) for _ in range(2))]
-    return told
+        varied[joint] = [_varied_curve(row, tempo, start + late, extent * (size if _slides(row) else 1.0)) for row in rows]
+    for joint in sorted({row["name"] for row in figure["joints"]} & carries):
+        varied[joint] = [*varied.get(joint, []), *(_wobble(rng) for _ in range(2))]
+    return varied
 
 
 def _slides(row: Mapping[str, Any]) -> bool:

@@ -71,11 +71,11 @@ def _draft(rng: np.random.Generator, limbs: int, name: str) -> dict[str, Any]:
         joints.append(joint)
         if k < trunk:
             curves[f"trunk_{k}"] = [_curve(rng, heading, 9.0, 14.0)]
-    taken = [(k, _unit(spots[n] - spots[k])) for k in range(trunk + 1) for n in (k - 1, k + 1) if 0 <= n <= trunk]
+    directions = [(k, _unit(spots[n] - spots[k])) for k in range(trunk + 1) for n in (k - 1, k + 1) if 0 <= n <= trunk]
     for limb in range(limbs):
         spot = limb % (trunk + 1) if limb < trunk + 1 else int(rng.integers(0, trunk + 1))
-        out = _spread(rng, spot, taken)
-        taken.append((spot, out))
+        out = _spread(rng, spot, directions)
+        directions.append((spot, out))
         _grow(rng, joints, curves, limb, spot, spots[spot], out, thick, scale)
     return {"name": name, "unit": "unknown", "fps": 25, "joints": joints, "motions": {"sway": curves}}
 
@@ -110,10 +110,10 @@ def _grow(
         parent = name
 
 
-def _spread(rng: np.random.Generator, spot: int, taken: list[tuple[int, Floats]]) -> Floats:
+def _spread(rng: np.random.Generator, spot: int, directions: list[tuple[int, Floats]]) -> Floats:
     """The direction, of many random ones, that is farthest from those taken; those at the same joint count most."""
     candidates = [_direction(rng) for _ in range(40)]
-    return min(candidates, key=lambda d: max(float(d @ other) - 0.35 * (at != spot) for at, other in taken))
+    return min(candidates, key=lambda d: max(float(d @ other) - 0.35 * (at != spot) for at, other in directions))
 
 
 def _curve(rng: np.random.Generator, along: Floats, least: float, most: float) -> dict[str, Any]:

@@ -35,8 +35,8 @@ from kinetree.tasks.numerics.input.zipped import Zipped
 def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
     """Every frame at a path, a pattern or in a packed sequence, by number."""
     if clip and not where.lower().endswith(".glb") and _manifest(Path(where)) is None:
-        told = "names an animation of one GLB or a target of a volumetric manifest"
-        raise SourceError(f"source.clip {clip}: {told}, and {where} is none; leave it out")
+        needs = "names an animation of one GLB or a target of a volumetric manifest"
+        raise SourceError(f"source.clip {clip}: {needs}, and {where} is none; leave it out")
     if files.is_remote(where):
         return _in_bucket(where, files, clip)
     if "://" in where:
@@ -48,15 +48,15 @@ def frames_at(where: str, files: Files, clip: str = "") -> dict[int, Source]:
         return volumetric_frames(manifest, clip, files)
     if _is_zarr(path):
         return dict(enumerate(_packed_volumes(path, files) if is_array(path) else _packed(path, "zarr", files)))
-    kind, found = input_kind(where)
+    kind, kind_files = input_kind(where)
     if kind == "silhouettes":
         return _silhouettes(path, files)
     if kind == "packed silhouettes":
-        found = _complete([written(p) for p in found], where, files)
-        return _numbered(_packed_silhouettes(found, files), found)
+        kind_files = _complete([written(p) for p in kind_files], where, files)
+        return _numbered(_packed_silhouettes(kind_files, files), kind_files)
     if kind == "packed volumes" or (kind == "meshes" and path.suffix == ".npz"):
         return dict(enumerate(_packed_volumes(path, files) if kind == "packed volumes" else _packed(path, "npz", files)))
-    paths = _complete([written(p) for p in (found if kind == "volumes" else mesh_files(where))], where, files)
+    paths = _complete([written(p) for p in (kind_files if kind == "volumes" else mesh_files(where))], where, files)
     form: Kind = "volume" if kind == "volumes" else "file"
     contents = files.digests(paths, MOST_VOLUME_BYTES if kind == "volumes" else MOST_BYTES)
     return _numbered([Source(content=c, path=str(p), kind=form) for c, p in zip(contents, paths, strict=True)], paths)
@@ -70,8 +70,8 @@ def volumetric_frames(path: Path, clip: str, files: Files) -> dict[int, Source]:
     stated = {"fps": manifest.fps}
     if manifest.holds == "file":
         contents = files.digests(paths, MOST_BYTES)
-        made = [Source(content=c, path=str(p), **stated) for c, p in zip(contents, paths, strict=True)]
-        return {number[p]: frame for p, frame in zip(paths, made, strict=True)}
+        sources = [Source(content=c, path=str(p), **stated) for c, p in zip(contents, paths, strict=True)]
+        return {number[p]: frame for p, frame in zip(paths, sources, strict=True)}
     segments = {p: _packed(p, "segment", files) for p in paths}
     if longer := [p for p, frames in segments.items() if len(frames) > manifest.length]:
         raise SourceError(
@@ -119,8 +119,8 @@ def _in_bucket(where: str, files: Files, clip: str) -> dict[int, Source]:
             f" ({' '.join(mesh_suffixes())}) or one npz is read; silhouettes, volumes, manifests and zarr are read from folders"
         )
     paths = one_format(list(named), where)
-    told = files.parts_of_each([named[path] for path in paths], REMOTE, content_and_measures)
-    sources = [Source(content=content, path=named[path]) for path, (content, _) in zip(paths, told, strict=True)]
+    parts = files.parts_of_each([named[path] for path in paths], REMOTE, content_and_measures)
+    sources = [Source(content=content, path=named[path]) for path, (content, _) in zip(paths, parts, strict=True)]
     return _numbered(sources, paths)
 
 
@@ -172,7 +172,7 @@ def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
             paths := [written(p) for _, masks in frames for p in masks if p], files.digests(paths, MOST_MASK_BYTES), strict=True
         )
     )
-    made = [
+    sources = [
         Source(
             content=digest(["silhouettes", contents, [digests[p] if p else "" for p in masks]]),
             path=str(folder),
@@ -186,7 +186,7 @@ def _silhouettes(folder: Path, files: Files) -> dict[int, Source]:
         for number, masks in frames
     ]
     numbers = [number for number, _ in frames]
-    return dict(zip(numbers if are_frame_numbers(numbers) else range(len(made)), made, strict=True))
+    return dict(zip(numbers if are_frame_numbers(numbers) else range(len(sources)), sources, strict=True))
 
 
 def _are_complete(masks: Sequence[Path | None], files: Files) -> bool:
@@ -195,11 +195,11 @@ def _are_complete(masks: Sequence[Path | None], files: Files) -> bool:
     return len(files.complete(there)) == len(there) and (files.settling is None or len(there) == len(masks))
 
 
-def _packed_silhouettes(found: Sequence[Path], files: Files) -> list[Source]:
+def _packed_silhouettes(paths: Sequence[Path], files: Files) -> list[Source]:
     """A frame for every npz that holds the masks of all cameras."""
-    calibrated, calibration, contents = _calibrated(found[0].parent, files)
+    calibrated, calibration, contents = _calibrated(paths[0].parent, files)
     stated = {"kind": "silhouettes", "calibration": calibrated, "fps": calibration.fps, "unit": calibration.unit}
-    named = zip(found, files.digests(found, MOST_MASK_BYTES), strict=True)
+    named = zip(paths, files.digests(paths, MOST_MASK_BYTES), strict=True)
     return [Source(content=digest(["silhouettes", contents, [c]]), path=str(p), masks=(str(p),), **stated) for p, c in named]
 
 
@@ -215,8 +215,8 @@ def _packed_volumes(path: Path, files: Files) -> list[Source]:
     """Every frame of one array of volumes."""
 
     def parts(where: Path) -> Sequence[str]:
-        held = volumes(where)
-        return [grid_digest(held.grid(t)) for t in range(len(held))]
+        frames = volumes(where)
+        return [grid_digest(frames.grid(t)) for t in range(len(frames))]
 
     contents = files.parts(path, "volumes/1", parts)
     return [Source(content=c, path=str(path), part=t, kind="volume") for t, c in enumerate(contents)]
