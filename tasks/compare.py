@@ -85,8 +85,8 @@ class FinishedRun:
 
     def evaluation(self, sets: list[str], tell: Tell | None = None) -> Evaluation | None:
         """Its skeleton against the truth, computed where it is not there, as `evaluated`; None where there is no truth."""
-        found = evaluated(Pipeline.of(self.name, sets=sets), tell)
-        return None if found is None else labelled(found, self.label)
+        evaluation = evaluated(Pipeline.of(self.name, sets=sets), tell)
+        return None if evaluation is None else labelled(evaluation, self.label)
 
 
 def _labels(there: Snapshot) -> Mapping[str, str]:

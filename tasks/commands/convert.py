@@ -141,10 +141,10 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
         raise InputError(f"{file}: a single frame; kinematics are seen in motion, and nothing in the file moves")
     ends = np.vstack([[0, 0], np.cumsum(counts, axis=0)])
     paths, needed = (folder / "vertices", folder / "faces"), [12 * int(end) for end in ends[-1]]
-    left = [path.stat().st_size if path.exists() else 0 for path in paths]
-    if left != needed:
+    sizes = [path.stat().st_size if path.exists() else 0 for path in paths]
+    if sizes != needed:
         raise InputError(
-            f"{file}: Blender left {left[0]} bytes of vertices and {left[1]} of faces, not {needed[0]} and {needed[1]};"
+            f"{file}: Blender left {sizes[0]} bytes of vertices and {sizes[1]} of faces, not {needed[0]} and {needed[1]};"
             f" is the disk of {folder.parent} full?"
         )
     V = np.fromfile(paths[0], np.float32).reshape(-1, 3).astype(np.float64) * scale

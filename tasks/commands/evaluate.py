@@ -73,8 +73,8 @@ def _print(evaluation: "Evaluation") -> None:
     from kinetree.pipeline.views import remarks
 
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for name, left in (("joint", True), ("range", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
-        table.add_column(name, justify="left" if left else "right", overflow="fold")
+    for name, is_left in (("joint", True), ("range", False), ("found as", True), (unit, False), ("±", False), ("%", False)):
+        table.add_column(name, justify="left" if is_left else "right", overflow="fold")
     for row in sorted(evaluation.joints, key=lambda j: (j.kind == "tip", not j.scored)):
         if row.scored or row.kind == "tip" or row.found is not None:
             table.add_row(*(escape(printable(cell)) for cell in _cells(row)))

@@ -58,11 +58,11 @@ def reproduce(
     from kinetree.tasks.reproduction.sequence import Sequence
 
     sequence = Sequence(output, source, truth, tuple(sets or ()), lambda text: err.print(printable(text), markup=False))
-    made, files = _made(sequence, tables, figures)
+    written, files = _written(sequence, tables, figures)
     if as_json:
-        print_json({"tables": [one.json() for one in made], "files": [str(path) for path in files]})
+        print_json({"tables": [one.json() for one in written], "files": [str(path) for path in files]})
         return
-    for one in made:
+    for one in written:
         _print(one)
     for path in files:
         out.print(printable(path), markup=False)
@@ -76,22 +76,22 @@ def _chosen(numbers: list[int] | None, known: tuple[int, ...], option: str) -> t
     return tuple(n for n in known if n in (numbers or ()))
 
 
-def _made(sequence: "Sequence", tables: tuple[int, ...], figures: tuple[int, ...]) -> "tuple[list[Table], list[Path]]":
+def _written(sequence: "Sequence", tables: tuple[int, ...], figures: tuple[int, ...]) -> "tuple[list[Table], list[Path]]":
     """Makes and writes what was asked for; the tables, those of figures among them, and all files."""
     from kinetree.tasks.reproduction import comparison, cost, joints, noise, thresholds
     from kinetree.tasks.results.plots.drawing import write_figure
 
     tabled = {1: cost.table_1, 2: joints.table_2}
     drawn = {11: thresholds.figure_11, 19: comparison.figure_19, 20: comparison.figure_20, 21: noise.figure_21}
-    made = [tabled[number](sequence) for number in tables]
-    files = [table.write(sequence.output) for table in made]
+    written = [tabled[number](sequence) for number in tables]
+    files = [table.write(sequence.output) for table in written]
     for number in figures:
         picture, table = drawn[number](sequence)
         path = sequence.output / f"{table.name}.png"
         write_figure(picture, path)
-        made.append(table)
+        written.append(table)
         files += [path, table.write(sequence.output)]
-    return made, files
+    return written, files
 
 
 def _print(table: "Table") -> None:

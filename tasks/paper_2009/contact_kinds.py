@@ -24,7 +24,7 @@ def contact_kinds(
     for frame, coherent in zip(intervals.frames, intervals.coherent.tolist(), strict=True):
         if not coherent:
             x = np.array(motions[frame].vertices)
-            found = numerics.contacts(np.array(model.vertices), x, label, branch, share, model.size)
-            rows.append(np.concatenate([np.full((len(found), 1), frame), found], axis=1))
+            contacts = numerics.contacts(np.array(model.vertices), x, label, branch, share, model.size)
+            rows.append(np.concatenate([np.full((len(contacts), 1), frame), contacts], axis=1))
     frames, one, other, kind = np.concatenate(rows).T
     return ContactKinds(frame=frames, branch=one, other=other, kind=kind)

@@ -13,11 +13,11 @@ from kinetree.tasks.numerics.geometry.closest_point import projected
 @task(over="frame")
 def graph_projection(mesh: Mesh, integrated_structure: IntegratedStructure, alignment: Alignment) -> Projection:
     """Finds for every vertex of the user's file the nearest point of the structure's mesh (ours, for 2009, Sec. 2.5)."""
-    found = projected(np.array(mesh.vertices), np.array(alignment.vertices), np.array(integrated_structure.faces))
+    nearest = projected(np.array(mesh.vertices), np.array(alignment.vertices), np.array(integrated_structure.faces))
     became = mesh.vertex_of_input.astype(np.int64)
-    kept = became >= 0
+    is_body = became >= 0
     return Projection(
-        face=np.where(kept, found.face[became], -1),
-        share=np.where(kept[:, None], found.share[became], 0.0),
-        distance=np.where(kept, found.distance[became], np.nan),
+        face=np.where(is_body, nearest.face[became], -1),
+        share=np.where(is_body[:, None], nearest.share[became], 0.0),
+        distance=np.where(is_body, nearest.distance[became], np.nan),
     )

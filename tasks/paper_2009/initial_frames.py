@@ -19,7 +19,7 @@ def initial_frames(intervals: CoherentIntervals, similarity: Similarity, params:
     """
     count = len(intervals.frames)
     spans = [np.arange(a, b + 1) for a, b in zip(intervals.begin.tolist(), intervals.end.tolist(), strict=True)]
-    found = bool(spans)
+    any_coherent = bool(spans)
     candidate = np.ones(count, np.bool_)
     if params.scope == "sequence":
         candidate = _candidates(intervals, spans)
@@ -34,7 +34,9 @@ def initial_frames(intervals: CoherentIntervals, similarity: Similarity, params:
         structure[span] = number
         before[span] = np.where(reached >= 0, span[reached], -1)
         initial.append(int(span[start]))
-    return InitialFrames(frames=intervals.frames, initial=np.array(initial), structure=structure, before=before, coherent=found)
+    return InitialFrames(
+        frames=intervals.frames, initial=np.array(initial), structure=structure, before=before, coherent=any_coherent
+    )
 
 
 def _start(similarity: Floats, candidate: Flags, intervals: CoherentIntervals, span: Ints, params: InitialFramesParams) -> int:

@@ -49,6 +49,6 @@ def _tracks(leaves: Leaves, at: int, count: int) -> Ints:
     """(extremum,) the limb that each extremum of a frame is, −1 for none."""
     row = leaves.rows[:, at].astype(np.int64)
     track = np.full(count, -1)
-    seen = np.flatnonzero(row >= 0)
-    track[row[seen]] = seen
+    tracked = np.flatnonzero(row >= 0)
+    track[row[tracked]] = tracked
     return track

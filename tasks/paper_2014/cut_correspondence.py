@@ -53,5 +53,5 @@ def _leaves(
 ) -> tuple[NDArray[np.integer], Floats, Floats]:
     """The leaves that are seen in the frame at a position of an interval, where they are there, and their normals."""
     row, here = reference.extremum[:, position], extrema[reference.frames[position]]
-    seen = np.flatnonzero(row >= 0)
-    return seen, here.stems[row[seen], -1], here.normals[row[seen]]
+    visible = np.flatnonzero(row >= 0)
+    return visible, here.stems[row[visible], -1], here.normals[row[visible]]

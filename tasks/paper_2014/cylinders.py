@@ -45,8 +45,8 @@ def cylinders(
 
 def _model_interval(references: tuple[IntervalReference, ...], cone_consistency: ConeConsistency) -> int:
     """The interval that sees the most cones; of these the one with the most frames, of these the first (ours)."""
-    seen = (cone_consistency.leaf >= 0).sum(axis=1)
-    return max(range(len(references)), key=lambda i: (seen[i], len(references[i].frames), -i))
+    cones = (cone_consistency.leaf >= 0).sum(axis=1)
+    return max(range(len(references)), key=lambda i: (cones[i], len(references[i].frames), -i))
 
 
 def _motions(

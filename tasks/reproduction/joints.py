@@ -23,13 +23,13 @@ COLUMNS = ("joint", "printed %", "± %", *(f"{preset} {what}" for preset in PRES
 
 def table_2(sequence: Sequence) -> Table:
     """The mean error of eight joints over the frames and its deviation, % of the height, for both methods."""
-    found = [eight_joints(evaluation(sequence.run(preset))) for preset in PRESETS]
-    heights = [height for _, height in found]
+    matched = [eight_joints(evaluation(sequence.run(preset))) for preset in PRESETS]
+    heights = [height for _, height in matched]
     rows: list[tuple[Cell, ...]] = []
     for name, (mean, deviation) in TABLE_2.items():
-        cells = [cell for (joints, _), h in zip(found, heights, strict=True) for cell in _cells(joints[name], h)]
+        cells = [cell for (joints, _), h in zip(matched, heights, strict=True) for cell in _cells(joints[name], h)]
         rows.append((name, 100 * mean / HEIGHT, 100 * deviation / HEIGHT, *cells))
-    names = ", ".join(f"{name} {row.name}" for name, row in found[0][0].items())
+    names = ", ".join(f"{name} {row.name}" for name, row in matched[0][0].items())
     return Table(
         "table-2",
         "Table 2: error of eight joints, % of the height",

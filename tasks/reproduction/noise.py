@@ -56,12 +56,12 @@ def _noisy(sequence: Sequence, share: float) -> Sequence:
     clean = sequence.run(PRESETS[0])
     folder = sequence.output / f"noise-{share * HEIGHT:g}"
     folder.mkdir(parents=True, exist_ok=True)
-    sigma, told = share * evaluation(clean).height, clean.fetch("sequence")
+    sigma, properties = share * evaluation(clean).height, clean.fetch("sequence")
     for frame in clean.frames:
         mesh = clean.fetch("mesh", frame=frame)
         path = folder / f"frame_{frame:06d}.ply"
         path.write_bytes(noisy_ply(np.array(mesh.vertices), mesh.faces.astype(np.int64), sigma, frame))
-    known = {"fps": told.fps, "unit": told.unit}
+    known = {"fps": properties.fps, "unit": properties.unit}
     sets = [f"sequence.{name}={value}" for name, value in known.items() if value is not None]
     own = tuple(text for text in sequence.sets if not text.startswith("source."))
     return replace(sequence, input=folder, sets=(*own, *sets))

@@ -13,8 +13,8 @@ KINDS = {1: "end to end", 2: "end to side", 3: "side to side"}
 def coherent_intervals_remarks(runs: CoherentIntervals) -> tuple[str, ...]:
     """How many frames are coherent, and in which intervals."""
     spans = [f"{runs.frames[a]} to {runs.frames[b]}" for a, b in zip(runs.begin, runs.end, strict=True)]
-    told = f"{int(runs.coherent.sum())} of {len(runs.frames)} frames are topologically coherent, with {runs.wanted_ends} ends"
-    return (f"{told}: {'; '.join(spans)}" if spans else f"{told}; no interval is long enough",)
+    counts = f"{int(runs.coherent.sum())} of {len(runs.frames)} frames are topologically coherent, with {runs.wanted_ends} ends"
+    return (f"{counts}: {'; '.join(spans)}" if spans else f"{counts}; no interval is long enough",)
 
 
 @remarks_of(InitialFrames)

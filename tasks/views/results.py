@@ -190,9 +190,9 @@ def comparison_remarks(comparison: Comparison) -> tuple[str, ...]:
         if only:
             lines.append(f"only in {letter}: {', '.join(map(unpaired_joint, only))}")
     missing = [joint for joint in comparison.true_joints if joint.scored and (joint.a is None) != (joint.b is None)]
-    for letter, found in (("A", [j.name for j in missing if j.b is None]), ("B", [j.name for j in missing if j.a is None])):
-        if found:
-            lines.append(f"true joints found by {letter} alone: {', '.join(found)}")
+    for letter, names in (("A", [j.name for j in missing if j.b is None]), ("B", [j.name for j in missing if j.a is None])):
+        if names:
+            lines.append(f"true joints found by {letter} alone: {', '.join(names)}")
     rule = "two joints are the same if each is the nearest of its kind to the other, by the mean distance over all frames"
     return (*lines, f"{rule}, and not farther than {limit}")
 
@@ -222,9 +222,9 @@ def _rounded(values: Floats) -> Any:
 @remarks_of(CompleteSkeleton)
 def complete_skeleton_remarks(skeleton: CompleteSkeleton) -> tuple[str, ...]:
     """Names the frames that were interpolated, with the reasons."""
-    told = [f"frame {each.frame}: interpolated, {each.reason or 'no file has its number'}" for each in skeleton.interpolated]
-    more = len(told) - NAMED_FRAMES
-    return (*told[:NAMED_FRAMES], *([f"{more} more frames were interpolated"] if more > 0 else []))
+    reasons = [f"frame {each.frame}: interpolated, {each.reason or 'no file has its number'}" for each in skeleton.interpolated]
+    more = len(reasons) - NAMED_FRAMES
+    return (*reasons[:NAMED_FRAMES], *([f"{more} more frames were interpolated"] if more > 0 else []))
 
 
 @rows_of(SequenceTable)
@@ -258,7 +258,7 @@ def sequence_table_files(table: SequenceTable, index: Index) -> Mapping[str, byt
 
 def _sequence_row(row: SequenceRow) -> dict[str, Any]:
     outcome = row.outcome
-    told = {"name": outcome.name, "status": outcome.status, "method": outcome.method, "output": outcome.output}
+    identity = {"name": outcome.name, "status": outcome.status, "method": outcome.method, "output": outcome.output}
     figures = row.model_dump(mode="json", exclude={"outcome", "picture"})
     counts = {"seconds": outcome.seconds, "remarks": len(outcome.remarks), "failures": len(outcome.failures)}
-    return {**told, **figures, **counts}
+    return {**identity, **figures, **counts}

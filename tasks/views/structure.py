@@ -130,8 +130,8 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
     for j in rows:
         expected, bound, drift, spread, residual = (two_digits(getattr(bars, name)[j]) for name in lengths)
         evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
-        seen = f"seen in {bars.support[j]} frames"
-        lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {seen}")
+        support = f"seen in {bars.support[j]} frames"
+        lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {support}")
     return tuple(lines)
 
 
@@ -151,8 +151,8 @@ def unknown_joints(where: str, names: JointNames) -> tuple[str, ...]:
     if not names.spelling.rename:
         return ()
     known, style, sides = set(names.given), names.spelling.style, names.spelling.side_suffixes
-    for given, anatomy in zip(names.given, names.anatomy, strict=True):
-        known |= {*styled_names([_station(anatomy)], [given], style, sides, {})}
+    for name, anatomy in zip(names.given, names.anatomy, strict=True):
+        known |= {*styled_names([_station(anatomy)], [name], style, sides, {})}
     unknown = [joint for joint in names.spelling.rename if joint not in known]
     more = f" and {len(unknown) - UNKNOWN_NAMED} more" if len(unknown) > UNKNOWN_NAMED else ""
     return (f"{where}: no joint that was found is called {', '.join(unknown[:UNKNOWN_NAMED])}{more}",) if unknown else ()
@@ -184,4 +184,4 @@ def joint_names_text(names: JointNames) -> tuple[str, ...]:
     """One line a joint: the skeleton's name, the name in files, and what the joint is."""
     wide = [max(map(len, column)) for column in (names.given, names.names)]
     rows = zip(names.given, names.names, names.anatomy, strict=True)
-    return tuple(f"{given:{wide[0]}}  {name:{wide[1]}}  {anatomy or '–'}" for given, name, anatomy in rows)
+    return tuple(f"{own:{wide[0]}}  {name:{wide[1]}}  {anatomy or '–'}" for own, name, anatomy in rows)

@@ -50,9 +50,9 @@ def coherent_intervals(
     free = np.asarray(loops == 0)
     prevailing = ends if ends is not None else _most_frequent(count[free] if free.any() else count)
     fitting = free & (count == prevailing)
-    seen = Counter(d for d, fits in zip(degrees, fitting, strict=True) if fits)
-    most = max(seen.values(), default=0)
-    allowed = tuple(branches) if branches is not None else tuple(sorted(d for d, n in seen.items() if n >= LEAST_SHARE * most))
+    tally = Counter(d for d, fits in zip(degrees, fitting, strict=True) if fits)
+    most = max(tally.values(), default=0)
+    allowed = tuple(branches) if branches is not None else tuple(sorted(d for d, n in tally.items() if n >= LEAST_SHARE * most))
     coherent = fitting & np.array([d in allowed for d in degrees], dtype=np.bool_)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], coherent, [False]]))).reshape(-1, 2)
     runs = edges[edges[:, 1] - edges[:, 0] >= minimum]
@@ -61,5 +61,5 @@ def coherent_intervals(
 
 def _most_frequent(values: Ints) -> int:
     """The most frequent value, the greatest of several."""
-    found, times = np.unique(values, return_counts=True)
-    return int(found[times == times.max()].max()) if len(found) else 0
+    distinct, times = np.unique(values, return_counts=True)
+    return int(distinct[times == times.max()].max()) if len(distinct) else 0

@@ -41,7 +41,7 @@ def contacts(
     """
     chosen = settings or ContactSettings()
     of_vertex = branch[label]
-    found: dict[tuple[int, int], int] = {}
+    kinds: dict[tuple[int, int], int] = {}
     names = [int(b) for b in np.unique(of_vertex)]
     points = {b: np.flatnonzero(of_vertex == b) for b in names}
     for i, b in enumerate(names):
@@ -54,8 +54,8 @@ def contacts(
             far = np.linalg.norm(rest[u] - rest[v], axis=1) > chosen.apart * size
             if far.any():
                 ends = [bool(k >= 0 and (share[n[far]] < chosen.end).mean() > 0.5) for k, n in ((a, one), (b, other))]
-                found[a, b] = {0: SIDE_TO_SIDE, 1: END_TO_SIDE, 2: END_TO_END}[sum(ends)]
-    rows = [(a, b, kind) for (a, b), kind in sorted(found.items())]
+                kinds[a, b] = {0: SIDE_TO_SIDE, 1: END_TO_SIDE, 2: END_TO_END}[sum(ends)]
+    rows = [(a, b, kind) for (a, b), kind in sorted(kinds.items())]
     return np.array(rows, np.int64).reshape(-1, 3)
 
 

@@ -49,7 +49,8 @@ def edge_joints(
     part = _parts(moving, first)
     parents = np.array([part[moving.parents[n]] if moving.parents[n] >= 0 else -1 for n in first])
     R = np.stack([_turn(moving.rotation[:, part == p]) for p in range(parts)], axis=1)
-    seen = moving.position[:, first] + np.einsum("tnxy,ny->tnx", moving.rotation[:, first], (moving.joint - moving.node)[first])
+    offset = (moving.joint - moving.node)[first]
+    observed = moving.position[:, first] + np.einsum("tnxy,ny->tnx", moving.rotation[:, first], offset)
     rest = np.concatenate([moving.joint[first], V[leaf_vertex]])
     above = np.concatenate([parents, part[end]])
     carrier = np.concatenate([np.arange(parts), part[end]])
@@ -57,7 +58,7 @@ def edge_joints(
     X = _placed(rest, above, carrier, R, _root_place(moving, part, rest[0], R[:, 0]))
     order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
-    distance = np.concatenate([np.linalg.norm(X[:, :parts] - seen, axis=2), np.zeros((len(X), len(end)))], axis=1)
+    distance = np.concatenate([np.linalg.norm(X[:, :parts] - observed, axis=2), np.zeros((len(X), len(end)))], axis=1)
     half = (settings or EdgeJointsSettings()).half_confidence * size
     turned = R[:, carrier]
     influence, share = _skin(part, bound, weight, parts)

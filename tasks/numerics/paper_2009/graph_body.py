@@ -132,14 +132,14 @@ def _carriers(node: Floats, order: list[int], before: Ints, stays: Flags) -> Int
 
 def _staying(order: list[int], before: Ints, stays: Flags) -> tuple[Ints, Ints]:
     """The nodes that stay, in the same order · (node,) the one before each among them."""
-    left = [n for n in order if stays[n]]
+    staying = [n for n in order if stays[n]]
     above = []
-    for n in left:
+    for n in staying:
         p = int(before[n])
         while p >= 0 and not stays[p]:
             p = int(before[p])
         above.append(p)
-    return np.array(left, np.int64), np.array(above, np.int64)
+    return np.array(staying, np.int64), np.array(above, np.int64)
 
 
 def _blended(V: Floats, F: npt.NDArray[np.integer[Any]], label: Ints, count: int, width: float) -> Floats:

@@ -56,14 +56,14 @@ def pruned(count: int, edge: Ints, ends: Ints, area: Floats) -> Ints:
     for a, b in edge.tolist():
         near[a].add(b)
         near[b].add(a)
-    kept = set(ends.tolist()) or {int(np.argmax(area))}
+    fixed = set(ends.tolist()) or {int(np.argmax(area))}
     hangs_on = np.arange(count)
-    waiting = [n for n in range(count) if len(near[n]) < 2 and n not in kept]
+    waiting = [n for n in range(count) if len(near[n]) < 2 and n not in fixed]
     for n in waiting:
         for m in near[n]:
             hangs_on[n] = m
             near[m].discard(n)
-            if len(near[m]) < 2 and m not in kept:
+            if len(near[m]) < 2 and m not in fixed:
                 waiting.append(m)
         near[n] = set()
     while (hangs_on[hangs_on] != hangs_on).any():

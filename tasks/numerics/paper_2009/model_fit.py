@@ -103,9 +103,9 @@ def best_laid(model: Model, body: SkinnedBody, starts: list[ModelPose], frame: T
     for start in starts:
         fit = laid_on(model, body, start, frame, hold)
         pose = FramePose(fit.rotation, fit.position[0])
-        left = uncovered_share(body, pose, frame)
-        if left < least:
-            best, least = fit, left
+        uncovered = uncovered_share(body, pose, frame)
+        if uncovered < least:
+            best, least = fit, uncovered
         if least <= UNCOVERED:
             break
     return best

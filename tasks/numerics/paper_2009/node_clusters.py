@@ -86,8 +86,8 @@ def rigid_clusters(
     limits = EliminationSettings(removal_cost=removal_cost)
     label, R, t = _fitted(Q, X, confidence, body.area, label, limits.floor)
     for _ in range(ELIMINATIONS):
-        left = eliminated(body, label, R, t, limits)
-        label = relabelled(Q, X, confidence, left.R, left.t, left.label, body.start, body.ring, LABEL_ROUNDS)
+        merged = eliminated(body, label, R, t, limits)
+        label = relabelled(Q, X, confidence, merged.R, merged.t, merged.label, body.start, body.ring, LABEL_ROUNDS)
         label, R, t = _fitted(Q, X, confidence, body.area, label, limits.floor)
     return label
 

@@ -81,13 +81,13 @@ def perg(
     keep = ~closing | (reach > least_loop)
     edge, contour, closing, reach = edge[keep], contour[keep], closing[keep], reach[keep]
     hangs_on = pruned(len(nodes), edge, end, graph.area[nodes]) if prune else np.arange(len(nodes))
-    left, number = np.unique(hangs_on, return_inverse=True)
+    remaining, number = np.unique(hangs_on, return_inverse=True)
     number = number.reshape(-1).astype(np.int64)
     inner = (hangs_on[edge] == edge).all(axis=1)
     edge, contour, closing, reach = number[edge[inner]], contour[inner], closing[inner], reach[inner]
     of_vertex = np.where(graph.of_vertex >= 0, number[own[np.maximum(graph.of_vertex, 0)]], -1)
-    area = np.bincount(number, graph.area[nodes], len(left)).astype(np.float64)
-    body = _Drawn(graph.centre[nodes][left], graph.level[nodes][left], height[left], area, edge, closing)
+    area = np.bincount(number, graph.area[nodes], len(remaining)).astype(np.float64)
+    body = _Drawn(graph.centre[nodes][remaining], graph.level[nodes][remaining], height[remaining], area, edge, closing)
     if moved_inside:
         body = _bent(V, F, body, contour)
     return Perg(

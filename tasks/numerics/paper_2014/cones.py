@@ -114,8 +114,8 @@ def dead_ends(band: Ints, E: Ints) -> Flags:
 
     band, E : (vertex,) see `bands` · (edge, 2) vertices
     """
-    held = E[band[E[:, 0]] == band[E[:, 1]]]
-    links = coo_array((np.ones(len(held), bool), (held[:, 0], held[:, 1])), shape=(len(band), len(band)))
+    inner_edges = E[band[E[:, 0]] == band[E[:, 1]]]
+    links = coo_array((np.ones(len(inner_edges), bool), (inner_edges[:, 0], inner_edges[:, 1])), shape=(len(band), len(band)))
     component = connected_components(links, directed=False)[1]
     a, b = E.T
     onward = np.concatenate([component[a[band[a] < band[b]]], component[b[band[b] < band[a]]]])
@@ -139,8 +139,10 @@ def components(inside: Flags, E: Ints) -> Ints:
     inside : (vertex,)
     E      : (edge, 2) vertices
     """
-    held = E[inside[E].all(axis=1)]
-    links = coo_array((np.ones(len(held), bool), (held[:, 0], held[:, 1])), shape=(len(inside), len(inside)))
+    inner_edges = E[inside[E].all(axis=1)]
+    links = coo_array(
+        (np.ones(len(inner_edges), bool), (inner_edges[:, 0], inner_edges[:, 1])), shape=(len(inside), len(inside))
+    )
     component = connected_components(links, directed=False)[1].astype(np.int64)
     return np.where(inside, component, -1)
 

@@ -88,8 +88,8 @@ def kinematic_cones(annulus: Ints, rigid: Flags, area: Floats, settings: Cylinde
     for n, own in enumerate(cut):
         alone = np.where(claims == 1, own, -1)
         length = int(own.max(initial=-1)) + 1
-        left, whole = (np.bincount(k[k >= 0], area[k >= 0], length) for k in (alone, own))
-        partial = np.flatnonzero(left < least * whole)
+        unshared, whole = (np.bincount(k[k >= 0], area[k >= 0], length) for k in (alone, own))
+        partial = np.flatnonzero(unshared < least * whole)
         alone[alone >= partial.min(initial=length)] = -1
         out.append(Cylinder(n, alone, rigid[n, : int(alone.max(initial=-1)) + 1]))
     return out

@@ -51,9 +51,9 @@ def rotations(V: Floats, x: Floats, vertices: Flags) -> Floats:
     R = np.broadcast_to(np.eye(3), (len(x), 3, 3)).copy()
     last = -1
     for t, here in enumerate(x):
-        seen = vertices & np.isfinite(here[:, 0])
-        if seen.sum() >= 3:
-            R[t] = rigid_motion(V[seen], here[seen])[0]
+        visible = vertices & np.isfinite(here[:, 0])
+        if visible.sum() >= 3:
+            R[t] = rigid_motion(V[visible], here[visible])[0]
             if last < 0:
                 R[:t] = R[t]
             last = t
@@ -129,5 +129,5 @@ def _fitted(
 
 def _offset(R: Floats, apart: Floats) -> Floats:
     """(xyz) the offset o that fits R o ≈ apart best over the frames in which both were seen, Σ |R o − apart|²."""
-    seen = np.isfinite(apart[:, 0])
-    return np.asarray(np.einsum("tyx,ty->tx", R[seen], apart[seen]).mean(axis=0) if seen.any() else np.zeros(3))
+    in_both = np.isfinite(apart[:, 0])
+    return np.asarray(np.einsum("tyx,ty->tx", R[in_both], apart[in_both]).mean(axis=0) if in_both.any() else np.zeros(3))

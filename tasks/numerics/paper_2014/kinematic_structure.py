@@ -61,7 +61,7 @@ def kinematic_structure(
     R = np.stack([rotations(model.V, x, own) for own in carried], axis=1)
     weight = model.area * carried[0]
     X = np.concatenate([np.full((len(x), 1, 3), np.nan), centroid[:, tree.joint[1:]]], axis=1)
-    X[:, 0] = _seen_middle(weight, x)
+    X[:, 0] = _visible_middle(weight, x)
     leaf_node = _leaf_nodes(node, model.label, tree, leaf_vertex)
     root = weight @ model.V / weight.sum()
     observed = Observed(X, R, leaf_position)
@@ -85,11 +85,11 @@ def _nodes(carried: list[Flags]) -> Ints:
     return node
 
 
-def _seen_middle(weight: Floats, x: Floats) -> Floats:
+def _visible_middle(weight: Floats, x: Floats) -> Floats:
     """(frame, xyz) weighted middle of the vertices that are seen; NaN where none is."""
-    seen = weight * np.isfinite(x[:, :, 0])
-    total = seen.sum(axis=1)[:, None]
-    middle = np.einsum("tv,tvx->tx", seen, np.nan_to_num(x))
+    visible_weight = weight * np.isfinite(x[:, :, 0])
+    total = visible_weight.sum(axis=1)[:, None]
+    middle = np.einsum("tv,tvx->tx", visible_weight, np.nan_to_num(x))
     return np.asarray(np.where(total > 0.0, middle / np.maximum(total, 1e-300), np.nan), dtype=np.float64)
 
 
@@ -119,7 +119,7 @@ def _assembled(
     R = posed.motion.R
     turns = np.einsum("tpxy,tpxz->tpyz", R[:, np.maximum(tree.parents, 0)], R)
     degrees = np.array([0.0, *(turning_range(turns[:, p]) for p in range(1, nodes)), *np.zeros(len(leaf_node))])
-    seen = np.isfinite(np.concatenate([observed.joint, observed.leaf], axis=1)[:, :, 0])
+    observed_in = np.isfinite(np.concatenate([observed.joint, observed.leaf], axis=1)[:, :, 0])
     leaf_distance = np.linalg.norm(posed.leaf_positions - observed.leaf, axis=2)
     distance = np.nan_to_num(np.concatenate([posed.distance, leaf_distance], axis=1))
     influence, weight = _skin(model.label, node, tree)
@@ -131,10 +131,10 @@ def _assembled(
         rest=rest[order],
         positions=np.concatenate([posed.positions, posed.leaf_positions], axis=1)[:, order],
         rotation=R[:, carrying[order]],
-        confidence=(seen / (1.0 + (distance / half) ** 2))[:, order].reshape(frames, -1),
+        confidence=(observed_in / (1.0 + (distance / half) ** 2))[:, order].reshape(frames, -1),
         degrees=degrees[order],
         drift=np.concatenate([posed.drift, np.zeros(len(leaf_node))])[order],
-        support=seen.sum(axis=0)[order],
+        support=observed_in.sum(axis=0)[order],
         label=np.where(rigid & (node >= 0), position[node], -1),
         influence=np.where(weight > 0, position[influence], 0),
         weight=weight,
