@@ -75,8 +75,8 @@ with (target / "vertices").open("wb") as vertices, (target / "faces").open("wb")
             triangles += len(mesh.loop_triangles)
             shown.to_mesh_clear()
         counts.append((begin, triangles))
-told = {"counts": counts, "fps": scene.render.fps / scene.render.fps_base, "scale": scene.unit_settings.scale_length}
-(target / "told.json").write_text(json.dumps(told))
+layout = {"counts": counts, "fps": scene.render.fps / scene.render.fps_base, "scale": scene.unit_settings.scale_length}
+(target / "layout.json").write_text(json.dumps(layout))
 if not bpy.app.binary_path:
     os._exit(0)  # the module bpy 4.2 crashes when Python takes it down after some readers
 """

@@ -20,7 +20,7 @@ from kinetree.tasks.commands.blender_frames import SAMPLED, SCRIPT, SUFFIXES
 
 MOST_FRAMES = 100_000
 DEFAULT_FPS = 24.0
-MOST_TOLD = 2**24
+MOST_LAYOUT = 2**24
 """Bytes of what the script says of the frames: of as many as there may be, some two million."""
 SAFELY = ("--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3")
 """No settings, add-ons or start-up files of the user's, and no scripts or drivers of the file; the module bpy begins so."""
@@ -113,7 +113,7 @@ def _run(starter: tuple[str, ...], arguments: list[str], folder: Path, seconds: 
     refused = folder / "refused.txt"
     if refused.exists():
         raise InputError(f"{file}: {refused.read_text()}")
-    if code != 0 or not (folder / "told.json").exists():
+    if code != 0 or not (folder / "layout.json").exists():
         lines = [line for line in (folder / "log").read_text("utf-8", "replace").splitlines() if _tells(line)]
         raise InputError(f"{file}: Blender cannot open it ({lines[-1].strip()[:200] if lines else f'exit code {code}'})")
 
@@ -122,7 +122,7 @@ def _pack(folder: Path, file: Path, target: Path) -> int:
     """Writes what Blender left as .npz, all or nothing, and returns the number of frames."""
     import numpy as np
 
-    layout = small_json(small_text(folder / "told.json", InputError, MOST_TOLD), f"{file}: what Blender says", InputError)
+    layout = small_json(small_text(folder / "layout.json", InputError, MOST_LAYOUT), f"{file}: what Blender says", InputError)
     try:
         counts, fps, scale = (
             np.array(layout["counts"], dtype=np.int64).reshape(-1, 2),
