@@ -26,15 +26,16 @@ def appearance(skeleton: Skeleton, source: Mapping[int, Source], mesh: Mapping[i
     frame = next((t for t in sorted(mesh) if _is_reference(mesh[t], skeleton)), None)
     if frame is None or not has_own_file(source[frame]):
         return Appearance.none()
-    told = name(source[frame])
+    file_name = name(source[frame])
     try:
-        found = appearance_of(source[frame])
-        held = None if found is None else seamed(found, np.array(mesh[frame].vertex_of_input), np.array(mesh[frame].faces))
+        surface = appearance_of(source[frame])
+        own = mesh[frame]
+        corners = None if surface is None else seamed(surface, np.array(own.vertex_of_input), np.array(own.faces))
     except Exception as error:  # readers of other people's files raise anything
         reason = str(error) if isinstance(error, KinetreeError) else f"cannot be read ({type(error).__name__})"
-        return Appearance.none((f"{told}: no texture and colours: {reason}",))
-    missing = () if found is None else tuple(f"{told}: {text}" for text in found.missing)
-    return _appearance(None if held is None else frame, found, held, missing)
+        return Appearance.none((f"{file_name}: no texture and colours: {reason}",))
+    missing = () if surface is None else tuple(f"{file_name}: {text}" for text in surface.missing)
+    return _appearance(None if corners is None else frame, surface, corners, missing)
 
 
 def _is_reference(mesh: Mesh, skeleton: Skeleton) -> bool:
@@ -44,24 +45,24 @@ def _is_reference(mesh: Mesh, skeleton: Skeleton) -> bool:
 
 
 def _appearance(
-    frame: int | None, found: SurfaceAppearance | None, held: Seamed | None, missing: tuple[str, ...]
+    frame: int | None, surface: SurfaceAppearance | None, corners: Seamed | None, missing: tuple[str, ...]
 ) -> Appearance:
     """The artifact; empty where nothing is known."""
-    if found is None or held is None:
+    if surface is None or corners is None:
         return Appearance.none(missing)
-    n = len(held.vertex)
+    n = len(corners.vertex)
     return Appearance(
         frame=frame,
-        vertex=held.vertex,
-        faces=held.faces,
-        has_uv=found.uv is not None,
-        uv=np.zeros((n, 2)) if found.uv is None else held.uv,
-        has_colour=found.colour is not None,
-        colour=np.ones((n, 3)) if found.colour is None else held.colour,
-        material=held.material,
-        materials=tuple(SurfaceMaterial(name=m.name, colour=m.colour, picture=m.picture) for m in found.materials),
-        media=tuple(shown.media for shown in found.pictures),
-        sizes=tuple(len(shown.raw) for shown in found.pictures),
-        content=np.frombuffer(b"".join(shown.raw for shown in found.pictures), np.uint8),
+        vertex=corners.vertex,
+        faces=corners.faces,
+        has_uv=surface.uv is not None,
+        uv=np.zeros((n, 2)) if surface.uv is None else corners.uv,
+        has_colour=surface.colour is not None,
+        colour=np.ones((n, 3)) if surface.colour is None else corners.colour,
+        material=corners.material,
+        materials=tuple(SurfaceMaterial(name=m.name, colour=m.colour, picture=m.picture) for m in surface.materials),
+        media=tuple(picture.media for picture in surface.pictures),
+        sizes=tuple(len(picture.raw) for picture in surface.pictures),
+        content=np.frombuffer(b"".join(picture.raw for picture in surface.pictures), np.uint8),
         missing=missing,
     )

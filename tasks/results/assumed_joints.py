@@ -19,10 +19,10 @@ def assumed_joints(skeleton: Skeleton, joint_names: JointNames, params: AssumedJ
     """Offers joints of people and four-legged animals that were not found, by symmetry or published proportions (ours)."""
     if not params.add:
         return AssumedJoints()
-    found = numerics.assumed_joints(np.array(skeleton.rest), skeleton.parents, joint_names.anatomy, joint_names.topology)
+    assumed = numerics.assumed_joints(np.array(skeleton.rest), skeleton.parents, joint_names.anatomy, joint_names.topology)
     spelling = joint_names.spelling
-    places = _places(skeleton, found)
-    named = [joint.named for joint in found]
+    places = _places(skeleton, assumed)
+    named = [joint.named for joint in assumed]
     names = names_beside(named, joint_names.names, spelling.style, spelling.side_suffixes, spelling.rename)
     return AssumedJoints(
         joints=tuple(
@@ -34,17 +34,17 @@ def assumed_joints(skeleton: Skeleton, joint_names: JointNames, params: AssumedJ
                 place=(float(x), float(y), float(z)),
                 source=joint.source,
             )
-            for name, joint, (x, y, z) in zip(names, found, places, strict=True)
+            for name, joint, (x, y, z) in zip(names, assumed, places, strict=True)
         )
     )
 
 
-def _places(skeleton: Skeleton, found: Sequence[numerics.Assumed]) -> list[Floats]:
+def _places(skeleton: Skeleton, assumed: Sequence[numerics.Assumed]) -> list[Floats]:
     """Where assumed joints lie in the reference pose: inside a limb in its middle, else on the straight bone."""
     V, F, rest = np.array(skeleton.vertices), np.array(skeleton.faces, np.int64), np.array(skeleton.rest)
     part = np.array(skeleton.influence, np.int64)[:, 0]
     places: list[Floats] = []
-    for joint in found:
+    for joint in assumed:
         straight = (1.0 - joint.share) * rest[skeleton.parents[joint.child]] + joint.share * rest[joint.child]
         middle = None
         if joint.named.station in numerics.ASSUMED:

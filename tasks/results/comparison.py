@@ -171,8 +171,8 @@ def _true_joints(evaluations: tuple[Evaluation, Evaluation] | None) -> list[tupl
     one, two = (_places(evaluation) for evaluation in evaluations)
     both = [(one[key], two[key]) for key in one if key in two]
     joints = evaluations[0].joints, evaluations[1].joints
-    found = [(i, j) for i, j in both if joints[0][i].found or joints[1][j].found]
-    return [row for row in both if joints[0][row[0]].scored or joints[0][row[0]].kind == "tip" or row in found]
+    matched = [(i, j) for i, j in both if joints[0][i].found or joints[1][j].found]
+    return [row for row in both if joints[0][row[0]].scored or joints[0][row[0]].kind == "tip" or row in matched]
 
 
 def _places(evaluation: Evaluation) -> dict[tuple[str, int], int]:

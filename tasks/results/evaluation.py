@@ -145,15 +145,15 @@ def _dividing(c: Comparison) -> Bools:
 
 def _joint_score(c: Comparison, j: int) -> JointScore:
     """The row of one true joint."""
-    truth, partner, error, given = c.truth, int(c.matching.partner[j]), c.error[:, j], int(c.tree.origin[j])
-    nearest, turns = float(c.matching.nearest[j]), float(truth.turns[given])
+    truth, partner, error, origin = c.truth, int(c.matching.partner[j]), c.error[:, j], int(c.tree.origin[j])
+    nearest, turns = float(c.matching.nearest[j]), float(truth.turns[origin])
     of_partner: dict[str, Any] = {} if partner < 0 else {
         "found": c.skeleton.names[partner], "mean": float(error.mean()), "deviation": float(error.std()),
         "worst": float(error.max()), "percent": float(error.mean() / c.height * 100.0),
     }  # fmt: skip
     return JointScore(
-        name=truth.names[given],
-        kind=truth.kinds[given],
+        name=truth.names[origin],
+        kind=truth.kinds[origin],
         scored=bool(c.tree.scored[j]),
         turns=turns if np.isfinite(turns) else None,
         nearest=nearest / c.height * 100.0 if np.isfinite(nearest) else None,

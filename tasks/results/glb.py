@@ -32,6 +32,6 @@ def glb(
     named, rest = at_rest(renamed(rig.skeleton, rig.names), rig.names, known.up, params.rest)
     body = placed(named, upright_rotation(known.up, front=known_front(joint_names)), known.metres)
     origin = {"input_unit": skeleton.unit, "input_up": known.up, "metres_of_input_unit": known.metres}
-    shown = appearance if params.surface == "input" else NO_APPEARANCE
-    files = {f"skeleton{name}.glb": gltf(own, origin, shown) for name, own in of_takes(body).items()}
-    return Glb.of(files, rest=rest, missing=shown.missing, **known._asdict())
+    exported = appearance if params.surface == "input" else NO_APPEARANCE
+    files = {f"skeleton{name}.glb": gltf(own, origin, exported) for name, own in of_takes(body).items()}
+    return Glb.of(files, rest=rest, missing=exported.missing, **known._asdict())

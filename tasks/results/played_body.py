@@ -53,9 +53,9 @@ def played_body(
     trust = Trust(verdict.labels, error, share * size, share, verdict.state, bounds_in_frames(error_bars))
     assumed = [(in_words(joint.anatomy), joint.child, joint.place) for joint in assumed_joints.joints]
     colours = surface_colours(appearance, len(skeleton.vertices))
-    made = scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours)
+    body = scene(skeleton, alignment, inputs, leaves, intervals, limits, up_direction.axis, None, trust, assumed, colours)
     return PlayedBody(
-        description=json.dumps(made.description), omitted=made.omitted, block=np.frombuffer(made.block, dtype=np.uint8)
+        description=json.dumps(body.description), omitted=body.omitted, block=np.frombuffer(body.block, dtype=np.uint8)
     )
 
 

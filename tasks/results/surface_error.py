@@ -15,7 +15,7 @@ from kinetree.tasks.results.formats.rig import skinned
 def surface_error(skeleton: Skeleton, mesh: Mesh, index: Index) -> SurfaceError:
     """Measures the skinned mesh and the joints against the input mesh (ours)."""
     t = skeleton.frames.index(index[0])
-    found = numerics.surface_error(
+    error = numerics.surface_error(
         skinned(skeleton, t),
         np.array(skeleton.faces),
         np.array(skeleton.label),
@@ -23,4 +23,4 @@ def surface_error(skeleton: Skeleton, mesh: Mesh, index: Index) -> SurfaceError:
         np.array(mesh.vertices),
         np.array(mesh.faces),
     )
-    return SurfaceError(**{**found._asdict(), "distance": found.distance.astype(np.float32)})
+    return SurfaceError(**{**error._asdict(), "distance": error.distance.astype(np.float32)})

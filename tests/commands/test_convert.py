@@ -203,7 +203,7 @@ def leaving(folder, told, vertices=72, faces=24):
     left = {"vertices": vertices, "faces": faces}
     zeros = [f"head -c {size} /dev/zero > {name}" for name, size in left.items() if size is not None]
     there = r'while [ "$1" != -- ]; do shift; done; cd "$3"'
-    return program(folder, "; ".join([there, *zeros, f"printf '%s' '{told}' > told.json"]))
+    return program(folder, "; ".join([there, *zeros, f"printf '%s' '{told}' > layout.json"]))
 
 
 def test_what_is_left_by_blender_is_checked(file, tmp_path):

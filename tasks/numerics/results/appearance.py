@@ -26,7 +26,7 @@ class Seamed(NamedTuple):
     material: Labels
 
 
-def seamed(found: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None:
+def seamed(surface: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None:
     """Brings what the corners of a file's faces look like to the faces of the cleaned mesh; None where a face has none.
 
     A face of the cleaned mesh is the first of the file's with the same three vertices, in any order.
@@ -34,7 +34,7 @@ def seamed(found: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None
     vertex_map : (input_vertex,) vertex of the cleaned mesh, −1 where it was dropped
     F          : (face, corner) of the cleaned mesh
     """
-    there = vertex_map[found.faces]
+    there = vertex_map[surface.faces]
     whole = np.flatnonzero((there >= 0).all(axis=1))
     n = int(max(F.max(), there.max())) + 1
     keys, first = np.unique(_key(there[whole], n), return_index=True)
@@ -45,20 +45,20 @@ def seamed(found: SurfaceAppearance, vertex_map: Ints, F: Ints) -> Seamed | None
     face = whole[first[at]]
     corner = np.argmax(there[face][:, None, :] == F[:, :, None], axis=2)
     columns = [F[..., None].astype(np.float64)]
-    columns += [values[face[:, None], corner] for values in (found.uv, found.colour) if values is not None]
+    columns += [values[face[:, None], corner] for values in (surface.uv, surface.colour) if values is not None]
     rows = np.concatenate(columns, axis=2)
     copies, index = np.unique(rows.reshape(-1, rows.shape[2]), axis=0, return_inverse=True)
-    split = 1 if found.uv is None else 3
+    split = 1 if surface.uv is None else 3
     return Seamed(
         vertex=copies[:, 0].astype(np.int32),
         faces=index.reshape(-1, 3).astype(np.int32),
         uv=copies[:, 1:split],
         colour=copies[:, split:],
-        material=found.material[face].astype(np.int32),
+        material=surface.material[face].astype(np.int32),
     )
 
 
-def vertex_colours(found: Seamed, base: Floats, picture: Sequence[Floats | None]) -> Floats:
+def vertex_colours(corners: Seamed, base: Floats, picture: Sequence[Floats | None]) -> Floats:
     """Colour of each vertex of the cleaned mesh, the mean over its copies and their faces (glTF 2.0, Sec. 3.9.2).
 
     A copy has the product of its own colour, that of the material, and the pixel of the picture that is nearest to its texture
@@ -68,17 +68,17 @@ def vertex_colours(found: Seamed, base: Floats, picture: Sequence[Floats | None]
     picture : of each material, (row, column, 3) linear, the upper row first; None where it has none
     returns : (vertex, 3) linear; NaN where a vertex is of no face
     """
-    vertex = found.vertex[found.faces]
-    total, count = np.zeros((int(found.vertex.max()) + 1, 3)), np.zeros(int(found.vertex.max()) + 1)
+    vertex = corners.vertex[corners.faces]
+    total, count = np.zeros((int(corners.vertex.max()) + 1, 3)), np.zeros(int(corners.vertex.max()) + 1)
     for k, texels in enumerate(picture):
-        of_material = found.material == k
-        copies = found.faces[of_material].ravel()
+        of_material = corners.material == k
+        copies = corners.faces[of_material].ravel()
         colour = np.tile(base[k], (len(copies), 1))
-        if found.colour.shape[1]:
-            colour *= found.colour[copies]
-        if texels is not None and found.uv.shape[1]:
+        if corners.colour.shape[1]:
+            colour *= corners.colour[copies]
+        if texels is not None and corners.uv.shape[1]:
             rows, columns = texels.shape[:2]
-            u, v = np.nan_to_num(found.uv[copies] % 1.0).T
+            u, v = np.nan_to_num(corners.uv[copies] % 1.0).T
             colour *= texels[
                 np.minimum((v * rows).astype(np.int64), rows - 1), np.minimum((u * columns).astype(np.int64), columns - 1)
             ]

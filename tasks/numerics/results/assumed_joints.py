@@ -63,7 +63,7 @@ def assumed_joints(rest: Floats, parents: Sequence[int], anatomy: Sequence[str],
     topology : human or quadruped; of other bodies nothing is assumed
     """
     at = {name: j for j, name in enumerate(anatomy) if name}
-    found = []
+    assumed = []
     for chain in CHAINS.get(topology, ()):
         for side, other in ("lr", "rl"):
             here = _of_side(at, chain, side)
@@ -75,13 +75,13 @@ def assumed_joints(rest: Floats, parents: Sequence[int], anatomy: Sequence[str],
                 shares = _mirrored(rest, parents, _of_side(at, chain, other), stations)
                 source: Literal["mirror", "proportions"] = "proportions" if shares is None else "mirror"
                 shares = _proportional(stations) if shares is None else shares
-                found += [
+                assumed += [
                     Assumed(Named(station, side), here[outer], share, source)
                     for station, share in zip(wanted, shares or (), strict=bool(shares))
                 ]
     if topology == "human" and (neck := _neck(rest, parents, at)) is not None:
-        found.append(neck)
-    return [joint for joint in found if MARGIN < joint.share < 1.0 - MARGIN]
+        assumed.append(neck)
+    return [joint for joint in assumed if MARGIN < joint.share < 1.0 - MARGIN]
 
 
 def _of_side(at: Mapping[str, int], chain: Sequence[str], side: str) -> dict[str, int]:

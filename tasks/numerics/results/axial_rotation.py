@@ -20,12 +20,12 @@ on twelve generated people: 8° and 11° do as well, 25° and more are worse."""
 class AxialTurn(NamedTuple):
     """What must be added to the surface's turn about the segment.
 
-    turn : (frame,) radians, about the y axis of the segment
-    seen : (frame,) whether this frame shows it
+    turn    : (frame,) radians, about the y axis of the segment
+    is_seen : (frame,) whether this frame shows it
     """
 
     turn: Floats
-    seen: Flags
+    is_seen: Flags
 
 
 def turn_of_bend(axes: Floats, next_segment: Floats, sign: float, takes: Sequence[slice] | None = None) -> AxialTurn:
@@ -69,7 +69,7 @@ def turn_of_part(axes: Floats, part: Floats, rest: Floats, takes: Sequence[slice
     return filled(_about_y(axes, swung, 2), c > -0.5, takes)
 
 
-def filled(turn: Floats, seen: Flags, takes: Sequence[slice] | None = None) -> AxialTurn:
+def filled(turn: Floats, is_seen: Flags, takes: Sequence[slice] | None = None) -> AxialTurn:
     """The turn with that of frames that do not show it between those of the frames before and after, on the shorter way.
 
     takes   : positions of the frames of each take; None takes all as one
@@ -77,10 +77,10 @@ def filled(turn: Floats, seen: Flags, takes: Sequence[slice] | None = None) -> A
     """
     whole = np.zeros(len(turn))
     for take in takes or [slice(0, len(turn))]:
-        at = take.start + np.flatnonzero(seen[take])
+        at = take.start + np.flatnonzero(is_seen[take])
         if len(at):
             whole[take] = np.interp(np.arange(take.start, take.stop), at, np.unwrap(turn[at]))
-    return AxialTurn(whole, seen)
+    return AxialTurn(whole, is_seen)
 
 
 def turned(axes: Floats, turn: Floats) -> Floats:

@@ -48,7 +48,7 @@ def gait_events(
     times       : (frame,) seconds, ascending
     """
     s = settings or GaitSettings()
-    found: list[Event] = []
+    events: list[Event] = []
     for foot, leg in enumerate(legs):
         strikes, offs = (
             _turning(sign * np.sum((X[:, foot] - pelvis) * ahead, axis=1), s.reach * leg, s.prominence)
@@ -57,8 +57,8 @@ def gait_events(
         if len(strikes) + len(offs) < 3:
             return []
         for kind, samples in (("strike", strikes), ("off", offs)):
-            found += [Event(foot, kind, k, float(np.interp(k, np.arange(len(times)), times))) for k in samples]
-    return sorted(found, key=lambda event: event.time)
+            events += [Event(foot, kind, k, float(np.interp(k, np.arange(len(times)), times))) for k in samples]
+    return sorted(events, key=lambda event: event.time)
 
 
 def strides(events: Sequence[Event], foot: int) -> tuple[Floats, Floats]:

@@ -84,7 +84,7 @@ def joint_angles(
     frames: dict[int, Floats] = {}
     moving: dict[int, Floats] = {}
     angles: dict[str, Floats] = {}
-    seen: dict[str, Flags] = {}
+    rotation_seen: dict[str, Flags] = {}
     for station, joint in JOINTS.items():
         for side in "lr":
             j = at.get(f"{station}_{side}")
@@ -101,12 +101,12 @@ def joint_angles(
             if axial is not None:
                 moving[j] = turned(moving[j], axial.turn)
             if station != "ankle":
-                seen[f"{station}_{side}"] = np.zeros(len(X), bool) if axial is None else axial.seen
+                rotation_seen[f"{station}_{side}"] = np.zeros(len(X), bool) if axial is None else axial.is_seen
             above = moving.get(p, (R[:, p] if station != "hip" or pelvis is None else pelvis(R[:, p])) @ before)
             turn = above.transpose(0, 2, 1) @ moving[j]
-            found = _three(turn if side == "r" else MIRROR @ turn @ MIRROR, station)
-            angles |= {f"{station}_{side}.{name}": a for name, a in zip(joint.angles, found, strict=True)}
-    return JointAngles(angles, seen)
+            three_angles = _three(turn if side == "r" else MIRROR @ turn @ MIRROR, station)
+            angles |= {f"{station}_{side}.{name}": a for name, a in zip(joint.angles, three_angles, strict=True)}
+    return JointAngles(angles, rotation_seen)
 
 
 def _axial(

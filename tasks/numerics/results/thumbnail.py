@@ -30,14 +30,14 @@ def thumbnail(V: Floats, F: npt.NDArray[np.integer], colour: Pixels, joints: Flo
     returns : (pixel_row, pixel_column, rgb) sRGB on white; the widest horizontal direction lies along the rows
     """
     axes = _view(V, up)
-    seen, bones = V @ axes.T, joints @ axes.T
-    both = np.concatenate([seen, bones])[:, :2]
+    projected, bones = V @ axes.T, joints @ axes.T
+    both = np.concatenate([projected, bones])[:, :2]
     low, high = both.min(axis=0), both.max(axis=0)
     scale = (SIDE - 2 * MARGIN - 1) / max(float((high - low).max()), 1e-300)
     to_pixels = np.array([scale, -scale, scale])
     middle = np.append((SIDE - 1) / 2 - (low + high) / 2 * to_pixels[:2], 0.0)
-    seen, bones = seen * to_pixels + middle, bones * to_pixels + middle  # column, row, nearness in pixels
-    points, hue = _surface_points(seen, F, colour.astype(np.float64))
+    projected, bones = projected * to_pixels + middle, bones * to_pixels + middle  # column, row, nearness in pixels
+    points, hue = _surface_points(projected, F, colour.astype(np.float64))
     image = np.full((SIDE, SIDE, 3), 255, np.uint8)
     at, order = _pixels(points), np.argsort(points[:, 2], kind="stable")  # the nearest last, which stays
     image[at[order, 0], at[order, 1]] = hue[order]

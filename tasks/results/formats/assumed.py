@@ -51,12 +51,12 @@ def with_assumed(skeleton: CompleteSkeleton, names: JointNames, assumed: Assumed
         "label": np.where(skeleton.label < 0, -1, new[skeleton.label]).astype(skeleton.label.dtype),
         **_weights(skeleton, order, parents, rest, new),
     }
-    told = {
+    spellings = {
         "given": fields["names"],
         "names": tuple(j.name if isinstance(j, AssumedJoint) else names.names[j] for j in order),
         "anatomy": tuple(j.anatomy if isinstance(j, AssumedJoint) else names.anatomy[j] for j in order),
     }
-    return Rig(skeleton.model_copy(update=fields), names.model_copy(update=told), added)
+    return Rig(skeleton.model_copy(update=fields), names.model_copy(update=spellings), added)
 
 
 def _order(count: int, assumed: AssumedJoints) -> list[int | AssumedJoint]:
@@ -101,12 +101,12 @@ def _weights(
         after = next(c for c in range(n + 1, len(order)) if parents[c] == n)
         beyond = share_beyond(V, F, rest[n], rest[parents[n]], rest[after])
         slot = np.argmax((joint == parents[n]) & (weight > 0.0), axis=1)
-        held = np.where(joint[vertex, slot] == parents[n], weight[vertex, slot], 0.0)
+        carried = np.where(joint[vertex, slot] == parents[n], weight[vertex, slot], 0.0)
         free = np.argmin(weight, axis=1)
         full = weight[vertex, free] > 0.0
         beyond = np.where(full, np.rint(beyond), beyond)
-        moved = held * beyond
-        whole = (moved > 0.0) & (moved == held)
+        moved = carried * beyond
+        whole = (moved > 0.0) & (moved == carried)
         joint[vertex[whole], slot[whole]] = n
         split = (moved > 0.0) & ~whole
         weight[vertex[split], slot[split]] -= moved[split]

@@ -50,11 +50,11 @@ def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | 
     s = skeleton
     moving = np.array(s.rest), np.array(s.positions), np.array(s.rotation)
     takes = take_spans(s.frames)
-    found = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes)
-    shown = dict(zip(names.anatomy, s.names, strict=True))
-    titles = [f"{shown[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in found.degrees)]
-    titles += [f"{shown[joint]}.rotation_seen" for joint in found.rotation_seen]
-    columns = [*found.degrees.values(), *found.rotation_seen.values()]
+    angles = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes)
+    name_of = dict(zip(names.anatomy, s.names, strict=True))
+    titles = [f"{name_of[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in angles.degrees)]
+    titles += [f"{name_of[joint]}.rotation_seen" for joint in angles.rotation_seen]
+    columns = [*angles.degrees.values(), *angles.rotation_seen.values()]
     return series(s, titles, np.column_stack([np.empty((len(s.frames), 0)), *columns]))
 
 
@@ -91,15 +91,15 @@ def _events(skeleton: Skeleton, events: Sequence[Event], feet: Sequence[str]) ->
 def _summary(skeleton: Skeleton, events: Sequence[Event], feet: Sequence[str]) -> bytes:
     """Strides and stances of every foot, and how symmetric left and right are."""
     unit = "seconds" if skeleton.fps else "frames"
-    told: dict[str, dict[str, object]] = {}
+    of_foot: dict[str, dict[str, object]] = {}
     means: dict[str, tuple[float, float]] = {}
     for k, foot in enumerate(feet):
         stride, stance = strides(events, k)
         whole = np.isfinite(stance)
-        told[foot] = {"strides": len(stride)}
+        of_foot[foot] = {"strides": len(stride)}
         if whole.any():
             means[foot] = float(stride.mean()), float(np.mean(stance[whole] / stride[whole]))
-            told[foot] |= {f"stride_{unit}": round(means[foot][0], 4), "stance_share": round(means[foot][1], 4)}
+            of_foot[foot] |= {f"stride_{unit}": round(means[foot][0], 4), "stance_share": round(means[foot][1], 4)}
     pairs = {foot[:-2] for foot in feet if {f"{foot[:-1]}l", f"{foot[:-1]}r"} <= set(means)}
     symmetry = {
         foot: {
@@ -108,7 +108,7 @@ def _summary(skeleton: Skeleton, events: Sequence[Event], feet: Sequence[str]) -
         }
         for foot in sorted(pairs)
     }
-    content = {"method": "Zeni, Richards, Higginson 2008", "feet": told, "symmetry": symmetry}
+    content = {"method": "Zeni, Richards, Higginson 2008", "feet": of_foot, "symmetry": symmetry}
     return (json.dumps(content, indent=1) + "\n").encode()
 
 

@@ -72,12 +72,12 @@ def _at_even_steps(skeleton: Skeleton, step: int) -> tuple[Floats, Floats]:
     """Root position and rotations against the parents at every multiple of the step, interpolated where there is no frame."""
     identity = np.broadcast_to(np.eye(3), skeleton.rotation.shape[1:])
     local = local_rotations(skeleton.rotation, identity, skeleton.parents)
-    given = np.array(skeleton.frames)
-    even = np.arange(given[0], given[-1] + 1, step)
-    if len(even) == len(given):
+    numbers = np.array(skeleton.frames)
+    even = np.arange(numbers[0], numbers[-1] + 1, step)
+    if len(even) == len(numbers):
         return skeleton.positions[:, 0], local
-    position = np.stack([np.interp(even, given, skeleton.positions[:, 0, x]) for x in range(3)], axis=1)
-    rotations = [Slerp(given, Rotation.from_matrix(local[:, j]))(even).as_matrix() for j in range(local.shape[1])]
+    position = np.stack([np.interp(even, numbers, skeleton.positions[:, 0, x]) for x in range(3)], axis=1)
+    rotations = [Slerp(numbers, Rotation.from_matrix(local[:, j]))(even).as_matrix() for j in range(local.shape[1])]
     return position, np.stack(rotations, axis=1)
 
 

@@ -133,28 +133,32 @@ def _mesh_of_input(block: _Block, skeleton: Skeleton, appearance: Appearance) ->
         rgba = np.concatenate([appearance.colour, np.ones((len(appearance.colour), 1))], axis=1)
         attributes["COLOR_0"] = block.add(np.rint(65535 * np.clip(rgba, 0, 1)).astype(np.uint16), VERTICES, share=True)
     used = np.unique(appearance.material).tolist()
-    shown = sorted({m.picture for m in (appearance.materials[k] for k in used) if m.picture is not None and appearance.has_uv})
+    pictures = sorted(
+        {m.picture for m in (appearance.materials[k] for k in used) if m.picture is not None and appearance.has_uv}
+    )
     primitives = []
     for n, k in enumerate(used):
         indices = appearance.faces[appearance.material == k].astype(np.uint32).ravel()
         primitives.append({"attributes": attributes, "indices": block.add(indices, ELEMENTS), "material": n})
     content, ends = appearance.content.tobytes(), np.cumsum(appearance.sizes)
-    told = {
+    document = {
         "meshes": [{"name": "body", "primitives": primitives}],
-        "materials": [_textured(appearance.materials[k], shown) for k in used],
+        "materials": [_textured(appearance.materials[k], pictures) for k in used],
     }
-    if not shown:
-        return told
-    pictures = [content[ends[i] - appearance.sizes[i] : ends[i]] for i in shown]
-    images = [{"bufferView": block.put(raw), "mimeType": appearance.media[i]} for i, raw in zip(shown, pictures, strict=True)]
-    return told | {"textures": [{"source": n} for n in range(len(images))], "images": images}
+    if not pictures:
+        return document
+    contents = [content[ends[i] - appearance.sizes[i] : ends[i]] for i in pictures]
+    images = [
+        {"bufferView": block.put(raw), "mimeType": appearance.media[i]} for i, raw in zip(pictures, contents, strict=True)
+    ]
+    return document | {"textures": [{"source": n} for n in range(len(images))], "images": images}
 
 
-def _textured(material: SurfaceMaterial, shown: Sequence[int]) -> dict[str, Any]:
+def _textured(material: SurfaceMaterial, pictures: Sequence[int]) -> dict[str, Any]:
     """A material of the input."""
     more: dict[str, Any] = {} if material.colour == (1.0, 1.0, 1.0, 1.0) else {"baseColorFactor": list(material.colour)}
-    if material.picture in shown:
-        more["baseColorTexture"] = {"index": shown.index(material.picture)}
+    if material.picture in pictures:
+        more["baseColorTexture"] = {"index": pictures.index(material.picture)}
     return _material(material.name, **more)
 
 

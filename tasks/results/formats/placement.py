@@ -23,14 +23,14 @@ class Placement(NamedTuple):
     assumed_fps: float | None
 
 
-def placement(skeleton: Skeleton, found: UpDirection, up: Axis | None = None, metres: float | None = None) -> Placement:
+def placement(skeleton: Skeleton, estimate: UpDirection, up: Axis | None = None, metres: float | None = None) -> Placement:
     """The up direction and the unit of the input.
 
     up     : axis that the user says points up; None: the one that was found
     metres : length of one unit that the user says; None: from the unit, or guessed from the body's longest side
     """
     assumed = ASSUMED_FPS if skeleton.fps is None else None
-    direction = (found.up, found.confidence) if up is None else (up, 1.0)
+    direction = (estimate.up, estimate.confidence) if up is None else (up, 1.0)
     if metres is not None:
         return Placement(*direction, metres, "parameter", assumed)
     if skeleton.unit in METRES:
@@ -57,7 +57,12 @@ def placed(skeleton: Skeleton, rotation: Floats, scale: float) -> Skeleton:
 
 
 def in_unit(
-    skeleton: Skeleton, found: UpDirection, up: Literal["y", "z"], scale: float | None, unit: str, front: Floats | None = None
+    skeleton: Skeleton,
+    estimate: UpDirection,
+    up: Literal["y", "z"],
+    scale: float | None,
+    unit: str,
+    front: Floats | None = None,
 ) -> tuple[Skeleton, Placement]:
     """The same body with an axis up and in a unit, and what is known or assumed of the input.
 
@@ -66,7 +71,7 @@ def in_unit(
     unit  : as in METRES
     front : (xyz,) direction that the body faces, which is brought to where programs look for it
     """
-    known = placement(skeleton, found, metres=scale and scale * METRES[unit])
+    known = placement(skeleton, estimate, metres=scale and scale * METRES[unit])
     return placed(skeleton, upright_rotation(known.up, up, front), scale or known.metres / METRES[unit]), known
 
 

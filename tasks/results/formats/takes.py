@@ -21,26 +21,26 @@ def of_takes(skeleton: Skeleton) -> dict[str, CompleteSkeleton]:
         skeleton = CompleteSkeleton(**{name: getattr(skeleton, name) for name in Skeleton.model_fields}, interpolated=())
     if not skeleton.takes:
         return {"": skeleton}
-    found = {}
+    by_suffix = {}
     for span in take_spans(skeleton.frames):
         k = skeleton.frames[span.start] // TAKE
-        told: dict[str, Any] = {name: np.array(getattr(skeleton, name)[span]) for name in POSES}
+        poses: dict[str, Any] = {name: np.array(getattr(skeleton, name)[span]) for name in POSES}
         between = (t for t in skeleton.interpolated if t.frame // TAKE == k)
         own = tuple(t.model_copy(update={"frame": t.frame - k * TAKE}) for t in between)
         fields = {name: getattr(skeleton, name) for name in CompleteSkeleton.model_fields}
         frames = tuple(t - k * TAKE for t in skeleton.frames[span])
-        told |= {"frames": frames, "interpolated": own, "takes": ()}
-        found[f"-{skeleton.takes[k]}"] = CompleteSkeleton(**{**fields, **told})
-    return found
+        poses |= {"frames": frames, "interpolated": own, "takes": ()}
+        by_suffix[f"-{skeleton.takes[k]}"] = CompleteSkeleton(**{**fields, **poses})
+    return by_suffix
 
 
 def bars_of_takes(bars: ErrorBars, skeleton: Skeleton) -> dict[str, ErrorBars]:
     """The error bars with the frames of each take, by the same names as `of_takes`."""
     if not isinstance(skeleton, CompleteSkeleton) or not skeleton.takes or not bars.frames:
         return {"": bars}
-    found = {}
+    by_suffix = {}
     for span in take_spans(bars.frames):
         k = bars.frames[span.start] // TAKE
-        told = {"frames": tuple(t - k * TAKE for t in bars.frames[span]), "in_frame": np.array(bars.in_frame[span])}
-        found[f"-{skeleton.takes[k]}"] = bars.model_copy(update=told)
-    return found
+        own = {"frames": tuple(t - k * TAKE for t in bars.frames[span]), "in_frame": np.array(bars.in_frame[span])}
+        by_suffix[f"-{skeleton.takes[k]}"] = bars.model_copy(update=own)
+    return by_suffix

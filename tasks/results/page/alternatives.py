@@ -36,7 +36,7 @@ def confidence_words(skeleton: Skeleton, labels: Sequence[str]) -> str:
     if not inner:
         return "No joints."
     least = sorted(inner, key=lambda j: float(skeleton.confidence[:, j].min()))[:NAMED]
-    told = ", ".join(
+    weakest = ", ".join(
         f"{labels[j]} {skeleton.confidence[:, j].min():.2f} in frame {skeleton.frames[int(skeleton.confidence[:, j].argmin())]}"
         for j in least
     )
@@ -44,7 +44,7 @@ def confidence_words(skeleton: Skeleton, labels: Sequence[str]) -> str:
     widest = max(inner, key=lambda j: float(skeleton.drift[j]))
     drift = f"{100 * skeleton.drift[widest] / size:.2g} % of the body's diagonal at {labels[widest]}"
     mean = skeleton.confidence[:, inner].mean()
-    return f"Confidence is {mean:.2f} in the mean; least: {told}. Parts disagree most, by {drift}."
+    return f"Confidence is {mean:.2f} in the mean; least: {weakest}. Parts disagree most, by {drift}."
 
 
 def angles_words(skeleton: Skeleton, labels: Sequence[str], total: Floats) -> str:
@@ -56,13 +56,13 @@ def angles_words(skeleton: Skeleton, labels: Sequence[str], total: Floats) -> st
     if not turning:
         return "No joints."
     most = sorted(turning, key=lambda j: -float(total[:, j].max()))[:NAMED]
-    told = ", ".join(
+    farthest = ", ".join(
         f"{labels[j]} {total[:, j].max():.0f}° in frame {skeleton.frames[int(total[:, j].argmax())]}" for j in most
     )
     least = min(turning, key=lambda j: float(total[:, j].max()))
     return (
         f"Curves of the angles of {len(turning)} joints over {_frames(skeleton.frames)}. Farthest from the reference pose:"
-        f" {told}; least: {labels[least]} {total[:, least].max():.0f}°."
+        f" {farthest}; least: {labels[least]} {total[:, least].max():.0f}°."
     )
 
 
@@ -80,8 +80,8 @@ def correlation_words(series: Correlation, cut: Intervals) -> str:
 
 def mu_words(leaves: Leaves, frames: Sequence[int]) -> str:
     """How many leaves are seen in each frame drawn."""
-    seen = ", ".join(f"{int(np.sum(leaves.is_seen(frame)))} in frame {frame}" for frame in frames)
-    return f"The body coloured by μ, dark in its middle and bright at its ends. Leaves that are seen: {seen}."
+    counts = ", ".join(f"{int(np.sum(leaves.is_seen(frame)))} in frame {frame}" for frame in frames)
+    return f"The body coloured by μ, dark in its middle and bright at its ends. Leaves that are seen: {counts}."
 
 
 def alignment_words(skeleton: Skeleton, alignments: Mapping[int, Alignment], reference: int) -> str:
@@ -89,9 +89,9 @@ def alignment_words(skeleton: Skeleton, alignments: Mapping[int, Alignment], ref
     size = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
     worst = {frame: 100 * float(np.quantile(a.residual, 0.95)) / size for frame, a in alignments.items()}
     order = sorted(worst, key=lambda frame: -worst[frame])[:NAMED]
-    told = ", ".join(f"frame {frame} ({worst[frame]:.2g} %)" for frame in order)
+    worst_frames = ", ".join(f"frame {frame} ({worst[frame]:.2g} %)" for frame in order)
     below = "95 % of the vertices are nearer than this share of the body's diagonal, at worst"
-    return f"{below}: {told}. Reference: frame {reference}."
+    return f"{below}: {worst_frames}. Reference: frame {reference}."
 
 
 def cones_words(parts: RigidParts) -> str:
@@ -136,10 +136,10 @@ def lengths_words(body: ArticulatedBody, labels: Sequence[str], variation: Float
 def evaluation_words(evaluation: Evaluation) -> str:
     """The joints that are farthest from the true ones, and the missing ones."""
     scored = [joint for joint in evaluation.joints if joint.scored]
-    found = sorted((j for j in scored if j.percent is not None), key=lambda j: -(j.percent or 0.0))
-    told = ", ".join(f"{j.name} {j.percent:.2f} %" for j in found[:NAMED]) or "none found"
+    by_error = sorted((j for j in scored if j.percent is not None), key=lambda j: -(j.percent or 0.0))
+    farthest = ", ".join(f"{j.name} {j.percent:.2f} %" for j in by_error[:NAMED]) or "none found"
     missing = ", ".join(j.name for j in scored if j.found is None) or "none"
-    return f"Errors of {len(found)} joints in % of the height; largest: {told}. Missing: {missing}."
+    return f"Errors of {len(by_error)} joints in % of the height; largest: {farthest}. Missing: {missing}."
 
 
 def _frames(frames: Sequence[int]) -> str:

@@ -30,7 +30,7 @@ def coarse(mesh: Mesh, projection: Projection, previous: CoarseMesh | None, coun
     returns : its `kept` and `faces` are empty where they are those of `previous`
     """
     V = np.asarray(mesh.vertices)
-    kept, faces = decimated(np.array(V), mesh.faces, count) if previous is None else (previous.kept, None)
+    vertex, faces = decimated(np.array(V), mesh.faces, count) if previous is None else (previous.kept, None)
     face, corner = np.full(len(V), -1, np.int32), np.zeros(len(V), np.int32)
     known = (projection.face >= 0) & (mesh.vertex_of_input >= 0)
     at = mesh.vertex_of_input[known]
@@ -39,10 +39,10 @@ def coarse(mesh: Mesh, projection: Projection, previous: CoarseMesh | None, coun
         size=len(V),
         limit=count,
         extent=tuple(np.ptp(V, axis=0).tolist()),
-        vertices=V[kept],
-        reference_face=face[kept],
-        reference_corner=corner[kept],
-        kept=np.zeros(0, np.int32) if faces is None else kept,
+        vertices=V[vertex],
+        reference_face=face[vertex],
+        reference_corner=corner[vertex],
+        kept=np.zeros(0, np.int32) if faces is None else vertex,
         faces=np.zeros((0, 3), np.int32) if faces is None else faces,
     )
 
@@ -52,7 +52,7 @@ def coarse_meshes(meshes: Mapping[int, Mesh], projections: Mapping[int, Projecti
 
     meshes, projections : by source frame number, of the same frames
     """
-    made: dict[int, CoarseMesh] = {}
+    coarse_of: dict[int, CoarseMesh] = {}
     for frame, first in zip(meshes, alike({f: m.faces for f, m in meshes.items()}), strict=True):
-        made[frame] = coarse(meshes[frame], projections[frame], made.get(first), count)
-    return made
+        coarse_of[frame] = coarse(meshes[frame], projections[frame], coarse_of.get(first), count)
+    return coarse_of

@@ -45,8 +45,8 @@ def _facts(rows: Sequence[SequenceRow]) -> list[tuple[str, str]]:
     facts += [(words.removesuffix(" for"), str(levels.count(level))) for level, words in WORDS.items() if level in levels]
     scored = [row for row in rows if row.scored is not None]
     if scored:
-        found, total = sum(row.found or 0 for row in scored), sum(row.scored or 0 for row in scored)
-        facts.append(("true joints found", f"{found} of {total}"))
+        matched, total = sum(row.found or 0 for row in scored), sum(row.scored or 0 for row in scored)
+        facts.append(("true joints found", f"{matched} of {total}"))
     errors = [row.percent for row in rows if row.percent is not None]
     if errors:
         facts.append(("mean error", f"{fmean(errors):.2f} % of the height"))
@@ -75,7 +75,7 @@ def _row(row: SequenceRow, table: SequenceTable) -> str:
         name = f'<a href="{escape(quote(f"{outcome.output}/{REPORT}"))}">{name}</a>'
     picture = "" if row.picture is None else f'<img alt="" src="{_address(table.pictures[row.picture])}">'
     status = escape(outcome.status)
-    found = "" if row.scored is None else f"{row.found} of {row.scored}"
+    matched = "" if row.scored is None else f"{row.found} of {row.scored}"
     cells = [
         picture,
         name,
@@ -84,7 +84,7 @@ def _row(row: SequenceRow, table: SequenceTable) -> str:
         _text(row.frames),
         _text(row.joints),
         "" if row.confidence is None else f"{row.confidence:.2f}",
-        found,
+        matched,
         "" if row.percent is None else f"{row.percent:.2f}",
         _text(row.spurious),
         f"{outcome.seconds:.1f}" if row.picture is not None else "",

@@ -95,11 +95,11 @@ def scene(
     """
     frames = [frame for frame in skeleton.frames if frame in inputs]
     selected_frames = np.array([skeleton.frames.index(frame) for frame in frames])
-    shown = [inputs[frame] for frame in frames]
-    axes = directions(np.mean([m.extent for m in shown], axis=0), up) if axes is None else axes
+    played = [inputs[frame] for frame in frames]
+    axes = directions(np.mean([m.extent for m in played], axis=0), up) if axes is None else axes
     selected, faces = decimated(np.array(skeleton.vertices), skeleton.faces, limits.vertices)
     positions = np.stack([alignments[frame].vertices[selected] @ axes for frame in frames])
-    vertices = np.concatenate([m.vertices for m in shown]) @ axes
+    vertices = np.concatenate([m.vertices for m in played]) @ axes
     low, high = _corners(positions.reshape(-1, 3), vertices)
     lattice = Lattice.around(low, high)
     arrays: dict[str, NDArray[Any]] = {
@@ -108,7 +108,7 @@ def scene(
         "label": skeleton.label[selected].astype(np.int16),
         "joints": (skeleton.positions[selected_frames] @ axes).astype(np.float32),
         "input_vertices": lattice.levels(vertices),
-        **_input(skeleton, shown),
+        **_input(skeleton, played),
     }
     if len(leaves.positions):
         arrays["leaves"] = (np.stack([leaves.at(frame) for frame in frames]) @ axes).astype(np.float32)
@@ -119,7 +119,7 @@ def scene(
         arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
     if colours is not None:
         arrays["colours"] = colours[selected]
-        arrays["input_colours"] = np.concatenate([_carried(colours, skeleton, m) for m in shown])
+        arrays["input_colours"] = np.concatenate([_carried(colours, skeleton, m) for m in played])
     layout, block = packed(arrays)
     description = {
         **_tree(skeleton, skeleton.names if trust is None else trust.labels),
@@ -135,7 +135,7 @@ def scene(
         "assumed": [{"label": label, "child": child} for label, child, _ in assumed],
         "arrays": layout,
     }
-    return Scene(description, block, _omitted(skeleton, shown, len(selected), limits))
+    return Scene(description, block, _omitted(skeleton, played, len(selected), limits))
 
 
 def _corners(*points: Floats) -> tuple[Floats, Floats]:
@@ -143,13 +143,13 @@ def _corners(*points: Floats) -> tuple[Floats, Floats]:
     return np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
 
 
-def _input(skeleton: Skeleton, shown: Sequence[CoarseMesh]) -> dict[str, NDArray[Any]]:
+def _input(skeleton: Skeleton, played: Sequence[CoarseMesh]) -> dict[str, NDArray[Any]]:
     """Faces and parts of the input meshes, one after the other, and where each begins."""
     return {
-        "input_faces": np.concatenate([m.faces for m in shown if len(m.faces)]).astype(np.uint32),
-        "input_label": np.concatenate([_label(skeleton, m) for m in shown]).astype(np.int16),
-        "input_vertex_offsets": _offsets([len(m.vertices) for m in shown]),
-        "input_face_spans": _spans([len(m.faces) for m in shown]),
+        "input_faces": np.concatenate([m.faces for m in played if len(m.faces)]).astype(np.uint32),
+        "input_label": np.concatenate([_label(skeleton, m) for m in played]).astype(np.int16),
+        "input_vertex_offsets": _offsets([len(m.vertices) for m in played]),
+        "input_face_spans": _spans([len(m.faces) for m in played]),
     }
 
 

@@ -27,7 +27,7 @@ def surface_colours(appearance: Appearance, vertices: int) -> NDArray[np.uint8] 
     ends = np.cumsum(appearance.sizes)
     content = appearance.content.tobytes()
     pictures = [_pixels(content[end - size : end]) for size, end in zip(appearance.sizes, ends, strict=True)]
-    held = Seamed(
+    corners = Seamed(
         vertex=np.array(appearance.vertex),
         faces=np.array(appearance.faces),
         uv=np.array(appearance.uv)[:, : 2 * appearance.has_uv],
@@ -35,8 +35,8 @@ def surface_colours(appearance: Appearance, vertices: int) -> NDArray[np.uint8] 
         material=np.array(appearance.material),
     )
     base = np.array([material.colour[:3] for material in appearance.materials])
-    shown = [None if material.picture is None else pictures[material.picture] for material in appearance.materials]
-    known = vertex_colours(held, base, shown)
+    textures = [None if material.picture is None else pictures[material.picture] for material in appearance.materials]
+    known = vertex_colours(corners, base, textures)
     colours = np.full((vertices, 3), np.nan)
     colours[: len(known)] = known[:vertices]
     return srgb(np.where(np.isnan(colours), 0.5, colours))

@@ -104,7 +104,7 @@ def _of_frames(
         yield Remark(f"components apart from the body were removed in {runs(removed, tuple(meshes))}", removed[0])
 
 
-def _remark(found: Finding, verdict: Verdict) -> Remark:
+def _remark(finding: Finding, verdict: Verdict) -> Remark:
     """A finding in words, with the frame and the joint to look at."""
-    frame = found.frames[0] if found.frames else None
-    return Remark(sentence(found, verdict), frame, verdict.joints.index(found.joints[0]) if found.joints else None)
+    frame = finding.frames[0] if finding.frames else None
+    return Remark(sentence(finding, verdict), frame, verdict.joints.index(finding.joints[0]) if finding.joints else None)

@@ -103,19 +103,19 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 def lengths(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Variation of the length of every bone between two areas before lengths are fixed; redundant bones are hollow."""
     links = fetch("bones")
-    seen = np.flatnonzero(np.isfinite(links.variation))
-    figure, axes = blank(7.0, max(2.2, 0.2 * len(seen) + 1.3))
-    if not len(seen):
+    measured = np.flatnonzero(np.isfinite(links.variation))
+    figure, axes = blank(7.0, max(2.2, 0.2 * len(measured) + 1.3))
+    if not len(measured):
         axes.set_axis_off()
         axes.text(0.5, 0.5, "no bones between joints", ha="center", va="center", fontsize=10)
         return figure
-    ends = links.centroid[:, links.bone[seen]]
+    ends = links.centroid[:, links.bone[measured]]
     mean = np.nanmean(np.linalg.norm(ends[:, :, 0] - ends[:, :, 1], axis=2), axis=0)
-    percent = 100 * links.variation[seen] / np.maximum(mean, 1e-300)
-    in_tree = links.in_tree[seen]
-    axes.barh(range(len(seen)), percent, color=np.where(in_tree, COLOURS[0], "white"), edgecolor=COLOURS[0])
-    axes.set(ylim=(len(seen) - 0.4, -0.6), yticks=range(len(seen)))
-    axes.set_yticklabels([f"{i} – {j}" for i, j in links.bone[seen].tolist()], fontsize=7)
+    percent = 100 * links.variation[measured] / np.maximum(mean, 1e-300)
+    in_tree = links.in_tree[measured]
+    axes.barh(range(len(measured)), percent, color=np.where(in_tree, COLOURS[0], "white"), edgecolor=COLOURS[0])
+    axes.set(ylim=(len(measured) - 0.4, -0.6), yticks=range(len(measured)))
+    axes.set_yticklabels([f"{i} – {j}" for i, j in links.bone[measured].tolist()], fontsize=7)
     axes.set_xlabel("standard deviation of the bone's length before it is fixed, % of its mean", fontsize=8)
     heading(axes, "Bones between areas; hollow: redundant")
     return figure

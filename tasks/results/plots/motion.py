@@ -41,28 +41,28 @@ def angles(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     skeleton: Skeleton = fetch("skeleton")
     names = recognised(fetch)
     total, signed = joint_angles(skeleton), signed_angles(skeleton, names)
-    shown = panels(skeleton, names, signed)
-    if not shown:
+    drawn_panels = panels(skeleton, names, signed)
+    if not drawn_panels:
         return words("no joints")
-    columns = columns_of(len(shown))
-    rows = -(-len(shown) // columns)
+    columns = columns_of(len(drawn_panels))
+    rows = -(-len(drawn_panels) // columns)
     figure, grid = blank(2.75 * columns, 1.6 * rows + 0.8, columns=columns, rows=rows)
     cells = np.ravel(grid)
-    for axes in cells[len(shown) :]:
+    for axes in cells[len(drawn_panels) :]:
         axes.remove()
-    drawn = [(signed if panel.is_signed else total)[:, list(panel.joints.values())] for panel in shown]
+    drawn = [(signed if panel.is_signed else total)[:, list(panel.joints.values())] for panel in drawn_panels]
     low, high = min(0.0, *(float(a.min()) for a in drawn)), max(1.0, *(float(a.max()) for a in drawn))
-    for k, (axes, panel) in enumerate(zip(cells, shown, strict=False)):
+    for k, (axes, panel) in enumerate(zip(cells, drawn_panels, strict=False)):
         _angle(axes, skeleton, panel, signed if panel.is_signed else total)
         margin = 0.05 * (high - low)
         axes.set(
             ylim=(low - margin, high + margin), xlim=(skeleton.frames[0], max(skeleton.frames[-1], skeleton.frames[0] + 1))
         )
         over_time(axes, skeleton.frames, skeleton.fps, both=False, label=False)
-        axes.tick_params(labelsize=7, labelbottom=k + columns >= len(shown), labelleft=k % columns == 0)
+        axes.tick_params(labelsize=7, labelbottom=k + columns >= len(drawn_panels), labelleft=k % columns == 0)
     figure.supylabel("angle since the reference pose, °", fontsize=8)
     figure.supxlabel("time, s" if skeleton.fps else "frame", fontsize=8)
-    _legend(figure, shown, skeleton)
+    _legend(figure, drawn_panels, skeleton)
     return figure
 
 
@@ -116,16 +116,16 @@ def _angle(axes: "Axes", skeleton: Skeleton, panel: Panel, angle: Floats) -> Non
     axes.set_title(f"{panel.name} ±" if panel.is_signed else panel.name, fontsize=8, pad=3)
 
 
-def _legend(figure: "Figure", shown: list[Panel], skeleton: Skeleton) -> None:
+def _legend(figure: "Figure", panels: list[Panel], skeleton: Skeleton) -> None:
     """Names the sides, the sign and the bands where there are any."""
     from matplotlib.lines import Line2D
 
-    sides = {side for panel in shown for side in panel.joints} - {""}
+    sides = {side for panel in panels for side in panel.joints} - {""}
     entries = [Line2D([], [], color=LOOK[s][0], ls=LOOK[s][1], lw=1.2, label=s) for s in LOOK if s in sides]
-    joints = [j for panel in shown for j in panel.joints.values()]
+    joints = [j for panel in panels for j in panel.joints.values()]
     if (skeleton.confidence[:, joints] < LOW_CONFIDENCE).any():
         entries.append(Line2D([], [], color="0.5", lw=6, alpha=0.3, label=f"confidence below {LOW_CONFIDENCE}"))
-    if any(panel.is_signed for panel in shown):
+    if any(panel.is_signed for panel in panels):
         entries.append(Line2D([], [], color="none", label="± signed: positive forwards; else the whole angle"))
     if entries:
         figure.legend(handles=entries, loc="outside upper center", ncols=len(entries), fontsize=8, frameon=False)

@@ -78,12 +78,12 @@ def clusters(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 def description(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """The structure in some frames, over each frame's mesh (Figs. 4, 6)."""
     model = fetch("integrated_structure")
-    shown = [(fetch("mesh", frame=frame), fetch("graph_motion", frame=frame), frame) for frame in frames]
-    axis = view([mesh.vertices for mesh, _, _ in shown], up)
-    figure, row = blank(3.0 * len(shown), 4.4, len(shown))
+    posed = [(fetch("mesh", frame=frame), fetch("graph_motion", frame=frame), frame) for frame in frames]
+    axis = view([mesh.vertices for mesh, _, _ in posed], up)
+    figure, row = blank(3.0 * len(posed), 4.4, len(posed))
     child = np.flatnonzero(model.parents >= 0)
     edge = np.stack([model.parents[child], child], axis=1)
-    for axes, (mesh, motion, frame) in zip(np.atleast_1d(row), shown, strict=True):
+    for axes, (mesh, motion, frame) in zip(np.atleast_1d(row), posed, strict=True):
         surface(axes, mesh.vertices @ axis, mesh.faces, np.full((len(mesh.faces), 4), PALE))
         _drawn(axes, motion.position @ axis, edge, COLOURS[0])
         axes.set_title(f"frame {frame}", fontsize=9)

@@ -23,14 +23,14 @@ BONE = "#0a0a0a"
 
 def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Parts and skeleton on the aligned mesh, one view a frame; white where the surface is not rigid."""
-    found = fetch("skeleton")
-    bodies = [skinned(found, found.frames.index(frame)) for frame in frames]
+    body = fetch("skeleton")
+    bodies = [skinned(body, body.frames.index(frame)) for frame in frames]
     axis = view(bodies, up)
     figure, row = blank(3.4 * len(frames), tall([V @ axis for V in bodies], 3.4), len(frames))
-    colour = part_colours(found)
+    colour = part_colours(body)
     for axes, frame, V in zip(np.atleast_1d(row), frames, bodies, strict=True):
-        surface(axes, V @ axis, found.faces, colour)
-        bones(axes, found, found.positions[found.frames.index(frame)] @ axis)
+        surface(axes, V @ axis, body.faces, colour)
+        bones(axes, body, body.positions[body.frames.index(frame)] @ axis)
         axes.set_title(f"frame {frame}", fontsize=9)
     same_scale(figure.axes)
     return figure
@@ -38,18 +38,18 @@ def skeleton(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """The tree of joints by name, from the root outwards: lengths of bones and range of turning."""
-    found = fetch("skeleton")
-    place, labels = _layout(found.parents), joint_labels(fetch, found.names)
+    body = fetch("skeleton")
+    place, labels = _layout(body.parents), joint_labels(fetch, body.names)
     depth = place[:, 0].max() + 1
     figure, axes = blank(max(7.0, 2.1 * depth), max(2.5, 0.42 * (place[:, 1].max() + 2)))
-    unit = f" {found.unit}" if found.unit else ""
-    for j, parent in enumerate(found.parents):
+    unit = f" {body.unit}" if body.unit else ""
+    for j, parent in enumerate(body.parents):
         if parent >= 0:
             axes.plot(*zip(place[parent], place[j], strict=True), color="0.6", lw=1, zorder=1)
-        axes.plot(*place[j], "o", color=KINDS[found.kinds[j]], ms=6, zorder=2)
-        told = labels[j] + (f"\n{found.lengths[j]:.3g}{unit}" if parent >= 0 else "")
-        told += f", {found.degrees[j]:.0f}°" if found.kinds[j] == "joint" else ""
-        axes.annotate(told, place[j], xytext=(9, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
+        axes.plot(*place[j], "o", color=KINDS[body.kinds[j]], ms=6, zorder=2)
+        label = labels[j] + (f"\n{body.lengths[j]:.3g}{unit}" if parent >= 0 else "")
+        label += f", {body.degrees[j]:.0f}°" if body.kinds[j] == "joint" else ""
+        axes.annotate(label, place[j], xytext=(9, 0), textcoords="offset points", va="center", fontsize=7, bbox=LABEL_BOX)
     axes.set(xlim=(-0.3, depth + 0.2), ylim=(place[:, 1].max() + 0.7, -0.7))
     axes.set_axis_off()
     heading(axes, "Joints (orange), end effectors (blue): length of the bone to the parent, range of turning")
@@ -58,30 +58,30 @@ def tree(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def confidence(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """How far every joint is to be believed in every frame, and by what its place is uncertain."""
-    found = fetch("skeleton")
-    labels = joint_labels(fetch, found.names)
-    inner = [j for j, kind in enumerate(found.kinds) if kind != "leaf"]
+    body = fetch("skeleton")
+    labels = joint_labels(fetch, body.names)
+    inner = [j for j, kind in enumerate(body.kinds) if kind != "leaf"]
     figure, (axes, beside) = blank(10.0, max(2.5, 0.25 * len(inner) + 1.2), columns=2)
-    edges = np.concatenate([[found.frames[0]], np.array(found.frames[1:]), [found.frames[-1] + 1]]) - 0.5
+    edges = np.concatenate([[body.frames[0]], np.array(body.frames[1:]), [body.frames[-1] + 1]]) - 0.5
     rows = np.arange(len(inner) + 1) - 0.5
-    picture = axes.pcolormesh(edges, rows, found.confidence[:, inner].T, vmin=0, vmax=1, cmap="cividis", rasterized=True)
+    picture = axes.pcolormesh(edges, rows, body.confidence[:, inner].T, vmin=0, vmax=1, cmap="cividis", rasterized=True)
     axes.set_ylim(len(inner) - 0.5, -0.5)
     bar = figure.colorbar(picture, ax=axes)
     bar.set_label("confidence", fontsize=8)
-    axes.set(yticks=range(len(inner)), xlim=(found.frames[0] - 0.5, found.frames[-1] + 0.5))
-    over_time(axes, found.frames, found.fps)
+    axes.set(yticks=range(len(inner)), xlim=(body.frames[0] - 0.5, body.frames[-1] + 0.5))
+    over_time(axes, body.frames, body.fps)
     axes.set_yticklabels([labels[j] for j in inner], fontsize=7)
-    size = float(np.linalg.norm(np.ptp(found.vertices, axis=0)))
-    beside.barh(range(len(inner)), found.drift[inner] / size * 100, color=COLOURS[0])
+    size = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
+    beside.barh(range(len(inner)), body.drift[inner] / size * 100, color=COLOURS[0])
     beside.set(ylim=(len(inner) - 0.5, -0.5), yticks=range(len(inner)), xlabel="parts disagree by, % of the body's diagonal")
-    beside.set_yticklabels([f"{found.degrees[j]:.0f}°" for j in inner], fontsize=7)
+    beside.set_yticklabels([f"{body.degrees[j]:.0f}°" for j in inner], fontsize=7)
     beside.set_ylabel("range of turning")
     return figure
 
 
-def part_colours(found: Skeleton) -> Floats:
+def part_colours(body: Skeleton) -> Floats:
     """(face, 4) pale colours of the parts, white where a face is not rigid or lies between two."""
-    return label_colours(np.asarray(found.label), found.faces)
+    return label_colours(np.asarray(body.label), body.faces)
 
 
 def label_colours(label: Ints, F: Ints, colours: Floats | None = None) -> Floats:
@@ -97,13 +97,13 @@ def label_colours(label: Ints, F: Ints, colours: Floats | None = None) -> Floats
     return np.concatenate([rgb[own], np.ones((len(own), 1))], axis=1)
 
 
-def bones(axes: "Axes", found: Skeleton, X: Floats) -> None:
+def bones(axes: "Axes", body: Skeleton, X: Floats) -> None:
     """Bones and joints over a body, in the view's own axes; the root is a square, end effectors are small."""
-    for j, parent in enumerate(found.parents):
+    for j, parent in enumerate(body.parents):
         if parent >= 0:
             axes.plot(*X[[parent, j], :2].T, color=BONE, lw=1.4, zorder=3)
     shape: dict[str, Any] = {"root": ("s", 6), "joint": ("o", 5), "leaf": (".", 5)}
-    for j, kind in enumerate(found.kinds):
+    for j, kind in enumerate(body.kinds):
         marker, size = shape[kind]
         axes.plot(*X[j, :2], marker, ms=size, color=KINDS[kind], mec="white", mew=0.4, zorder=4)
 

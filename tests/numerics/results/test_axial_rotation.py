@@ -25,14 +25,14 @@ def test_plane_of_a_bend_shows_the_turn(lost, sign):
     forearm = -np.cos(bend) * true[:, :, 1] + sign * np.sin(bend) * true[:, :, 0]
     found = turn_of_bend(axes, 3.7 * forearm, sign)
     np.testing.assert_allclose(found.turn, turn, atol=1e-9)
-    assert found.seen.all()
+    assert found.is_seen.all()
 
 
 def test_direction_beyond_shows_the_turn_unless_it_goes_on_straight(lost):
     axes, turn, true = lost
     ahead = true[:, :, 0] - 0.4 * true[:, :, 1]
     np.testing.assert_allclose(turn_of_direction(axes, 2.0 * ahead).turn, turn, atol=1e-9)
-    assert not turn_of_direction(axes, -true[:, :, 1] + 0.1 * true[:, :, 0]).seen.any()
+    assert not turn_of_direction(axes, -true[:, :, 1] + 0.1 * true[:, :, 0]).is_seen.any()
 
 
 def test_part_beyond_shows_the_turn_whatever_it_swings(lost):
