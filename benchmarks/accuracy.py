@@ -79,9 +79,9 @@ def recorded(folder: Path) -> Iterator[Case]:
     for path in sorted(folder.glob("*.truth.json")):
         name = path.name.removesuffix(".truth.json")
         body = folder / f"{name.removesuffix('-body')}-body.npz"
-        told = {"file": str(path.absolute()), "body": str(body.absolute()) if body.exists() else ""}
+        truth = {"file": str(path.absolute()), "body": str(body.absolute()) if body.exists() else ""}
         if (folder / f"{name}.npz").exists():
-            yield Case(name, name, {"source": {"input": str((folder / f"{name}.npz").absolute())}, "truth": told})
+            yield Case(name, name, {"source": {"input": str((folder / f"{name}.npz").absolute())}, "truth": truth})
 
 
 @dataclass(frozen=True)
@@ -102,23 +102,23 @@ def generated(bodies: Bodies, work: Path) -> Iterator[Case]:
     every = {"vertices": bodies.vertices, "connectivity": bodies.connectivity}
     for seed in bodies.seeds:
         for kind in bodies.kinds:
-            told = {"seed": seed, "frames": bodies.frames, **every}
+            options = {"seed": seed, "frames": bodies.frames, **every}
             if kind in ("adult", "clothed"):
-                yield from _adults(kind, seed, bodies, told)
+                yield from _adults(kind, seed, bodies, options)
             elif kind == "random":
-                yield Case(f"random-{seed}", kind, {"source": {"synth": {"figure": f"random:{seed}", **told}}})
+                yield Case(f"random-{seed}", kind, {"source": {"synth": {"figure": f"random:{seed}", **options}}})
             else:
                 path = work / f"{kind}-{seed}.yaml"
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(yaml.safe_dump(varied(kind, seed)))
-                synth = {"file": str(path), "motion": MOTIONS[kind][seed % len(MOTIONS[kind])], **told}
+                synth = {"file": str(path), "motion": MOTIONS[kind][seed % len(MOTIONS[kind])], **options}
                 yield Case(f"{kind}-{seed}", kind, {"source": {"synth": synth}})
 
 
-def _adults(kind: str, seed: int, bodies: Bodies, told: Mapping[str, Any]) -> Iterator[Case]:
+def _adults(kind: str, seed: int, bodies: Bodies, options: Mapping[str, Any]) -> Iterator[Case]:
     """One person at every rate, over the same time."""
     motion = bodies.motions[seed % len(bodies.motions)]
-    synth = {**told, "figure": f"adult:{seed}", "motion": motion, "clothes": kind == "clothed"}
+    synth = {**options, "figure": f"adult:{seed}", "motion": motion, "clothes": kind == "clothed"}
     if not bodies.rates:
         yield Case(f"{kind}-{seed}-{motion}", kind, {"source": {"synth": synth}})
     for rate in bodies.rates:
@@ -129,37 +129,37 @@ def _adults(kind: str, seed: int, bodies: Bodies, told: Mapping[str, Any]) -> It
 
 def varied(figure: str, seed: int) -> dict[str, Any]:
     """A figure that ships, with other proportions, thicknesses and amplitudes; seed 0 as it is."""
-    told: dict[str, Any] = yaml.safe_load((files("kinetree.configs") / "figures" / f"{figure}.yaml").read_text("utf-8"))
+    description: dict[str, Any] = yaml.safe_load((files("kinetree.configs") / "figures" / f"{figure}.yaml").read_text("utf-8"))
     if seed == 0:
-        return told
+        return description
     rng = np.random.default_rng(seed)
     scale, thick, wide = rng.uniform(0.88, 1.12, 3), rng.uniform(0.9, 1.1), rng.uniform(0.8, 1.15)
-    for joint in told["joints"]:
+    for joint in description["joints"]:
         joint["position"] = [float(x * s) for x, s in zip(joint["position"], scale, strict=True)]
         for key in {"radius", "radii"} & set(joint):
             joint[key] = (np.array(joint[key]) * thick).tolist()
-    for motion in told["motions"].values():
+    for motion in description["motions"].values():
         for curves in motion.values():
             for curve in curves:
                 if "amplitude" in curve:
                     curve["amplitude"] = float(curve["amplitude"] * wide)
-    return told
+    return description
 
 
 def scored(
     case: Case, preset: str, work: Path, methods: Mapping[str, Graph] | None = None, sets: Sequence[str] = ()
 ) -> tuple[Evaluation, float, str]:
     """What one run is worth, the seconds a frame that it took, and why it failed, if it did."""
-    told = {**case.blocks, "output": str(work / f"{case.name}-{preset}"), "store": str(work / "store")}
+    blocks = {**case.blocks, "output": str(work / f"{case.name}-{preset}"), "store": str(work / "store")}
     begun, why = time.perf_counter(), ""
-    pipeline = Pipeline.of({**told, **({} if preset == "default" else {"extends": preset})}, sets=sets, methods=methods)
+    pipeline = Pipeline.of({**blocks, **({} if preset == "default" else {"extends": preset})}, sets=sets, methods=methods)
     try:
         run = pipeline.run(until=["evaluation"])
         failures = [f"{f['node']}: {f['message']}" for f in run["failures"]]
         seconds = time.perf_counter() - begun
         if run["status"] == "done":
-            found: Any = pipeline.artifact("evaluation")
-            return found, seconds / max(len(found.frames), 1), ""
+            evaluation: Any = pipeline.artifact("evaluation")
+            return evaluation, seconds / max(len(evaluation.frames), 1), ""
         why = failures[0] if failures else run["status"]
     except KinetreeError as error:
         why, seconds = str(error), time.perf_counter() - begun
@@ -238,12 +238,12 @@ def lost_joints(rows: Sequence[Mapping[str, Any]], markdown: bool = False) -> It
         counts: dict[str, list[int]] = {}
         for row in rows:
             if (row["group"], row["preset"]) == group:
-                for name, found in row["joints"].items():
+                for name, hits in row["joints"].items():
                     count = counts.setdefault(name.removesuffix("_l").removesuffix("_r"), [0, 0])
-                    count[0] += found.count(False)
-                    count[1] += len(found)
-        told = [f"{name} {k} of {n}" for name, (k, n) in sorted(counts.items(), key=lambda c: -c[1][0] / c[1][1]) if k]
-        yield _row([" ".join(group) if group[1] != "default" else group[0], ", ".join(told) or "none"], markdown)
+                    count[0] += hits.count(False)
+                    count[1] += len(hits)
+        losses = [f"{name} {k} of {n}" for name, (k, n) in sorted(counts.items(), key=lambda c: -c[1][0] / c[1][1]) if k]
+        yield _row([" ".join(group) if group[1] != "default" else group[0], ", ".join(losses) or "none"], markdown)
 
 
 def _row(cells_: Sequence[str], markdown: bool) -> str:
@@ -261,11 +261,11 @@ def seeds_of(text: str) -> list[int]:
     return list(range(int(first), int(last) + 1)) if dash else [int(part) for part in text.split(",")]
 
 
-def line(name: str, preset: str, told: Mapping[str, float | None], counts: str = "", markdown: bool = False) -> str:
+def line(name: str, preset: str, columns: Mapping[str, float | None], counts: str = "", markdown: bool = False) -> str:
     """A row of text; joints found as counts where there are some."""
     row = [f"{name:16s}", f"{preset:10s}"]
     for head in HEADS:
-        value = told[head]
+        value = columns[head]
         text = "–" if value is None else f"{value:.3f}" if head in ("ARI", "mIoU", "R_det") else f"{value:.2f}"
         if counts and head in ("found", "close"):
             text = counts.split()[head == "close"]
@@ -275,17 +275,17 @@ def line(name: str, preset: str, told: Mapping[str, float | None], counts: str =
 
 def averaged(rows: list[dict[str, float | None]]) -> dict[str, float | None]:
     """Each column averaged over the rows that have something in it."""
-    told = {head: [row[head] for row in rows if row[head] is not None] for head in HEADS}
-    return {head: float(np.mean(values)) if values else None for head, values in told.items()}
+    columns = {head: [row[head] for row in rows if row[head] is not None] for head in HEADS}
+    return {head: float(np.mean(values)) if values else None for head, values in columns.items()}
 
 
-def _told(told: Evaluation) -> dict[str, Any]:
+def _joint_outcomes(evaluation: Evaluation) -> dict[str, Any]:
     """What a body's row says of single joints."""
-    found: dict[str, list[bool]] = {}
-    for joint in told.joints:
+    hits: dict[str, list[bool]] = {}
+    for joint in evaluation.joints:
         if joint.scored:
-            found.setdefault(joint.name, []).append(joint.found is not None)
-    return {"joints": found, "spurious": list(told.spurious), "duplicate_of": list(told.duplicate_of)}
+            hits.setdefault(joint.name, []).append(joint.found is not None)
+    return {"joints": hits, "spurious": list(evaluation.spurious), "duplicate_of": list(evaluation.duplicate_of)}
 
 
 def table(
@@ -300,13 +300,13 @@ def table(
     rows: list[dict[str, Any]] = []
     for case in cases:
         for preset in presets:
-            told, seconds, why = scored(case, preset, work, sets=sets)
-            s = told.summary or Summary()
+            evaluation, seconds, why = scored(case, preset, work, sets=sets)
+            s = evaluation.summary or Summary()
             row = cells(s, seconds)
             counts = f"{s.found}/{s.scored} {s.close}/{s.scored}"
             print(line(case.name, preset, row, counts, markdown), *([f"FAILED {why}"] if why else []), flush=True)
             of_case = {"name": case.name, "group": case.group, "preset": preset, "failed": why, "cells": row}
-            rows.append({**of_case, **_told(told), "summary": s.model_dump(mode="json")})
+            rows.append({**of_case, **_joint_outcomes(evaluation), "summary": s.model_dump(mode="json")})
             if file is not None:
                 file.write_text(json.dumps(rows, indent=1, ensure_ascii=False))
     for group in dict.fromkeys(case.group for case in cases):
@@ -342,8 +342,8 @@ def main() -> None:
         work = (args.work or Path(scratch)).absolute()
         cases = [*recorded(args.data)] if args.data else []
         kind = "fixed" if args.fixed else "new"
-        told = (args.kinds, args.seeds, args.motions, args.fps, args.frames, args.vertices, kind)
-        cases += generated(Bodies(*told), work / "figures")
+        bodies = Bodies(args.kinds, args.seeds, args.motions, args.fps, args.frames, args.vertices, kind)
+        cases += generated(bodies, work / "figures")
         wanted = [case for case in cases if not args.only or any(case.name.startswith(name) for name in args.only)]
         table(wanted, args.presets, work, args.markdown, args.sets, args.json)
 

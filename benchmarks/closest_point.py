@@ -51,12 +51,12 @@ def main(vertices: int) -> None:
 def milliseconds(call: Callable[[], object], times: int = 7) -> float:
     """The least of several calls, the first left out."""
     call()
-    found = []
+    durations = []
     for _ in range(times):
         begin = time.perf_counter()
         call()
-        found.append(time.perf_counter() - begin)
-    return 1000.0 * min(found)
+        durations.append(time.perf_counter() - begin)
+    return 1000.0 * min(durations)
 
 
 def around_vertices(P: Floats, V: Floats, F: Ints) -> Floats:

@@ -103,9 +103,9 @@ def _records(folder: Path, count: int) -> Iterator[tuple[str, str]]:
     }
     for name, ask in questions.items():
         started = time.process_time()
-        told = ask()
+        answer = ask()
         yield f"{count} records and artifacts of {RUNS} runs more: {name}", f"{time.process_time() - started:.2f} s"
-    assert len(told.records) == len(told.artifacts) == count
+    assert len(answer.records) == len(answer.artifacts) == count
     assert pipeline().plan().is_done
 
 
@@ -116,12 +116,12 @@ def _leave(store: Any, count: int) -> None:
     rng = np.random.default_rng(0)
     for number in range(RUNS):
         name = f"20000101-0000{number:02d}-0000"
-        made = [(rng.bytes(20).hex(), rng.bytes(20).hex()) for _ in range(count // RUNS)]
-        files = {f"{key}.json": sealed({**like, "key": key, "artifact": digest}) for key, digest in made}
+        pairs = [(rng.bytes(20).hex(), rng.bytes(20).hex()) for _ in range(count // RUNS)]
+        files = {f"{key}.json": sealed({**like, "key": key, "artifact": digest}) for key, digest in pairs}
         store.place.put(f"packs/{name}.zip", packed(files, is_deflated=True))
-        nodes = {f"n[frame={n}]": {"state": "ran", "key": key, "artifact": digest} for n, (key, digest) in enumerate(made)}
+        nodes = {f"n[frame={n}]": {"state": "ran", "key": key, "artifact": digest} for n, (key, digest) in enumerate(pairs)}
         store.write_run(name, {**run, "name": name, "nodes": nodes})
-        for _, digest in made:
+        for _, digest in pairs:
             store.place.put(artifact_path(digest), b"PK")
 
 

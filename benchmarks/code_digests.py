@@ -113,17 +113,17 @@ def edits() -> None:
     total = len(tasks_of(before))
     print(f"{'edit':48} {'modules':>8} {'definitions':>11}  of {total} tasks")
     for what, module, old, new in EDITS:
-        found = next((name for name in (f"kinetree.{module}", f"kinetree.{module}{PACKAGE}") if name in before), None)
+        full_name = next((name for name in (f"kinetree.{module}", f"kinetree.{module}{PACKAGE}") if name in before), None)
         pattern = old if "(" in old and "\\" in old else re.escape(old)
         changed, count = (
-            re.subn(pattern, new if "\\g" in new else lambda _, n=new: n, before[found], count=1, flags=re.DOTALL)
-            if found
+            re.subn(pattern, new if "\\g" in new else lambda _, n=new: n, before[full_name], count=1, flags=re.DOTALL)
+            if full_name
             else ("", 0)
         )
         if not count:
             print(f"{what:48} {'no such text in ' + module:>20}")
             continue
-        after = {**before, str(found): changed}
+        after = {**before, str(full_name): changed}
         print(f"{what:48} {len(stale(before, after, by_modules)):8} {len(stale(before, after, by_definitions)):11}")
 
 
@@ -136,7 +136,7 @@ def stale(before: Texts, after: Texts, rule: Callable[[Texts], dict[str, object]
 def by_modules(texts: Texts) -> dict[str, object]:
     """What the digest of each task covered before: all modules it imports, transitively."""
     code = Code(texts, HARMLESS)
-    found: dict[str, object] = {}
+    digests: dict[str, object] = {}
     for task, home in tasks_of(texts).items():
         covered: dict[str, str] = {}
         waiting = [home]
@@ -145,8 +145,8 @@ def by_modules(texts: Texts) -> dict[str, object]:
             if module not in covered:
                 covered[module] = _whole(texts.get(module) or texts[f"{module}{PACKAGE}"])
                 waiting += code.imports(module)
-        found[task] = covered
-    return found
+        digests[task] = covered
+    return digests
 
 
 @cache
@@ -162,7 +162,7 @@ def by_definitions(texts: Texts) -> dict[str, object]:
 
 def tasks_of(texts: Texts) -> Tasks:
     """The tasks of a tree, with their modules: functions that are decorated as a task or an origin."""
-    found: Tasks = {}
+    homes: Tasks = {}
     for name, text in texts.items():
         if not name.startswith("kinetree.tasks") or not re.search(r"^@(task|origin)\b", text, re.MULTILINE):
             continue
@@ -170,8 +170,8 @@ def tasks_of(texts: Texts) -> Tasks:
         for node in ast.parse(text).body:
             if isinstance(node, ast.FunctionDef):
                 words = {ast.unparse(d).partition("(")[0] for d in node.decorator_list}
-                found |= {node.name: module} if words & {"task", "origin"} else {}
-    return found
+                homes |= {node.name: module} if words & {"task", "origin"} else {}
+    return homes
 
 
 @cache
@@ -185,12 +185,12 @@ def texts_of(commit: str) -> Texts:
 def texts_in(folder: Path) -> Texts:
     """The modules of a tree that lies in a folder."""
     layout = tomllib.loads((folder / "pyproject.toml").read_text())["tool"]["setuptools"]["package-dir"]
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for package, place in layout.items():
         if package.startswith(COUNTED):
             for path in (folder / place).glob("*.py"):
-                found[f"{package}.{path.stem}"] = path.read_text()
-    return found
+                texts[f"{package}.{path.stem}"] = path.read_text()
+    return texts
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,7 @@ def verified(commit: str, stale_by_definitions: set[str], frames: Path) -> str:
     """One line: nodes that ran on equal inputs, tasks that made other results of them, tasks that the rule missed."""
     parent = _git("rev-parse", f"{commit}^").strip()
     before, after = (outcome(_git("rev-parse", f"{name}^{{tree}}").strip(), frames) for name in (parent, commit))
-    failures = [f"{side}: {found.failure}" for side, found in (("parent", before), ("commit", after)) if found.failure]
+    failures = [f"{side}: {tree.failure}" for side, tree in (("parent", before), ("commit", after)) if tree.failure]
     equal = before.artifacts.keys() & after.artifacts.keys()
     ran = {_task(node) for node in after.artifacts}
     compared = {_task(node) for node in equal}
@@ -244,11 +244,11 @@ def outcome(tree: str, frames: Path) -> Outcome:
             failure = f"exit {done.returncode}: {' '.join(done.stderr.split())[-200:]}" if done.returncode else ""
         except subprocess.TimeoutExpired:
             failure = f"stopped after {LIMIT} s"
-        made = {
+        artifacts = {
             json.dumps([r["task"], r["index"], r["params"], r["inputs"]], sort_keys=True): r["artifact"]
             for r in _records(output / "store")
         }
-    return Outcome(failure, made)
+    return Outcome(failure, artifacts)
 
 
 def _records(store: Path) -> list[dict[str, Any]]:
@@ -298,8 +298,8 @@ def _git(*words: str) -> str:
 
 
 def _listed(names: set[str]) -> str:
-    shown = sorted(names)
-    return ", ".join(shown[:12]) + (f" and {len(shown) - 12} more" if len(shown) > 12 else "")
+    ordered = sorted(names)
+    return ", ".join(ordered[:12]) + (f" and {len(ordered) - 12} more" if len(ordered) > 12 else "")
 
 
 if __name__ == "__main__":

@@ -59,27 +59,27 @@ def twisted(figure: dict[str, Any], seed: int) -> dict[str, Any]:
 def sequence(name: str, args: argparse.Namespace, seed: int) -> tuple[list[Cleaned], list[Floats], Body, Body]:
     """Every frame of a generated sequence, clean, its colours, its body, and the same body as one skinned mesh."""
     figure, _, motion = name.partition(":")
-    made, motion = (name, "") if figure in ("random", "adult") and motion.isdigit() else (figure, motion)
-    told = SynthParams(
-        figure=made, motion=motion or None, frames=args.frames, vertices=args.vertices, noise=0.001, seed=seed,
+    figure_name, motion = (name, "") if figure in ("random", "adult") and motion.isdigit() else (figure, motion)
+    params = SynthParams(
+        figure=figure_name, motion=motion or None, frames=args.frames, vertices=args.vertices, noise=0.001, seed=seed,
         paint=args.clothes, illumination=args.illumination, grain=args.grain,
     )  # fmt: skip
-    options = json.loads(recipe(told))
+    options = json.loads(recipe(params))
     if args.twist:
         options["figure"] = twisted(options["figure"], seed)
     written = json.dumps(options, sort_keys=True)
-    seen, colours = posed(written), paint(written)
+    observed, colours = posed(written), paint(written)
     assert colours is not None
-    meshes, shown = [], []
+    meshes, frame_colours = [], []
     for t in range(args.frames):
-        V, F = seen.frame(t)
+        V, F = observed.frame(t)
         mesh = clean(V, F)
         own = np.round(255.0 * colours.colours(t, V, F)) / 255.0
         colour = np.zeros_like(mesh.V)
         colour[mesh.vertex_map[mesh.vertex_map >= 0]] = own[mesh.vertex_map >= 0]
         meshes.append(mesh)
-        shown.append(colour)
-    return meshes, shown, seen, colours.skinned
+        frame_colours.append(colour)
+    return meshes, frame_colours, observed, colours.skinned
 
 
 def aligned(meshes: list[Cleaned], start: int, colours: list[Floats] | None) -> tuple[DeformationGraph, list[Pose], float]:
@@ -104,20 +104,20 @@ def aligned(meshes: list[Cleaned], start: int, colours: list[Floats] | None) -> 
 
 
 def _target(body: DeformationGraph, meshes: list[Cleaned], t: int, start: int, colours: list[Floats] | None) -> Target:
-    shown = None if colours is None else FrameColour(colours[t], colours[start])
-    return Target.of(meshes[t].V, meshes[t].F, body.size, colour=shown)
+    colour = None if colours is None else FrameColour(colours[t], colours[start])
+    return Target.of(meshes[t].V, meshes[t].F, body.size, colour=colour)
 
 
-def scores(body: DeformationGraph, poses: list[Pose], seen: Body, skinned: Body, start: int) -> tuple[Floats, Floats]:
+def scores(body: DeformationGraph, poses: list[Pose], observed: Body, skinned: Body, start: int) -> tuple[Floats, Floats]:
     """(frame, vertex) sliding, % of the height · (limb and frame,) roll that is wrong, degrees."""
     skin, F = np.stack([skinned.frame(t)[0] for t in range(len(poses))]), skinned.skin.F
     on = projected(body.V, skin[start], F)
     true = np.einsum("vk,tvkx->tvx", on.share, skin[:, F[on.face]])
-    found = np.stack([shape(body, pose)[0] for pose in poses])
+    estimated = np.stack([shape(body, pose)[0] for pose in poses])
     N = np.stack([vertex_normals(x, body.F) for x in true])
-    off = found - true
+    off = estimated - true
     off -= np.einsum("tvx,tvx->tv", off, N)[..., None] * N
-    part, rolls = seen.parts(start, body.V), []
+    part, rolls = observed.parts(start, body.V), []
     for number in np.unique(part):
         member = part == number
         if member.sum() < 25:
@@ -125,9 +125,9 @@ def scores(body: DeformationGraph, poses: list[Pose], seen: Body, skinned: Body,
         P = true[start][member]
         axis = np.linalg.svd(P - P.mean(axis=0), full_matrices=False)[2][0]
         for t in [t for t in range(len(poses)) if t != start]:
-            turn = _turn(P, true[t][member]).T @ _turn(P, found[t][member])
+            turn = _turn(P, true[t][member]).T @ _turn(P, estimated[t][member])
             rolls.append(abs(np.degrees(Rotation.from_matrix(turn).as_rotvec() @ axis)))
-    return np.linalg.norm(off, axis=2) / seen.figure.height * 100, np.array(rolls)
+    return np.linalg.norm(off, axis=2) / observed.figure.height * 100, np.array(rolls)
 
 
 def _turn(P: Floats, Q: Floats) -> Floats:
@@ -151,11 +151,11 @@ def main() -> None:
     print("figure        seed colours  sliding mean%   p95%   roll mean°  >10° %  >20° %   s/frm")
     for name in args.names:
         for seed in args.seeds:
-            meshes, colours, seen, skinned = sequence(name, args, seed)
+            meshes, colours, observed, skinned = sequence(name, args, seed)
             start = args.frames // 2
             for used in (False, True):
                 body, poses, seconds = aligned(meshes, start, colours if used else None)
-                slide, roll = scores(body, poses, seen, skinned, start)
+                slide, roll = scores(body, poses, observed, skinned, start)
                 line = f"{name:13s} {seed:4d} {'used' if used else '–':7s} {slide.mean():14.3f} {np.quantile(slide, 0.95):6.2f}"
                 line += f" {roll.mean():12.1f} {(roll > 10).mean() * 100:7.1f} {(roll > 20).mean() * 100:7.1f} {seconds:7.2f}"
                 print(line, flush=True)

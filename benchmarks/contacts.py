@@ -64,7 +64,7 @@ def generated(name: str, vertices: int) -> tuple[Iterator[tuple[Floats, Ints]], 
     folder = files("kinetree.configs").joinpath("figures")
     figure, motion, noisy, touches = CASES[name]
     known = {p.name.removesuffix(".yaml"): yaml.safe_load(p.read_text("utf-8")) for p in folder.iterdir()}
-    made = Body.of(
+    body = Body.of(
         named(figure, known),
         frames=36,
         motion=motion,
@@ -73,16 +73,16 @@ def generated(name: str, vertices: int) -> tuple[Iterator[tuple[Floats, Ints]], 
         contacts=[dict(zip(("limb", "target", "begin", "end"), touch, strict=True)) for touch in touches],
         seed=sorted(CASES).index(name),
     )
-    told = made.truth()
-    frames = len(told["positions"])
-    spans = [(c["frames"][0], c["frames"][-1]) for c in told["contacts"]]
+    truth = body.truth()
+    frames = len(truth["positions"])
+    spans = [(c["frames"][0], c["frames"][-1]) for c in truth["contacts"]]
     changes = [t for a, b in spans for t in (a - 1, b) if 0 <= t < frames - 1]
-    tips = [i for i, j in enumerate(told["joints"]) if j["kind"] == "tip" and not j["name"].startswith(("heel", "ear"))]
+    tips = [i for i, j in enumerate(truth["joints"]) if j["kind"] == "tip" and not j["name"].startswith(("heel", "ear"))]
     touching = np.zeros(frames, dtype=np.bool_)
     for a, b in spans:
         touching[max(a - TOLERANCE, 0) : b + TOLERANCE + 1] = True
-    meshes = (made.frame(t) for t in range(frames))
-    return meshes, Truth(sorted(changes), np.array(told["positions"])[:, tips], touching, float(told["height"]))
+    meshes = (body.frame(t) for t in range(frames))
+    return meshes, Truth(sorted(changes), np.array(truth["positions"])[:, tips], touching, float(truth["height"]))
 
 
 def recorded(folder: Path, name: str) -> tuple[Iterator[tuple[Floats, Ints]], Truth]:
@@ -92,11 +92,11 @@ def recorded(folder: Path, name: str) -> tuple[Iterator[tuple[Floats, Ints]], Tr
     meshes = ((V[a[t] : a[t + 1]], F[b[t] : b[t + 1]] if len(b) > 2 else F) for t in range(frames))
     if not (folder / f"{name}.truth.json").exists():
         return meshes, Truth([], None, np.ones(frames, dtype=np.bool_), 1.0)
-    told = json.loads((folder / f"{name}.truth.json").read_text())
-    tips = [i for i, j in enumerate(told["joints"]) if j["kind"] == "tip"]
-    state = arms_touching(folder / f"{name}-body.npz", float(told["height"]))
+    truth = json.loads((folder / f"{name}.truth.json").read_text())
+    tips = [i for i, j in enumerate(truth["joints"]) if j["kind"] == "tip"]
+    state = arms_touching(folder / f"{name}-body.npz", float(truth["height"]))
     changes = np.flatnonzero((np.diff(state, axis=0) != 0).any(axis=1)).tolist()
-    return meshes, Truth(changes, np.array(told["positions"])[:, tips], state.any(axis=1), float(told["height"]))
+    return meshes, Truth(changes, np.array(truth["positions"])[:, tips], state.any(axis=1), float(truth["height"]))
 
 
 def arms_touching(path: Path, height: float) -> npt.NDArray[np.bool_]:

@@ -55,8 +55,8 @@ def scans(folder: Path) -> None:
 
 def pipeline(home: Path) -> Pipeline:
     """The pipeline that reads the scans and keeps everything in `out`."""
-    told = {"source": {"input": str(home / "scans")}, "output": str(home / "out"), "compute": {"executor": "sync"}}
-    return Pipeline.of(told)
+    blocks = {"source": {"input": str(home / "scans")}, "output": str(home / "out"), "compute": {"executor": "sync"}}
+    return Pipeline.of(blocks)
 
 
 def ran(home: Path) -> tuple[int, bytes]:
@@ -71,27 +71,27 @@ def ran(home: Path) -> tuple[int, bytes]:
 def everything(line: Pipeline) -> bytes:
     """What all artifacts hold, one after the other."""
     there = line.inspect(until=[UNTIL])
-    held = []
+    parts = []
     for task, frames in (("source", range(FRAMES)), ("mesh", range(FRAMES)), ("sequence", [None]), ("connectivity", [None])):
         for frame in frames:
-            made: Any = there.artifact(task, **({} if frame is None else {"frame": frame}))
-            for name in sorted(type(made).model_fields):
-                value = getattr(made, name)
-                held.append(name.encode() + (value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()))
-    return b"\0".join(held)
+            artifact: Any = there.artifact(task, **({} if frame is None else {"frame": frame}))
+            for name in sorted(type(artifact).model_fields):
+                value = getattr(artifact, name)
+                parts.append(name.encode() + (value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()))
+    return b"\0".join(parts)
 
 
 def outcome(home: Path, expected: bytes) -> tuple[str, str]:
     """What became of a store with a fault in it, and the words of it."""
     try:
-        count, held = ran(home)
+        count, result = ran(home)
     except InputError as error:
         return "refused", str(error)
     except KinetreeError as error:
         return _repaired(home, expected, str(error))
     except Exception as error:
         return "crash", f"{type(error).__name__}: {error}"
-    if held != expected:
+    if result != expected:
         return "silent", ""
     return ("mended" if count else "harmless"), ""
 
@@ -174,12 +174,12 @@ class Failing:
         finally:
             self.root = ""
 
-    def _hear(self, event: str, given: tuple[Any, ...]) -> None:
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if not self.root or event not in ("open", "os.rename", "os.mkdir", "os.remove", "os.rmdir", "os.link", "os.truncate"):
             return
-        if event == "open" and not (isinstance(given[2], int) and given[2] & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)):
+        if event == "open" and not (isinstance(arguments[2], int) and arguments[2] & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)):
             return
-        path = given[0]
+        path = arguments[0]
         if not isinstance(path, str | bytes | os.PathLike) or not os.fsdecode(path).startswith(self.root):
             return
         number, self.count = self.count, self.count + 1
@@ -199,8 +199,8 @@ def failing_writes(home: Path, expected: bytes, stride: int) -> Iterator[tuple[s
                 became, words = "", ""
                 with failing.at(home / "out", number, code, forever=forever):
                     try:
-                        held = ran(home)[1]
-                        became = "harmless" if held == expected else "silent"
+                        result = ran(home)[1]
+                        became = "harmless" if result == expected else "silent"
                     except InputError as error:
                         became, words = "refused", str(error)
                     except Exception as error:
@@ -228,7 +228,7 @@ def main() -> None:
         scans(home / "scans")
         _, expected = ran(home)
         shutil.copytree(home / "out", home / "kept")
-        rng, told = random.Random(args.seed), list[tuple[str, str, str]]()
+        rng, outcomes = random.Random(args.seed), list[tuple[str, str, str]]()
         store = home / "kept" / "store"
         damages = [*flips(store, args.bytes, rng)] if "bytes" in args.faults else []
         damages += [*changes(store)] if "files" in args.faults else []
@@ -236,18 +236,18 @@ def main() -> None:
             shutil.rmtree(home / "out")
             shutil.copytree(home / "kept", home / "out")
             put(home / "out" / "store")
-            told.append((fault, *outcome(home, expected)))
-        told += failing_writes(home, expected, args.stride) if "writes" in args.faults else []
-    counts = Counter((fault, became) for fault, became, _ in told)
+            outcomes.append((fault, *outcome(home, expected)))
+        outcomes += failing_writes(home, expected, args.stride) if "writes" in args.faults else []
+    counts = Counter((fault, became) for fault, became, _ in outcomes)
     kinds = ("harmless", "mended", "told", "refused", *FAULTS)
     print("| fault | " + " | ".join(kinds) + " |\n|" + "---|" * (len(kinds) + 1))
-    for fault in dict.fromkeys(fault for fault, _, _ in told):
+    for fault in dict.fromkeys(fault for fault, _, _ in outcomes):
         print(f"| {fault} | " + " | ".join(str(counts[fault, became]) for became in kinds) + " |")
-    bad = [row for row in told if row[1] in FAULTS]
-    print(f"{len(told)} faults, {len(bad)} silent or a crash")
+    bad = [row for row in outcomes if row[1] in FAULTS]
+    print(f"{len(outcomes)} faults, {len(bad)} silent or a crash")
     for fault, became, words in dict.fromkeys((fault, became, words) for fault, became, words in bad):
         print(f"{fault}: {became}: {words}")
-    for words in dict.fromkeys(words for _, became, words in told if became == "refused"):
+    for words in dict.fromkeys(words for _, became, words in outcomes if became == "refused"):
         print(f"refused: {words}")
 
 

@@ -86,13 +86,13 @@ class Lab:
             return Path(shutil.copytree(self.home / "takes" / f"take_{copy_of % self._distinct:03d}", folder))
         self._seed += 1
         figure = FIGURES[self._seed % len(FIGURES)]
-        told = {"figure": f"random:{self._seed}", "frames": self._frames, "vertices": self._vertices, "seed": self._seed}
+        options = {"figure": f"random:{self._seed}", "frames": self._frames, "vertices": self._vertices, "seed": self._seed}
         if figure in MOTIONS:
             file = self.home / "figures" / f"{figure}_{self._seed}.yaml"
             file.parent.mkdir(exist_ok=True)
             file.write_text(json.dumps(varied(figure, self._seed)))  # which is YAML too
-            told |= {"file": str(file), "motion": MOTIONS[figure][self._seed % len(MOTIONS[figure])]}
-        write_sequence(SynthParams.model_validate({**told, "connectivity": "fixed"}), folder)
+            options |= {"file": str(file), "motion": MOTIONS[figure][self._seed % len(MOTIONS[figure])]}
+        write_sequence(SynthParams.model_validate({**options, "connectivity": "fixed"}), folder)
         return folder
 
     def broken(self) -> None:
@@ -133,8 +133,8 @@ def computed(log: Path) -> Counter[tuple[str, str]]:
     return Counter((event["name"], event["node"]) for event in events if event["event"] == "finish")
 
 
-def _told(told: dict[str, Any], wall: float, spent: float, before: int, log: Path) -> list[str]:
-    states = ", ".join(f"{count} {state}" for state, count in told["counts"].items() if count)
+def _cells(report: dict[str, Any], wall: float, spent: float, before: int, log: Path) -> list[str]:
+    states = ", ".join(f"{count} {state}" for state, count in report["counts"].items() if count)
     return [states, f"{sum(computed(log).values()) - before} nodes", f"{spent:.1f} s, {wall:.1f} s wall"]
 
 
@@ -144,20 +144,20 @@ def _nights(lab: Lab, count: int) -> Iterator[list[str]]:
     for number in range(count - 5):
         lab.take(f"take_{number:03d}", copy_of=number)
     lab.broken()
-    yield ["the first", *_told(*lab.run(), 0, log)]
+    yield ["the first", *_cells(*lab.run(), 0, log)]
     before = sum(computed(log).values())
-    yield ["nothing new; five still broken", *_told(*lab.run(), before, log)]
+    yield ["nothing new; five still broken", *_cells(*lab.run(), before, log)]
     for name in ("bytes", "empty", "faces", "single", "truth"):
         shutil.rmtree(lab.home / "takes" / f"broken_{name}")
-    yield ["the broken ones removed", *_told(*lab.run(), before, log)]
-    yield ["nothing new", *_told(*lab.run(), before, log)]
+    yield ["the broken ones removed", *_cells(*lab.run(), before, log)]
+    yield ["nothing new", *_cells(*lab.run(), before, log)]
     for number in range(3):
         lab.take(f"take_{number:03d}")
-    yield ["three changed", *_told(*lab.run(), before, log)]
+    yield ["three changed", *_cells(*lab.run(), before, log)]
     before = sum(computed(log).values())
     for number in range(count, count + 6):
         lab.take(f"take_{number:03d}")
-    yield ["six new", *_told(*lab.run(), before, log)]
+    yield ["six new", *_cells(*lab.run(), before, log)]
 
 
 def _takes(lab: Lab, count: int) -> list[str]:
@@ -173,10 +173,10 @@ def _workers(lab: Lab, count: int, executor: str) -> Iterator[list[str]]:
     wall = {}
     for workers in (1, 2):
         file = lab.write(lab.home / f"workers_{workers}.yaml", {**keys, "output": f"workers_{workers}/{{name}}"})
-        told, wall[workers], spent = lab.run(file, "--workers", str(workers), "--executor", executor)
-        cells = _told(told, wall[workers], spent, 0, lab.home / f"workers_{workers}" / "dataset.log")
+        report, wall[workers], spent = lab.run(file, "--workers", str(workers), "--executor", executor)
+        cells = _cells(report, wall[workers], spent, 0, lab.home / f"workers_{workers}" / "dataset.log")
         yield [f"{count} sequences, {executor}: {workers}", *cells]
-        yield from (["", f"{n}: {row['failures']}"] for n, row in told["sequences"].items() if row["state"] == "failed")
+        yield from (["", f"{n}: {row['failures']}"] for n, row in report["sequences"].items() if row["state"] == "failed")
     yield ["by the clock, 1 worker over 2", f"{wall[1] / wall[2]:.2f}"]
     yield ["  results equal", _equal(lab.home / "workers_1", lab.home / "workers_2")]
     yield from _two_commands(lab, keys, wall[1])
@@ -186,10 +186,10 @@ def _two_commands(lab: Lab, keys: dict[str, Any], alone: float) -> Iterator[list
     """The same by two commands at once, which share the sequences; `alone` is what one worker takes, seconds by the clock."""
     file = lab.write(lab.home / "commands.yaml", {**keys, "output": "commands/{name}"})
     before, started = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    told = [json.loads(one.communicate()[0]) for one in [lab.start(file, "--workers", "1") for _ in range(2)]]
+    reports = [json.loads(one.communicate()[0]) for one in [lab.start(file, "--workers", "1") for _ in range(2)]]
     after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter() - started
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    shares = " and ".join(f"{one['counts']['ran']}" for one in told)
+    shares = " and ".join(f"{one['counts']['ran']}" for one in reports)
     nodes = sum(computed(lab.home / "commands" / "dataset.log").values())
     yield ["two commands at once, threads: 1 each", f"{shares} ran", f"{nodes} nodes", f"{spent:.1f} s, {wall:.1f} s wall"]
     yield ["by the clock, 1 worker over 2 commands", f"{alone / wall:.2f}"]
@@ -211,8 +211,8 @@ def _faults(lab: Lab, count: int) -> Iterator[list[str]]:
             os.kill(process.pid, signal.SIGKILL)
             kills += 1
         process.communicate()
-    told, _, _ = lab.run(file)
-    yield [f"killed {kills} times, then run", told["status"], f"{sum(computed(log).values())} of {clean}", _twice(log)]
+    report, _, _ = lab.run(file)
+    yield [f"killed {kills} times, then run", report["status"], f"{sum(computed(log).values())} of {clean}", _twice(log)]
     yield ["  results equal to the undisturbed", _equal(lab.home / "clean", lab.home / "killed")]
     file = lab.write(lab.home / "twins.yaml", {**keys, "output": "twins/{name}"})
     twins = [lab.start(file), lab.start(file)]

@@ -54,7 +54,7 @@ CELLS = (
 
 
 @dataclass(frozen=True)
-class Made:
+class NodeRecord:
     """What one node made in a run, and of what."""
 
     artifact: str
@@ -79,45 +79,45 @@ def main() -> None:
         synth = {"figure": figure, "frames": chosen.frames, "vertices": chosen.vertices}
         blocks = {"method": chosen.method, "source": {"synth": synth}}
         with tempfile.TemporaryDirectory() as temporary:
-            first: dict[str, Made] = {}
+            first: dict[str, NodeRecord] = {}
             for name in chosen.cells:
                 cell = next(cell for cell in CELLS if cell.name == name)
-                made = computed(cell, blocks, (chosen.keep or Path(temporary)) / figure / name.replace(", ", "-"))
-                first = first or made
-                differs = [node for node in {**first, **made} if _artifact(first, node) != _artifact(made, node)]
+                nodes = computed(cell, blocks, (chosen.keep or Path(temporary)) / figure / name.replace(", ", "-"))
+                first = first or nodes
+                differs = [node for node in {**first, **nodes} if _artifact(first, node) != _artifact(nodes, node)]
                 unequal += bool(differs) and not set(INSTRUCTIONS) & set(cell.environment)
-                print(f"{figure:<12}{name:<34}{_told(first, made, differs)}", flush=True)
+                print(f"{figure:<12}{name:<34}{_comparison(first, nodes, differs)}", flush=True)
     sys.exit(unequal > 0)
 
 
-def computed(cell: Cell, blocks: dict[str, Any], folder: Path) -> dict[str, Made]:
+def computed(cell: Cell, blocks: dict[str, Any], folder: Path) -> dict[str, NodeRecord]:
     """Every node of a run in a process of its own, by label; raises CalledProcessError where it does not end well."""
     from kinetree.pipeline.storage.store import Store
 
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "run.yaml").write_text(yaml.safe_dump({**blocks, "compute": cell.compute}))
-    kept = {name: value for name, value in os.environ.items() if name not in (*THREADS, *INSTRUCTIONS)}
+    environment = {name: value for name, value in os.environ.items() if name not in (*THREADS, *INSTRUCTIONS)}
     command = [str(Path(sys.executable).parent / "kinetree"), "run", str(folder / "run.yaml")]
     if not (folder / "out" / "run.json").exists():
-        subprocess.run([*command, "--output", str(folder / "out"), "--quiet"], env=kept | cell.environment, check=True)
+        subprocess.run([*command, "--output", str(folder / "out"), "--quiet"], env=environment | cell.environment, check=True)
     store = Store.at(folder / "out" / "store")
     (run,) = store.runs()
-    made = {}
+    nodes = {}
     for label, node in run["nodes"].items():
         record = store.record(node["key"]) if node["key"] else None
         inputs = tuple(artifact for i in record.inputs for artifact in i["artifacts"]) if record is not None else ()
-        made[label] = Made(node["artifact"], inputs, record.versions["blas"] if record is not None else "")
-    return made
+        nodes[label] = NodeRecord(node["artifact"], inputs, record.versions["blas"] if record is not None else "")
+    return nodes
 
 
-def _artifact(made: dict[str, Made], node: str) -> str | None:
-    return made[node].artifact if node in made else None
+def _artifact(nodes: dict[str, NodeRecord], node: str) -> str | None:
+    return nodes[node].artifact if node in nodes else None
 
 
-def _told(first: dict[str, Made], made: dict[str, Made], differs: list[str]) -> str:
+def _comparison(first: dict[str, NodeRecord], nodes: dict[str, NodeRecord], differs: list[str]) -> str:
     """How many nodes are equal; where some are not, at which tasks that begins."""
-    equal = f"{len(made) - len([node for node in differs if node in made])} of {len(made)} nodes equal"
-    begins = Counter(n.partition("[")[0] for n in differs if n in first and n in made and first[n].inputs == made[n].inputs)
+    equal = f"{len(nodes) - len([node for node in differs if node in nodes])} of {len(nodes)} nodes equal"
+    begins = Counter(n.partition("[")[0] for n in differs if n in first and n in nodes and first[n].inputs == nodes[n].inputs)
     return equal + (f"; begins in {', '.join(f'{task} ×{n}' for task, n in begins.items())}" if differs else "")
 
 

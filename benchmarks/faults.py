@@ -396,20 +396,20 @@ def main() -> None:
             if os.geteuid() and fault in (fill_disk, other_folder):
                 print(f"| {name} | {executor} | needs root | | | | |", flush=True)
                 continue
-            found = tries.of(name, executor)
-            moments = random.Random(f"{chosen.seed} {name} {executor} {found['tries']}")
-            while found["tries"] < min(chosen.moments, most or chosen.moments):
+            counts = tries.of(name, executor)
+            moments = random.Random(f"{chosen.seed} {name} {executor} {counts['tries']}")
+            while counts["tries"] < min(chosen.moments, most or chosen.moments):
                 one = Try(Path(top) / f"try{next(numbers)}", executor, moments, seconds[executor], lasting=lasting)
                 with contextlib.suppress(OverError):
                     tries.add(name, executor, _tried(one, fault, expected, chosen.keep))
-            if found["tries"]:
-                print(_row(name, executor, found), flush=True)
-    raise SystemExit(any(found["wrong"] for found in tries.found.values()))
+            if counts["tries"]:
+                print(_row(name, executor, counts), flush=True)
+    raise SystemExit(any(counts["wrong"] for counts in tries.of_cell.values()))
 
 
-def _row(name: str, executor: str, found: Counter[str]) -> str:
-    codes = ", ".join(f"{n} × {c.removeprefix('exit ')}" for c, n in sorted(found.items()) if c.startswith("exit "))
-    row = (name, executor, found["tries"], found["done"], codes or "–", found["again"], found["wrong"])
+def _row(name: str, executor: str, counts: Counter[str]) -> str:
+    codes = ", ".join(f"{n} × {c.removeprefix('exit ')}" for c, n in sorted(counts.items()) if c.startswith("exit "))
+    row = (name, executor, counts["tries"], counts["done"], codes or "–", counts["again"], counts["wrong"])
     return f"| {' | '.join(map(str, row))} |"
 
 
@@ -418,14 +418,14 @@ class Tries:
 
     def __init__(self, log: Path | None) -> None:
         self.log = log
-        self.found: dict[tuple[str, str], Counter[str]] = {}
+        self.of_cell: dict[tuple[str, str], Counter[str]] = {}
         for line in log.read_text().splitlines() if log is not None and log.exists() else []:
             name, executor, outcome = json.loads(line)
             self.of(name, executor).update(outcome)
 
     def of(self, name: str, executor: str) -> Counter[str]:
         """The tries of one cell; they grow as tries are added."""
-        return self.found.setdefault((name, executor), Counter())
+        return self.of_cell.setdefault((name, executor), Counter())
 
     def add(self, name: str, executor: str, outcome: Counter[str]) -> None:
         """Counts one try and notes it."""
@@ -453,34 +453,34 @@ def _calm(top: Path, executors: list[str]) -> tuple[dict[str, str | None], dict[
             assert _over(one) == (0, ""), "a run that nobody disturbs"
             seconds[executor] = time.monotonic() - started
             artifacts[executor] = _artifacts(one)
-    assert all(found == artifacts["sync"] for found in artifacts.values())
+    assert all(of_executor == artifacts["sync"] for of_executor in artifacts.values())
     return artifacts["sync"], seconds
 
 
 def _tried(one: Try, fault: Callable[[Try], None], expected: dict[str, str | None], keep: Path | None) -> Counter[str]:
     one.folder.mkdir()
-    found = Counter(["tries"])
+    counts = Counter(["tries"])
     with contextlib.ExitStack() as stack:
         stack.callback(shutil.rmtree, one.folder, ignore_errors=True)
         stack.enter_context(one.ends)
         fault(one)
-        code, message = told = _over(one)
+        code, message = last = _over(one)
         if code == 0:
-            found["done" if _artifacts(one) == expected else "wrong"] += 1
+            counts["done" if _artifacts(one) == expected else "wrong"] += 1
         elif code == -signal.SIGKILL and fault is kill_run:
-            found["exit killed"] += 1
+            counts["exit killed"] += 1
         elif code in one.codes and message.startswith("faulty: ") and "Traceback" not in message:
-            found[f"exit {code}"] += 1
+            counts[f"exit {code}"] += 1
         else:
-            found["wrong"] += 1
-        if code != 0 and not found["wrong"]:
-            told = _ended(one.again())
-            found["again" if told[0] == 0 and _artifacts(one) == expected else "wrong"] += 1
-        if found["wrong"]:
-            print(f"{fault.__name__}, {one.executor}: {code} {message}, then {told}", file=sys.stderr, flush=True)
+            counts["wrong"] += 1
+        if code != 0 and not counts["wrong"]:
+            last = _ended(one.again())
+            counts["again" if last[0] == 0 and _artifacts(one) == expected else "wrong"] += 1
+        if counts["wrong"]:
+            print(f"{fault.__name__}, {one.executor}: {code} {message}, then {last}", file=sys.stderr, flush=True)
             if keep is not None:
                 shutil.copytree(one.folder, keep / one.folder.name, dirs_exist_ok=True)
-    return found
+    return counts
 
 
 def _over(one: Try) -> tuple[int | str, str]:
@@ -495,8 +495,8 @@ def _ended(process: "subprocess.Popen[str]") -> tuple[int | str, str]:
     except subprocess.TimeoutExpired:
         return "hangs", ""
     except ValueError:  # its message was read before
-        err = getattr(process, "told", "")
-    process.told = err  # type: ignore[attr-defined]
+        err = getattr(process, "message", "")
+    process.message = err  # type: ignore[attr-defined]
     return process.returncode, err
 
 
@@ -513,10 +513,10 @@ def _artifacts(one: Try) -> dict[str, str | None]:
 def _signal(one: Try, number: signal.Signals) -> list[int]:
     """Sends a signal to a worker and returns which; raises OverError where there is none."""
     workers = one.workers()
-    found = [pid for pid in [one.rng.choice(workers)] if _send(pid, number)] if workers else []
-    if not found:
+    signalled = [pid for pid in [one.rng.choice(workers)] if _send(pid, number)] if workers else []
+    if not signalled:
         raise OverError
-    return found
+    return signalled
 
 
 def _send(pid: int, number: signal.Signals) -> bool:
@@ -534,10 +534,10 @@ def _below(pid: int) -> list[int]:
         with contextlib.suppress(OSError):
             one = int(stat.parent.name)
             children.setdefault(_parent(one), []).append(one)
-    found = list(children.get(pid, []))
-    for child in found:
-        found += children.get(child, [])
-    return found
+    descendants = list(children.get(pid, []))
+    for child in descendants:
+        descendants += children.get(child, [])
+    return descendants
 
 
 def _is_worker(pid: int) -> bool:

@@ -36,8 +36,8 @@ def main() -> None:
         return
     print(f"{'kernels':<34}{'clock, s':>10}{'processor, s':>14}")
     for _ in range(chosen.times):
-        with tempfile.TemporaryDirectory() as kept, tempfile.TemporaryDirectory() as other:
-            runs = (("none on disk", kept, "0"), ("none, compiled ahead", other, "1"), ("all on disk", kept, "0"))
+        with tempfile.TemporaryDirectory() as warm, tempfile.TemporaryDirectory() as other:
+            runs = (("none on disk", warm, "0"), ("none, compiled ahead", other, "1"), ("all on disk", warm, "0"))
             for what, folder, ahead in runs:
                 clock, processor = timed({"NUMBA_CACHE_DIR": folder, SWITCH: ahead})
                 print(f"{what:<34}{clock:>10.1f}{processor:>14.1f}", flush=True)
@@ -56,21 +56,21 @@ def timed(environment: dict[str, str]) -> tuple[float, float]:
 
 def record() -> None:
     """Runs the demo with no kernel on disk and writes every kernel that Python called, in the order of first calls."""
-    seen: dict[str, None] = {}
+    signatures: dict[str, None] = {}
     with tempfile.TemporaryDirectory() as folder:
         os.environ |= {"NUMBA_CACHE_DIR": folder, SWITCH: "0"}
-        event.register("numba:compile", _Calls(seen))
+        event.register("numba:compile", _Calls(signatures))
         from kinetree.pipeline.command_line.options import pipeline_of
 
         pipeline_of("demo", output=f"{folder}/demo").run()
-    LIST.write_text("".join(f"{line}\n" for line in seen), encoding="utf-8")
+    LIST.write_text("".join(f"{line}\n" for line in signatures), encoding="utf-8")
 
 
 class _Calls(event.Listener):  # type: ignore[misc]
     """Notes compilations that no other compilation asked for."""
 
-    def __init__(self, seen: dict[str, None]) -> None:
-        self.seen = seen
+    def __init__(self, signatures: dict[str, None]) -> None:
+        self.signatures = signatures
         self.depth = 0
 
     def on_start(self, event: Any) -> None:
@@ -80,7 +80,7 @@ class _Calls(event.Listener):  # type: ignore[misc]
         if self.depth == 1 and function.__module__.startswith("kinetree."):
             with contextlib.suppress(TypeError):  # a record, or what else has no text, is compiled when it is called
                 types = [text_of(kind) for kind in event.data["args"]]
-                self.seen.setdefault(json.dumps([f"{function.__module__}.{function.__qualname__}", types]))
+                self.signatures.setdefault(json.dumps([f"{function.__module__}.{function.__qualname__}", types]))
 
     def on_end(self, event: Any) -> None:
         """Goes back to the compilation that asked for this one."""

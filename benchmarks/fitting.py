@@ -82,18 +82,18 @@ def main(vertices: int, repeats: int) -> None:
 def least(call: Callable[[], object], times: int) -> float:
     """Milliseconds of processor time, the least of so many calls after the first."""
     call()
-    found = []
+    durations = []
     for _ in range(times):
         begin = time.process_time()
         call()
-        found.append(time.process_time() - begin)
-    return 1000.0 * min(found)
+        durations.append(time.process_time() - begin)
+    return 1000.0 * min(durations)
 
 
 def stages(call: Callable[[], object], times: int) -> "Counter[str]":
     """Milliseconds in each stage, stages within it included, in the mean of some calls."""
     spent: Counter[str] = Counter()
-    kept = {(home, name): getattr(home, name) for home, names in STAGES.items() for name in names}
+    originals = {(home, name): getattr(home, name) for home, names in STAGES.items() for name in names}
 
     def timed(function: Callable[..., Any], name: str) -> Callable[..., Any]:
         def call(*args: Any, **named: Any) -> Any:
@@ -105,13 +105,13 @@ def stages(call: Callable[[], object], times: int) -> "Counter[str]":
 
         return call
 
-    for (home, name), function in kept.items():
+    for (home, name), function in originals.items():
         setattr(home, name, timed(function, name))
     try:
         for _ in range(times):
             call()
     finally:
-        for (home, name), function in kept.items():
+        for (home, name), function in originals.items():
             setattr(home, name, function)
     return spent
 

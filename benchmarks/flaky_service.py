@@ -34,10 +34,10 @@ class FlakyService(ThreadingHTTPServer):
         self.status, self.share = 503, 0.0
         self.rng = random.Random(seed)
         self.bucket = "bucket"
-        made = http.client.HTTPConnection("127.0.0.1", self.port)
-        made.request("PUT", f"/{self.bucket}")
-        assert made.getresponse().status == 200
-        made.close()
+        connection = http.client.HTTPConnection("127.0.0.1", self.port)
+        connection.request("PUT", f"/{self.bucket}")
+        assert connection.getresponse().status == 200
+        connection.close()
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     @property
@@ -68,9 +68,9 @@ class _Passing(BaseHTTPRequestHandler):
         behind.request(self.command, self.path, body, dict(self.headers))
         answer = behind.getresponse()
         data = answer.read()
-        kept = [(name, value) for name, value in answer.getheaders() if name.lower() not in DROPPED]
+        headers = [(name, value) for name, value in answer.getheaders() if name.lower() not in DROPPED]
         length = answer.getheader("Content-Length") if self.command == "HEAD" else str(len(data))
-        self._answer(answer.status, [*kept, ("Content-Length", length or "0")], data)
+        self._answer(answer.status, [*headers, ("Content-Length", length or "0")], data)
         behind.close()
 
     def _answer(self, status: int, headers: list[tuple[str, str]], data: bytes) -> None:

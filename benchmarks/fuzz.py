@@ -130,29 +130,29 @@ def _animated_glb() -> list[bytes]:
 
 
 def _zip() -> list[bytes]:
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("walk/frame_1.off", _off()[0])
         archive.writestr("walk/frame_2.off", _off()[0])
-    return [held.getvalue()]
+    return [stream.getvalue()]
 
 
 def _packed(save: Callable[..., None] = np.savez, **arrays: Any) -> bytes:
-    held = io.BytesIO()
-    save(held, **arrays)
-    return held.getvalue()
+    stream = io.BytesIO()
+    save(stream, **arrays)
+    return stream.getvalue()
 
 
 def _npz() -> list[bytes]:
     offsets = {"vertex_offsets": np.array([0, 4, 8]), "face_offsets": np.array([0, 4])}
-    told = {"vertices": np.concatenate([V, V + 1]).astype("f4"), "faces": F, **offsets, "fps": 25.0, "unit": "mm"}
-    return [_packed(**told), _packed(np.savez_compressed, **told)]
+    arrays = {"vertices": np.concatenate([V, V + 1]).astype("f4"), "faces": F, **offsets, "fps": 25.0, "unit": "mm"}
+    return [_packed(**arrays), _packed(np.savez_compressed, **arrays)]
 
 
 def _npy() -> list[bytes]:
-    held = io.BytesIO()
-    np.save(held, np.arange(8, dtype="f4").reshape(2, 2, 2))
-    return [held.getvalue()]
+    stream = io.BytesIO()
+    np.save(stream, np.arange(8, dtype="f4").reshape(2, 2, 2))
+    return [stream.getvalue()]
 
 
 def _volume_npz() -> list[bytes]:
@@ -171,9 +171,9 @@ def _nrrd() -> list[bytes]:
 def _tiff() -> list[bytes]:
     import tifffile
 
-    held = io.BytesIO()
-    tifffile.imwrite(held, np.arange(8, dtype="f4").reshape(2, 2, 2), photometric="minisblack")
-    return [held.getvalue()]
+    stream = io.BytesIO()
+    tifffile.imwrite(stream, np.arange(8, dtype="f4").reshape(2, 2, 2), photometric="minisblack")
+    return [stream.getvalue()]
 
 
 def _calibration_json() -> list[bytes]:
@@ -200,9 +200,9 @@ def _calibration_npz() -> list[bytes]:
 def _png() -> list[bytes]:
     from PIL import Image
 
-    held = io.BytesIO()
-    Image.fromarray(np.eye(4, dtype=np.uint8) * 255).save(held, format="png")
-    return [held.getvalue()]
+    stream = io.BytesIO()
+    Image.fromarray(np.eye(4, dtype=np.uint8) * 255).save(stream, format="png")
+    return [stream.getvalue()]
 
 
 def _bvh() -> list[bytes]:
@@ -232,9 +232,9 @@ Frame Time: 0.04
 def _truth() -> list[bytes]:
     names, parents, kinds = ("hips", "knee", "toe"), (None, "hips", "knee"), ("joint", "joint", "tip")
     joints = [{"name": n, "parent": p, "kind": k, "turns_deg": 40} for n, p, k in zip(names, parents, kinds, strict=True)]
-    held = {"unit": "m", "fps": 25, "height": 2, "frames": [0, 1], "joints": joints, "positions": [np.eye(3).tolist()] * 2}
+    truth = {"unit": "m", "fps": 25, "height": 2, "frames": [0, 1], "joints": joints, "positions": [np.eye(3).tolist()] * 2}
     own = [{"name": f"j{i}", "parent": i - 1 if i else None, "kind": k} for i, k in enumerate(("root", "joint", "leaf"))]
-    return [json.dumps(held).encode(), json.dumps({**held, "format": "kinetree.skeleton/2", "joints": own}).encode()]
+    return [json.dumps(truth).encode(), json.dumps({**truth, "format": "kinetree.skeleton/2", "joints": own}).encode()]
 
 
 def _figure() -> list[bytes]:
@@ -405,8 +405,8 @@ def _mutant(data: bytes, rng: random.Random) -> bytes:
             numbers = list(re.finditer(rb"-?\d+(\.\d+)?", data))
             if not numbers:
                 return data
-            found = rng.choice(numbers)
-            return data[: found.start()] + rng.choice(NUMBERS) + data[found.end() :]
+            number = rng.choice(numbers)
+            return data[: number.start()] + rng.choice(NUMBERS) + data[number.end() :]
 
 
 # ── one parser in a process of its own ──────────────────────────────────────────────────────────────────────────────
@@ -462,12 +462,12 @@ def measured(name: str, runs: int, seconds: int, work: Path) -> dict[str, Any]:
         command, capture_output=True, text=True, errors="replace", check=False, env={**os.environ, "PYTHONWARNINGS": "ignore"}
     )
     (work / f"{name}.log").write_text(done.stderr)
-    found = {key: int(value) for key, value in re.findall(r"stat::(\w+):\s+(\d+)", done.stderr)}
+    stats = {key: int(value) for key, value in re.findall(r"stat::(\w+):\s+(\d+)", done.stderr)}
     edges = [int(n) for n in re.findall(r"cov: (\d+)", done.stderr)]
     crashes = sorted(path.name for path in set(work.glob(f"{name}.*")) - before if path.suffix != ".log")
     return {
-        "parser": name, "runs": found.get("number_of_executed_units", 0), "per_second": found.get("average_exec_per_sec", 0),
-        "edges": max(edges, default=0), "megabytes": found.get("peak_rss_mb", 0), "failures": crashes,
+        "parser": name, "runs": stats.get("number_of_executed_units", 0), "per_second": stats.get("average_exec_per_sec", 0),
+        "edges": max(edges, default=0), "megabytes": stats.get("peak_rss_mb", 0), "failures": crashes,
         "reason": "" if done.returncode == 0 else done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "no word",
     }  # fmt: skip
 

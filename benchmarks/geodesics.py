@@ -108,15 +108,15 @@ def errors(V: Floats, F: Ints, source: Ints) -> None:
     solver = exact.PyGeodesicAlgorithmExact(V, F.astype(np.int32))
     truth = np.array([solver.geodesicDistances(np.array([s]), None)[0] for s in source])
     surface = Surface.of(V, F)
-    found = geodesic_distance(surface, source)
+    estimate = geodesic_distance(surface, source)
     far = truth > FAR * surface.edge
-    relative = np.abs(found - truth)[far] / truth[far]
+    relative = np.abs(estimate - truth)[far] / truth[far]
     row("mean error", f"{100 * relative.mean():.2f} %", "≤ 0.5 %")
     row("99th percentile", f"{100 * np.quantile(relative, 0.99):.2f} %")
     row("99.9th percentile", f"{100 * np.quantile(relative, 0.999):.2f} %")
     row("greatest error", f"{100 * relative.max():.2f} %", "≤ 2 %")
-    row("greatest error, over the mean distance", f"{100 * np.abs(found - truth).max() / truth.mean():.2f} %", "≤ 2 %")
-    row("greatest error, in mean edges", f"{np.abs(found - truth).max() / surface.edge:.2f}")
+    row("greatest error, over the mean distance", f"{100 * np.abs(estimate - truth).max() / truth.mean():.2f} %", "≤ 2 %")
+    row("greatest error, in mean edges", f"{np.abs(estimate - truth).max() / surface.edge:.2f}")
     apart = geodesic_distance(surface, source)[:, source]
     off = np.abs(apart - apart.T) / np.maximum(apart, FAR * surface.edge)
     row("greatest asymmetry between the sources", f"{100 * off.max():.2f} %", "≤ 2 %")

@@ -54,11 +54,11 @@ class Frame:
 
 def measured(V: Floats, F: Ints, bases: int) -> Frame:
     cleaned = clean(np.asarray(V, dtype=np.float64), np.asarray(F, dtype=np.int32))
-    kept, faces, _ = largest_component(cleaned.V, cleaned.F)
-    X = cleaned.V[kept]
+    largest, faces, _ = largest_component(cleaned.V, cleaned.F)
+    X = cleaned.V[largest]
     surface = Surface.of(X, faces)
-    found = farthest_bases(surface, bases)
-    integral = mu(found.distance, found.weight)
+    basis = farthest_bases(surface, bases)
+    integral = mu(basis.distance, basis.weight)
     span = float(np.ptp(integral))
     tips = extrema(integral, faces)
     x = dimensionless(integral, surface.area)
@@ -120,12 +120,12 @@ def followed(frames: Sequence[Frame]) -> Ints:
 
 def leaf_scores(frames: Sequence[Frame], truth: Truth) -> str:
     """Frames with exactly the body's tips, swaps along tracks, tracks per tip, margins of persistence."""
-    kept = [f.peaks[f.peaks >= 0.20] for f in frames]
+    leaves = [f.peaks[f.peaks >= 0.20] for f in frames]
     below = [f.peaks[f.peaks < 0.20].max(initial=0.0) for f in frames]
-    margin = f"persistence: least leaf {min(k.min() for k in kept):.2f}, largest other {max(below):.3f}"
+    margin = f"persistence: least leaf {min(k.min() for k in leaves):.2f}, largest other {max(below):.3f}"
     tracks = followed(frames)
     if truth.tips is None:
-        return f"leaves {min(map(len, kept))}–{max(map(len, kept))}, tracks {len(tracks)}, {margin}"
+        return f"leaves {min(map(len, leaves))}–{max(map(len, leaves))}, tracks {len(tracks)}, {margin}"
     tips = [_nearest(f, truth.tips[t], truth.height) for t, f in enumerate(frames)]
     free = np.flatnonzero(~truth.touching).tolist()
     exact = sum(sorted(tips[t]) == list(range(truth.tips.shape[1])) for t in free)
@@ -167,15 +167,15 @@ def main() -> None:
         frames = [measured(V, F, asked.bases) for V, F in meshes]
         cuts = ways(frames)
         chosen = cuts["default: correlation + leaves + loops"]
-        told = ", ".join(f"{e}|{e + 1} {'+'.join(c)}" for e, c in zip(chosen.end[:-1], chosen.cues, strict=True))
+        listed = ", ".join(f"{e}|{e + 1} {'+'.join(c)}" for e, c in zip(chosen.end[:-1], chosen.cues, strict=True))
         true = ", ".join(f"{t}|{t + 1}" for t in truth.changes)
-        print(f"{name}: true {true or 'none'}; cut {told or 'nowhere'}\n    {leaf_scores(frames, truth)}", flush=True)
+        print(f"{name}: true {true or 'none'}; cut {listed or 'nowhere'}\n    {leaf_scores(frames, truth)}", flush=True)
         if truth.tips is None:
             continue
-        for way, found in cuts.items():
-            made = found.end[:-1].tolist()
+        for way, divided in cuts.items():
+            cut_at = divided.end[:-1].tolist()
             row = totals.get((name in CASES, way), [0, 0, 0])
-            counts = hits(made, truth.changes), len(made), len(truth.changes)
+            counts = hits(cut_at, truth.changes), len(cut_at), len(truth.changes)
             totals[name in CASES, way] = [a + b for a, b in zip(row, counts, strict=True)]
     print(f"\n{'way of cutting':50s} precision  recall   (within ±{TOLERANCE} frames)")
     for (ours, way), (hit, cut, real) in totals.items():

@@ -31,9 +31,9 @@ def measured(seed: int, motion: str, frames: int, vertices: int, work: Path) -> 
     pipeline.run(until=["evaluation", "joint_names"])
     there = pipeline.inspect()
     names, evaluation = there.artifact("joint_names"), there.artifact("evaluation")
-    given = dict(zip(names.given, names.names, strict=True))
+    name_of = dict(zip(names.given, names.names, strict=True))
     scored = [joint for joint in evaluation.joints if joint.scored and joint.found]
-    return [(TRUE.get(joint.name, joint.name), given[joint.found]) for joint in scored], names
+    return [(TRUE.get(joint.name, joint.name), name_of[joint.found]) for joint in scored], names
 
 
 def main() -> None:
@@ -43,14 +43,14 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=24)
     parser.add_argument("--vertices", type=int, default=4000)
     parser.add_argument("--work", type=Path)
-    told = parser.parse_args()
+    args = parser.parse_args()
     right, total, silent = 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
-        work = told.work or Path(folder)
+        work = args.work or Path(folder)
         work.mkdir(parents=True, exist_ok=True)
-        for seed in range(told.seeds):
+        for seed in range(args.seeds):
             motion = MOTIONS["human"][seed % len(MOTIONS["human"])]
-            pairs, names = measured(seed, motion, told.frames, told.vertices, work)
+            pairs, names = measured(seed, motion, args.frames, args.vertices, work)
             wrong = [(true, name) for true, name in pairs if true != name]
             exchanged = [pair for pair in wrong if {pair[0][-2:], pair[1][-2:]} == {"_l", "_r"}]
             silent += len(exchanged) if names.front_confidence >= CERTAIN_FRONT else 0

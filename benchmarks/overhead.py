@@ -165,8 +165,8 @@ def _small(folder: Path, beside: str | None) -> Iterator[tuple[str, ...]]:
     spent: dict[tuple[str, int], list[float]] = {}
     for executor, workers in (("sync", 1), ("threads", 2), ("processes", 1), ("processes", 2)):
         options = ("--executor", executor, "--workers", str(workers))
-        told = [[seconds(python, *options) for python in pythons] for _ in range(TIMES)]
-        spent[executor, workers] = [statistics.median(column) for column in zip(*told, strict=True)]
+        samples = [[seconds(python, *options) for python in pythons] for _ in range(TIMES)]
+        spent[executor, workers] = [statistics.median(column) for column in zip(*samples, strict=True)]
         yield _compared(f"600 vertices, 6 frames, {executor}, {workers}: processor", spent[executor, workers])
     further = [two - one for one, two in zip(spent["processes", 1], spent["processes", 2], strict=True)]
     yield _compared("  of it for a further worker process", further)

@@ -60,27 +60,27 @@ def measured(clip: Clip, work: Path, label: str, preset: str) -> dict[str, Any]:
     for t, (V, F) in clip.meshes.items():
         (folder / f"frame_{t:04d}.ply").write_bytes(trimesh.Trimesh(V, F, process=False).export(file_type="ply"))
     (folder / "truth.json").write_text(json.dumps(clip.truth))
-    told = {
+    blocks = {
         "source": {"input": str(folder)}, "truth": {"file": str(folder / "truth.json")}, "store": str(work / "store"),
         "output": str(work / "runs" / label), **({} if preset == "default" else {"extends": preset}),
     }  # fmt: skip
     try:
-        pipeline = Pipeline.of(told)
+        pipeline = Pipeline.of(blocks)
         run = pipeline.run(until=["evaluation", "verdict"])
         if run["status"] != "done":
             return {"refused": run["failures"][0]["message"]}
-        found: Any = pipeline.artifact("evaluation")
+        evaluation: Any = pipeline.artifact("evaluation")
         judged: Any = pipeline.artifact("verdict")
     except KinetreeError as error:
         return {"refused": str(error)}
-    s = found.summary or Summary()
+    s = evaluation.summary or Summary()
     percent = {
-        str(joint.found): 100 * float(np.nanmax(found.error[:, j])) / found.height
-        for j, joint in enumerate(found.joints) if joint.scored and joint.found is not None
+        str(joint.found): 100 * float(np.nanmax(evaluation.error[:, j])) / evaluation.height
+        for j, joint in enumerate(evaluation.joints) if joint.scored and joint.found is not None
     }  # fmt: skip
     return {
-        "refused": "", "found": s.found, "scored": s.scored, "percent": s.percent, "spurious": list(found.spurious),
-        "lost": [joint.name for joint in found.joints if joint.scored and joint.found is None],
+        "refused": "", "found": s.found, "scored": s.scored, "percent": s.percent, "spurious": list(evaluation.spurious),
+        "lost": [joint.name for joint in evaluation.joints if joint.scored and joint.found is None],
         "strayed": {name: worst for name, worst in percent.items() if worst > OFF},
         "verdict": judged.level, "findings": [finding.model_dump(mode="json") for finding in judged.findings],
     }  # fmt: skip
@@ -108,8 +108,8 @@ def levels(chosen: list[str]) -> list[Level]:
 
 def kept_rows(work: Path) -> dict[tuple[str, str, float], dict[str, Any]]:
     """What earlier calls measured, by clip, kind and level."""
-    kept = work / ROWS
-    rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+    file = work / ROWS
+    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
     return {(row["clip"], row["kind"], row["level"]): row for row in rows}
 
 

@@ -147,40 +147,40 @@ class Row(NamedTuple):
 
 def settings(package: str = NUMERICS) -> list[Setting]:
     """Numeric defaults of every class of a package whose name ends in Settings, in the order of modules and of fields."""
-    found = []
+    fields = []
     for module in _modules(package):
         for name, cls in vars(module).items():
             if inspect.isclass(cls) and cls.__module__ == module.__name__ and name.endswith("Settings"):
                 meanings = _meanings(module.__name__, name)
                 for field, default in _defaults(cls).items():
                     if is_numeric(default):
-                        found.append(Setting("field", module.__name__, name, field, default, meanings.get(field, "")))
-    return found
+                        fields.append(Setting("field", module.__name__, name, field, default, meanings.get(field, "")))
+    return fields
 
 
 def parameters(graph: Graph) -> list[Setting]:
     """Numeric parameters of the tasks of a graph."""
-    found = []
+    numeric = []
     for task in graph.tasks:
         if task.params is not None and not task.is_origin:
             meanings = _meanings(task.params.__module__, task.params.__name__)
-            for field, told in task.params.model_fields.items():
-                if is_numeric(told.default):
-                    found.append(Setting("parameter", task.module, task.name, field, told.default, meanings.get(field, "")))
-    return found
+            for field, info in task.params.model_fields.items():
+                if is_numeric(info.default):
+                    numeric.append(Setting("parameter", task.module, task.name, field, info.default, meanings.get(field, "")))
+    return numeric
 
 
 def constants(package: str = NUMERICS) -> list[Setting]:
     """Numeric constants of the modules of a package, also those of which `fixed_uses` says that they cannot be varied."""
-    found = []
+    numeric = []
     for module in _modules(package):
         for statement in _tree(module.__name__).body:
             targets = statement.targets if isinstance(statement, ast.Assign) else [getattr(statement, "target", None)]
             for target in targets:
                 name = target.id if isinstance(target, ast.Name) else ""
                 if re.fullmatch(r"_?[A-Z][A-Z0-9_]*", name) and is_numeric(vars(module).get(name)):
-                    found.append(Setting("constant", module.__name__, "", name, vars(module)[name], ""))
-    return found
+                    numeric.append(Setting("constant", module.__name__, "", name, vars(module)[name], ""))
+    return numeric
 
 
 def is_numeric(value: object) -> bool:
@@ -194,13 +194,13 @@ def scaled(setting: Setting, factor: float) -> Value | str:
     """The default times a factor, integers rounded and at least 1; a sentence where that is no other valid value."""
     value = setting.default
     items = value if isinstance(value, tuple) else (value,)
-    made = tuple(max(1, round(i * factor)) if isinstance(i, int) else i * factor for i in items)
+    values = tuple(max(1, round(i * factor)) if isinstance(i, int) else i * factor for i in items)
     is_mark = any(isinstance(i, int) and i < 1 for i in items)
-    if made == items or is_mark or not all(math.isfinite(i) for i in items):
+    if values == items or is_mark or not all(math.isfinite(i) for i in items):
         return f"{value} has no other value at ×{factor:g}"
-    if setting.meaning.lower().startswith(UNIT_RANGE) and max(items) <= 1.0 < max(made):
-        return f"{max(made):g} is no {setting.meaning.split()[0].lower()}"
-    return made if isinstance(value, tuple) else made[0]
+    if setting.meaning.lower().startswith(UNIT_RANGE) and max(items) <= 1.0 < max(values):
+        return f"{max(values):g} is no {setting.meaning.split()[0].lower()}"
+    return values if isinstance(value, tuple) else values[0]
 
 
 @contextmanager
@@ -229,14 +229,14 @@ def reaches(module: str, name: str, setting: Setting) -> bool:
 
 def fixed_uses(setting: Setting) -> list[str]:
     """Where a constant is read when it can no longer be changed: in compiled functions, and where modules are imported."""
-    found = []
+    places = []
     for module in _modules(NUMERICS):
         name = _name_in(module.__name__, setting)
         for statement in _tree(module.__name__).body if name else ():
             place = f"{module.__name__.rpartition('.')[2]}.{getattr(statement, 'name', '(module)')}"
             if any(isinstance(n, ast.Name) and n.id == name and isinstance(n.ctx, ast.Load) for n in _at_import(statement)):
-                found.append(place)
-    return found
+                places.append(place)
+    return places
 
 
 def pipeline(body: Body, work: Path, sets: Sequence[str] = ()) -> Pipeline:
@@ -257,7 +257,7 @@ def outcome(body: Body, work: Path, sets: Sequence[str] = (), until: str = "eval
         run = method.run(until=[until])
     except KinetreeError as error:
         return Outcome(0, 0, math.nan, 0, empty, {}, why=f"{type(error).__name__}: {error}")
-    ran = {task: told["ran"] for task, told in run["tasks"].items() if told["ran"]}
+    ran = {task: counts["ran"] for task, counts in run["tasks"].items() if counts["ran"]}
     if run["status"] != "done":
         why = "; ".join(f"{f['node']}: {f['message']}" for f in run["failures"][:1]) or run["status"]
         return Outcome(0, 0, math.nan, 0, empty, ran, why=why)
@@ -273,12 +273,12 @@ def outcome(body: Body, work: Path, sets: Sequence[str] = (), until: str = "eval
 
 def measured(setting: Setting, body: Body, default: Outcome, work: Path) -> Row:
     """A setting at half and at double its default on one body."""
-    told: dict[str, Outcome | str] = {}
+    outcomes: dict[str, Outcome | str] = {}
     for side, factor in FACTORS.items():
         value = scaled(setting, factor)
         fixed = fixed_uses(setting) if setting.kind == "constant" else []
         if isinstance(value, str) or fixed:
-            told[side] = f"fixed when compiled or imported: {', '.join(fixed)}" if fixed else str(value)
+            outcomes[side] = f"fixed when compiled or imported: {', '.join(fixed)}" if fixed else str(value)
             continue
         sets = [f"{setting.owner}.{setting.field}={value}"] if setting.kind == "parameter" else []
         if setting.kind == "parameter" and isinstance(value, tuple):
@@ -287,10 +287,10 @@ def measured(setting: Setting, body: Body, default: Outcome, work: Path) -> Row:
             one = outcome(body, work, sets)._replace(uses=uses())
         # where nothing ran the result is from an earlier call, which was interrupted before it wrote the row
         if setting.kind == "field" and one.uses == 0 and one.ran:
-            told[side] = "the default is never asked for on this body"
+            outcomes[side] = "the default is never asked for on this body"
         else:
-            told[side] = f"invalid: {one.why}" if one.why and not one.ran else one
-    return Row(setting, body, default, told["half"], told["double"])
+            outcomes[side] = f"invalid: {one.why}" if one.why and not one.ran else one
+    return Row(setting, body, default, outcomes["half"], outcomes["double"])
 
 
 def movement(a: Outcome, b: Outcome) -> tuple[int, float]:
@@ -392,10 +392,10 @@ def stored(path: Path, every: Sequence[Setting], bodies: Sequence[Body]) -> list
         return Outcome(**{**one, "joints": np.reshape(np.array(one["joints"], np.float64), (frames, -1, 3))})
 
     rows = []
-    for told in map(json.loads, lines):
-        setting, body = settings_now.get(json.dumps(told["setting"])), Body(*told["body"])
+    for record in map(json.loads, lines):
+        setting, body = settings_now.get(json.dumps(record["setting"])), Body(*record["body"])
         if setting is not None and body in bodies:
-            rows.append(Row(setting, body, *(plain(told[side], body.frames) for side in ("default", "half", "double"))))
+            rows.append(Row(setting, body, *(plain(record[side], body.frames) for side in ("default", "half", "double"))))
     return rows
 
 
@@ -404,12 +404,12 @@ HEADS = ("setting", "default", "meaning", "half", "at default", "double", "joint
 
 def cells(rows: Sequence[Row]) -> tuple[str, ...]:
     """One line of the table: a setting over all bodies."""
-    setting, told = rows[0].setting, effect(rows)
-    changed = f"{told.changed}" + (f", {told.failed} failed" if told.failed else "")
+    setting, change = rows[0].setting, effect(rows)
+    changed = f"{change.changed}" + (f", {change.failed} failed" if change.failed else "")
     value = setting.default
-    shown = ", ".join(f"{i:g}" for i in (value if isinstance(value, tuple) else (value,)))
+    default = ", ".join(f"{i:g}" for i in (value if isinstance(value, tuple) else (value,)))
     sides = [_summed([row.half for row in rows]), _summed([row.default for row in rows]), _summed([row.double for row in rows])]
-    return (setting.name, shown, setting.meaning, *sides, changed, f"{told.movement:.3f}" if told.runs else "–")
+    return (setting.name, default, setting.meaning, *sides, changed, f"{change.movement:.3f}" if change.runs else "–")
 
 
 def _summed(outcomes: Sequence[Outcome | str]) -> str:
@@ -429,8 +429,8 @@ def by_setting(rows: Sequence[Row]) -> list[list[Row]]:
         groups.setdefault(row.setting, []).append(row)
 
     def order(group: list[Row]) -> tuple[bool, int, int, float]:
-        told = effect(group)
-        return (told.runs == 0, -told.failed, -told.changed, -told.movement)
+        change = effect(group)
+        return (change.runs == 0, -change.failed, -change.changed, -change.movement)
 
     return sorted(groups.values(), key=order)
 
@@ -462,11 +462,11 @@ def as_json(rows: Sequence[Row]) -> str:
     def plain(one: Outcome | str) -> Any:
         if isinstance(one, str):
             return {"skipped": one}
-        told = one._asdict()
-        del told["joints"]
-        return {**told, "error": None if math.isnan(one.error) else one.error}
+        fields = one._asdict()
+        del fields["joints"]
+        return {**fields, "error": None if math.isnan(one.error) else one.error}
 
-    told = []
+    records = []
     for row in rows:
         moved = {
             side: movement(row.default, one)
@@ -475,8 +475,8 @@ def as_json(rows: Sequence[Row]) -> str:
         }
         sides = {"default": plain(row.default), "half": plain(row.half), "double": plain(row.double)}
         setting = {**row.setting._asdict(), "name": row.setting.name}
-        told.append({"setting": setting, "body": row.body._asdict(), **sides, "moved": moved})
-    return json.dumps(told, indent=1, ensure_ascii=False)
+        records.append({"setting": setting, "body": row.body._asdict(), **sides, "moved": moved})
+    return json.dumps(records, indent=1, ensure_ascii=False)
 
 
 @cache
@@ -504,11 +504,11 @@ def _meanings(module: str, name: str) -> dict[str, str]:
     cls = next((n for n in _tree(module).body if isinstance(n, ast.ClassDef) and n.name == name), None)
     if cls is None:
         return {}
-    found = dict(re.findall(r"^\s*(\w+) +: (.+)$", ast.get_docstring(cls) or "", re.MULTILINE))
+    meanings = dict(re.findall(r"^\s*(\w+) +: (.+)$", ast.get_docstring(cls) or "", re.MULTILINE))
     for field, text in zip(cls.body, cls.body[1:], strict=False):
         if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(text, ast.Expr):
-            found[field.target.id] = str(getattr(text.value, "value", ""))
-    return {field: re.split(r"(?<=[.;])\s|\.$", " ".join(text.split()))[0].rstrip(".;") for field, text in found.items()}
+            meanings[field.target.id] = str(getattr(text.value, "value", ""))
+    return {field: re.split(r"(?<=[.;])\s|\.$", " ".join(text.split()))[0].rstrip(".;") for field, text in meanings.items()}
 
 
 @contextmanager
@@ -617,19 +617,19 @@ def main() -> None:
     with ExitStack() as stack:
         work = args.work or Path(stack.enter_context(tempfile.TemporaryDirectory()))
         work.mkdir(parents=True, exist_ok=True)
-        kept = {(row.setting, row.body) for row in stored(work / ROWS, asked, bodies)}
+        stored_pairs = {(row.setting, row.body) for row in stored(work / ROWS, asked, bodies)}
         for row in measure(bodies, asked, work, args.jobs, until):
             rows.append(row)
             print(row.body.figure, *cells([row]), sep=" | ", flush=True)
-            if (row.setting, row.body) not in kept:
+            if (row.setting, row.body) not in stored_pairs:
                 with (work / ROWS).open("a", encoding="utf-8") as file:
                     file.write(line(row) + "\n")
             if args.json:
                 args.json.write_text(as_json(rows), encoding="utf-8")
     done = {(row.setting, row.body) for row in rows}
-    left = [f"{s.name} on {b.figure}" for b in bodies for s in asked if (s, b) not in done]
-    left += [f"{s.name}: the method {METHOD} does not reach it" for s in unreached]
-    table = markdown(rows, left)
+    remaining = [f"{s.name} on {b.figure}" for b in bodies for s in asked if (s, b) not in done]
+    remaining += [f"{s.name}: the method {METHOD} does not reach it" for s in unreached]
+    table = markdown(rows, remaining)
     print(table)
     if args.markdown:
         args.markdown.write_text(table, encoding="utf-8")

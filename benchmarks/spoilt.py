@@ -71,8 +71,8 @@ def recorded(folder: Path, name: str) -> Clip:
 
 
 def _posed(figure: str, seed: int, frames: int, vertices: int, **options: Any) -> Body:
-    made = random_tree(seed) if figure == "random" else Figure.of(varied(figure, seed))
-    return Body.of(made, frames=frames, vertices=vertices, seed=seed, fps=made.fps * frames / MOTION_FRAMES, **options)
+    drawn = random_tree(seed) if figure == "random" else Figure.of(varied(figure, seed))
+    return Body.of(drawn, frames=frames, vertices=vertices, seed=seed, fps=drawn.fps * frames / MOTION_FRAMES, **options)
 
 
 # ── what is done to a clip ──────────────────────────────────────────────────────────────────────────────────────────

@@ -66,8 +66,8 @@ def motions(name: str, figure: dict[str, Any], trunk: str, seconds: float) -> di
     own = dict(figure["motions"][MOTION[name]])
     if trunk == "bow":
         own |= _bow(name, seconds)
-    held = {joint: [_held(curve) for curve in curves] for joint, curves in own.items()}
-    return {take: {j: own[j] if j.startswith(names) else held[j] for j in own} for take, names in TAKES[name].items()}
+    still = {joint: [_stilled(curve) for curve in curves] for joint, curves in own.items()}
+    return {take: {j: own[j] if j.startswith(names) else still[j] for j in own} for take, names in TAKES[name].items()}
 
 
 def _bow(name: str, seconds: float) -> dict[str, Any]:
@@ -90,11 +90,11 @@ def _of_person(figure: dict[str, Any], take: str, trunk: str, seconds: float) ->
 
 def person(seed: int) -> dict[str, Any]:
     """The figure adult:SEED with every motion that the takes need."""
-    told = [json.loads(recipe(SynthParams(figure=f"adult:{seed}", motion=m)))["figure"] for m in ADULT_MOTIONS.values()]
-    return {**told[0], "motions": {name: curves for figure in told for name, curves in figure["motions"].items()}}
+    figures = [json.loads(recipe(SynthParams(figure=f"adult:{seed}", motion=m)))["figure"] for m in ADULT_MOTIONS.values()]
+    return {**figures[0], "motions": {name: curves for figure in figures for name, curves in figure["motions"].items()}}
 
 
-def _held(curve: dict[str, Any]) -> dict[str, Any]:
+def _stilled(curve: dict[str, Any]) -> dict[str, Any]:
     return (
         {**curve, "keys": [[0, 0], [1, 0]]}
         if "keys" in curve
@@ -112,9 +112,9 @@ def write(name: str, seed: int, trunk: str, head: float, frames: int, vertices: 
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "figure.yaml").write_text(yaml.safe_dump(figure))
-    told: dict[str, Any] = {}
+    truth: dict[str, Any] = {}
     for k, (take, (shift, degrees)) in enumerate(zip(TAKES[name], PLACES, strict=True)):
-        told_of = {
+        params = {
             "file": str(folder / "figure.yaml"),
             "motion": take,
             "frames": frames,
@@ -122,35 +122,35 @@ def write(name: str, seed: int, trunk: str, head: float, frames: int, vertices: 
             "fps": FPS,
             "seed": seed,
         }
-        made = body(recipe(SynthParams.model_validate(told_of)))
+        generated = body(recipe(SynthParams.model_validate(params)))
         R = Rotation.from_euler("z", degrees, degrees=True).as_matrix()
         (folder / take).mkdir()
         for t in range(frames):
-            V, F = made.frame(t)
+            V, F = generated.frame(t)
             trimesh.Trimesh(V @ R.T + shift, F, process=False).export(folder / take / f"frame_{t:04d}.ply")
-        own = made.truth()
+        own = generated.truth()
         own["positions"] = (np.array(own["positions"]) @ R.T + shift).tolist()
         (folder / take / "truth.json").write_text(json.dumps(own))
         numbers = [k * TAKE + t for t in range(frames)]
-        if not told:
-            told = {**own, "frames": numbers}
+        if not truth:
+            truth = {**own, "frames": numbers}
         else:
-            told |= {"frames": told["frames"] + numbers, "positions": told["positions"] + own["positions"]}
-            for joint, other in zip(told["joints"], own["joints"], strict=True):
+            truth |= {"frames": truth["frames"] + numbers, "positions": truth["positions"] + own["positions"]}
+            for joint, other in zip(truth["joints"], own["joints"], strict=True):
                 joint["turns_deg"] = max(joint.get("turns_deg", 0.0), other.get("turns_deg", 0.0))
                 joint["scored"] = bool(joint["scored"] or other["scored"])
-    (folder / "truth.json").write_text(json.dumps(told))
+    (folder / "truth.json").write_text(json.dumps(truth))
 
 
 def scored(source: dict[str, Any], truth: Path, output: Path, store: Path) -> tuple[list[str], Any, Any]:
     """The cells of one run, its evaluation's summary, and its skeleton."""
     pipeline = Pipeline.of({"source": source, "truth": {"file": str(truth)}, "output": str(output), "store": str(store)})
-    told = pipeline.run(until=["evaluation"])
-    if told["status"] != "done":
-        return [told["failures"][0]["message"] if told["failures"] else told["status"]], None, None
-    found: Any = pipeline.artifact("evaluation")
-    s = found.summary
-    missing = ", ".join(joint.name for joint in found.joints if joint.scored and joint.found is None)
+    run = pipeline.run(until=["evaluation"])
+    if run["status"] != "done":
+        return [run["failures"][0]["message"] if run["failures"] else run["status"]], None, None
+    evaluation: Any = pipeline.artifact("evaluation")
+    s = evaluation.summary
+    missing = ", ".join(joint.name for joint in evaluation.joints if joint.scored and joint.found is None)
     mean = "–" if s.percent is None else f"{s.percent:.2f} %"
     cells = [f"{s.found} of {s.scored}", mean, f"{s.spurious} spurious", f"missing: {missing or 'none'}"]
     return cells, s, pipeline.artifact("skeleton")
@@ -167,24 +167,24 @@ def main() -> None:
     parser.add_argument("--head", type=float, default=1.0, help="width of the human's head, share of its depth")
     parser.add_argument("--alone", action="store_true", help="each take by itself as well")
     parser.add_argument("--work", type=Path)
-    told = parser.parse_args()
+    args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        work = told.work or Path(folder)
-        sums = [_measured(name, seed, trunk, told, work) for name, trunk, seed in product(told.figures, told.trunk, told.seeds)]
+        work = args.work or Path(folder)
+        sums = [_measured(name, seed, trunk, args, work) for name, trunk, seed in product(args.figures, args.trunk, args.seeds)]
     print("sum".ljust(24), *(f"{sum(column)}" for column in zip(*sums, strict=True)), "(found, scored, spurious)", sep="  ")
 
 
-def _measured(name: str, seed: int, trunk: str, told: argparse.Namespace, work: Path) -> tuple[int, int, int]:
+def _measured(name: str, seed: int, trunk: str, args: argparse.Namespace, work: Path) -> tuple[int, int, int]:
     """Prints what all takes of a body give, and each alone; joints found, scored and spurious of all together."""
-    place = work / "-".join([name, trunk, str(seed), *([f"{told.head:g}"] if told.head != 1 else [])])
+    place = work / "-".join([name, trunk, str(seed), *([f"{args.head:g}"] if args.head != 1 else [])])
     if not (place / "truth.json").exists():
-        write(name, seed, trunk, told.head, told.frames, told.vertices, place)
+        write(name, seed, trunk, args.head, args.frames, args.vertices, place)
     takes = [{"name": take, "input": str(place / take)} for take in TAKES[name]]
     cells, summary, skeleton = scored({"takes": takes}, place / "truth.json", place / "out", work / "store")
     print(f"{name} {trunk} {seed} all".ljust(24), *cells, sep="  ", flush=True)
     if skeleton is not None:
         print(" " * 24, f"bone lengths vary by {_variation(skeleton):.1g}", flush=True)
-    for take in TAKES[name] if told.alone else ():
+    for take in TAKES[name] if args.alone else ():
         own = {"input": str(place / take)}
         cells = scored(own, place / take / "truth.json", place / f"out-{take}", work / "store")[0]
         print(f"{name} {trunk} {seed} {take}".ljust(24), *cells, sep="  ", flush=True)

@@ -47,14 +47,14 @@ class Truth:
     def of(cls, folder: Path, name: str, V: Floats, frame: int) -> "Truth":
         """Attach every vertex of an observed mesh to the closest point of the true body in its frame and follow it."""
         body = np.load(folder / f"{name}-body.npz")
-        told = json.loads((folder / f"{name}.truth.json").read_text())
+        truth = json.loads((folder / f"{name}.truth.json").read_text())
         offsets, F = body["vertex_offsets"], body["faces"].astype(np.int64)
         X = np.stack([body["vertices"][a:b].astype(np.float64) for a, b in pairwise(offsets)])
         on = projected(V, X[frame], F)
         x = np.einsum("vk,tvkx->tvx", on.share, X[:, F[on.face]])
         W = np.einsum("vk,vkj->vj", on.share, body["weights"][F[on.face]])
-        part, W, joints = _parts([str(n) for n in body["weight_names"]], W, told["joints"])
-        return cls(x, part, np.where(W.max(axis=1) > CLEAR, W.argmax(axis=1), -1), joints, float(told["height"]))
+        part, W, joints = _parts([str(n) for n in body["weight_names"]], W, truth["joints"])
+        return cls(x, part, np.where(W.max(axis=1) > CLEAR, W.argmax(axis=1), -1), joints, float(truth["height"]))
 
     def turns(self, y: Floats, reference: int) -> list[Turn]:
         """Each scored joint's turning in y (frame, vertex, xyz) against the truth."""
@@ -125,12 +125,12 @@ def _parts(
     merged = np.zeros_like(W)
     for k, name in enumerate(names):
         merged[:, names.index(root[name])] += W[:, k]
-    held = {names[k] for k in np.flatnonzero((merged > CLEAR).sum(axis=0) >= FEWEST)}
+    moving = {names[k] for k in np.flatnonzero((merged > CLEAR).sum(axis=0) >= FEWEST)}
     out = []
     for joint in scored:
         above = root[str(parent[joint])]
         # a link without a surface of its own turns with what lies above it
-        while above not in held and parent[above] is not None:
+        while above not in moving and parent[above] is not None:
             above = root[str(parent[above])]
         out.append((joint, joint, above))
     return names, merged, out
