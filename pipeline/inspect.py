@@ -21,7 +21,7 @@ from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
 from kinetree.pipeline.inspection.diff import difference
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.look import Difference, RunList, RunSummary, html_table
-from kinetree.pipeline.inspection.origins import found
+from kinetree.pipeline.inspection.origins import origin_artifacts
 from kinetree.pipeline.inspection.plan import Plan, Planned
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.output.output import as_yaml
@@ -117,18 +117,18 @@ class Pipeline:
 
     def look_outside(self, files: Files, history: History) -> Outside:
         """What the origins of all tasks that run unasked find now, and remarks on it; raises InputError."""
-        return found(self.tasks.until(self.tasks.unasked), self.config, files, history)
+        return origin_artifacts(self.tasks.until(self.tasks.unasked), self.config, files, history)
 
     def mark(self, outside: Outside) -> str:
         """A digest of all that decides what a run leaves: parameters, code, and what the origins found."""
         tasks = [self.tasks.task(name) for name in self.tasks.unasked]
         code = {task.name: code_digest(task.module, task.name) for task in tasks}
         params = {name: block.model_dump(mode="json") for name, block in self.config.params.items()}
-        given = {
+        digests = {
             task: [[list(index), artifact_digest(artifact)] for index, artifact in members.items()]
             for task, members in outside[0].items()
         }
-        return digest([self.config.method, code, params, given])
+        return digest([self.config.method, code, params, digests])
 
     def look(
         self,
@@ -144,7 +144,7 @@ class Pipeline:
         outside : what `look_outside` found for the same tasks; None looks now
         """
         graph = self.tasks.until(wanted) if wanted else self.tasks
-        given, notes = outside or found(graph, self.config, files, history)
+        given, notes = outside or origin_artifacts(graph, self.config, files, history)
         schedule = Schedule(
             graph,
             self.config.params,

@@ -254,11 +254,11 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
         raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name if arguments else 'index'}")
     if is_origin and (params is None or "files" not in inspect.signature(function).parameters):
         raise GraphError(f"{place}: an origin takes both params and files, one of them is missing")
-    made = Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
-    _refuse_bad_traversal(made, place)
+    declared = Task(function.__name__, function, space(over), tuple(arguments), params, returns, along, is_origin, where)
+    _refuse_bad_traversal(declared, place)
     if asks_index and not over:
         raise GraphError(f"{place}: asks for its index, but runs once and has none; say over what it runs")
-    return replace(made, asks_index=asks_index, block=made.name)
+    return replace(declared, asks_index=asks_index, block=declared.name)
 
 
 def _refuse_bad_traversal(task: Task[..., Any], place: str) -> None:

@@ -171,10 +171,10 @@ def _with_shortcuts(function: Callable[..., None], shortcuts: tuple[Shortcut, ..
     more = {name: _parameter(name, shortcut) for name, shortcut in names.items()}
 
     @functools.wraps(function)
-    def with_sets(**given: Any) -> None:
-        values = {shortcut.parameter: given.pop(name) for name, shortcut in names.items()}
+    def with_sets(**arguments: Any) -> None:
+        values = {shortcut.parameter: arguments.pop(name) for name, shortcut in names.items()}
         sets = [f"{parameter}={quoted(value)}" for parameter, value in values.items() if value is not None]
-        function(**{**given, "sets": [*(given["sets"] or ()), *sets]})
+        function(**{**arguments, "sets": [*(arguments["sets"] or ()), *sets]})
 
     parameters = [p for p in own.values() if p.name == "config"] + [*more.values()]
     parameters += [p for p in own.values() if p.name != "config"]

@@ -90,8 +90,8 @@ def _run(data_set: "Dataset", chosen: dict[str, Any], *, quiet: bool, as_json: b
     try:
         record = data_set.run(**chosen, listeners=listeners)
     except (KinetreeError, KeyboardInterrupt):
-        if as_json and (left := data_set.left()) is not None:
-            print_json(left)
+        if as_json and (last := data_set.last_record()) is not None:
+            print_json(last)
         raise
     counts = record["counts"]
     if as_json:

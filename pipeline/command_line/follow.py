@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kinetree.errors import InputError, ServiceError
 from kinetree.pipeline.identity.key import artifact_digest
 from kinetree.pipeline.inspection.history import History
-from kinetree.pipeline.inspection.origins import found
+from kinetree.pipeline.inspection.origins import origin_artifacts
 from kinetree.pipeline.storage.files import Files, Settling
 from kinetree.schemas.array import Index
 
@@ -71,6 +71,8 @@ def follow(
 def _content(pipeline: "Pipeline", settling: Settling) -> Content:
     """What the origins find in the files that are complete, by digest."""
     files = Files.of(pipeline.store, settling)
-    given, _ = found(pipeline.tasks, pipeline.config, files, History.of(pipeline.store, pipeline.config))
+    artifacts, _ = origin_artifacts(pipeline.tasks, pipeline.config, files, History.of(pipeline.store, pipeline.config))
     files.save()
-    return [(name, index, artifact_digest(artifact)) for name, held in given.items() for index, artifact in held.items()]
+    return [
+        (name, index, artifact_digest(artifact)) for name, members in artifacts.items() for index, artifact in members.items()
+    ]

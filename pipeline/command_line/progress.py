@@ -65,7 +65,7 @@ class Rows:
                 row.ran -= event["was"] == "ran"
                 row.fresh -= event["was"] == "fresh"
 
-    def left(self, row: Row) -> float | None:
+    def seconds_left(self, row: Row) -> float | None:
         """Seconds until a task is finished, from the mean of its nodes so far; None while none ran."""
         todo = row.total - row.done
         return todo * row.seconds / row.ran / self.workers if row.ran and todo else (0.0 if not todo else None)
@@ -97,8 +97,8 @@ class LiveProgress:
         for name in ("done", "fresh", "failed", "time left"):
             table.add_column(name, justify="right")
         for name, row in self._rows.rows.items():
-            left = self._rows.left(row)
-            time_left = "" if row.total == row.done else ("…" if left is None else clock(left))
+            seconds_left = self._rows.seconds_left(row)
+            time_left = "" if row.total == row.done else ("…" if seconds_left is None else clock(seconds_left))
             failed = f"[red]{row.failed + row.skipped}[/red]" if row.failed + row.skipped else ""
             table.add_row(name, f"{row.done}/{row.total}", str(row.fresh or ""), failed, time_left)
         return table
@@ -130,8 +130,8 @@ class PlainProgress:
             if row.done == row.total:
                 self._say(f"{event['task']}: {row.ran} ran, {row.fresh} fresh, {row.seconds:.1f} s")
             elif time.monotonic() - self._last_line > PLAIN_SECONDS:
-                left = self._rows.left(row)
-                self._say(f"{event['task']}: {row.done} of {row.total}{f', {clock(left)} left' if left else ''}")
+                seconds = self._rows.seconds_left(row)
+                self._say(f"{event['task']}: {row.done} of {row.total}{f', {clock(seconds)} left' if seconds else ''}")
 
     def _say(self, line: str) -> None:
         self._last_line = time.monotonic()

@@ -124,9 +124,9 @@ def show(node: NodeName, config: Target = None, sets: Set = None, as_json: AsJso
 
     Its fields with their units and statistics; the parameters, inputs, code and versions it was made with.
     """
-    from kinetree.pipeline.inspection.show import shown
+    from kinetree.pipeline.inspection.show import node_details
 
-    content = shown(pipeline_of(config, sets=sets), node)
+    content = node_details(pipeline_of(config, sets=sets), node)
     if as_json:
         print_json(content)
         return

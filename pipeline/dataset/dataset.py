@@ -102,7 +102,7 @@ class Dataset:
         """What the last run of every sequence left; None where there was none."""
         return {name: Outcome.at(config.output) for name, config in self.config.sequences.items()}
 
-    def left(self) -> dict[str, Any] | None:
+    def last_record(self) -> dict[str, Any] | None:
         """What dataset.json holds; None where there is none that can be read."""
         try:
             return dict(json.loads((self.config.root / SUMMARY).read_text(encoding="utf-8")))

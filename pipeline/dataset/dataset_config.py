@@ -92,23 +92,23 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     raises : ConfigError, naming file and key
     """
     reading = Reading.of(application.methods(), application.presets)
-    given, where, base = _read(target)
+    content, where, base = _read(target)
     known = {task.name for graph in application.methods().values() for task in graph.tasks if task.params is not None}
-    for key in given:
+    for key in content:
         if key not in {*known, *RUN_KEYS, *KEYS}:
             raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), {*known, *RUN_KEYS, *KEYS})}")
-    if "sequences" not in given:
-        meant = [key for key in get_close_matches("sequences", given, cutoff=0.8) if not isinstance(given[key], Mapping)]
+    if "sequences" not in content:
+        meant = [key for key in get_close_matches("sequences", content, cutoff=0.8) if not isinstance(content[key], Mapping)]
         hint = f"; did you mean it by {meant[0]!r}?" if meant else ", e.g. sequences: takes/*"
         raise ConfigError(f"{where}: sequences is missing: say which there are{hint}")
-    inputs, notes = sequences(given["sequences"], given.get("name", "{stem}"), base, where)
-    template = _output(given.get("output", OUTPUT), where)
-    shared = {key: value for key, value in given.items() if key not in KEYS}
+    inputs, notes = sequences(content["sequences"], content.get("name", "{stem}"), base, where)
+    template = _output(content.get("output", OUTPUT), where)
+    shared = {key: value for key, value in content.items() if key not in KEYS}
     blocks, _ = extended({**shared, "output": template}, base, where, (), reading)
     for key in KEYS:
         if key in blocks:
             raise ConfigError(
-                f"{where}: extends {given['extends']!r}, which is a data set itself: it has {key!r}; a data set extends a"
+                f"{where}: extends {content['extends']!r}, which is a data set itself: it has {key!r}; a data set extends a"
                 " preset or a configuration, so write what both share into a file of its own and extend that"
             )
     sets = tuple(sets)
@@ -119,7 +119,7 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     blocks.setdefault("store", str(root / STORE))
     options = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
     parameter = _input_parameter(application, blocks, where)
-    own = _overrides(given.get("overrides"), where)
+    own = _overrides(content.get("overrides"), where)
     configs: dict[str, Config] = {}
     missing: dict[str, list[str]] = {}
     for name, path in inputs.items():
@@ -129,15 +129,15 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
                 mine = merged(mine, absolute(above, base, reading.paths))
                 origins |= dict.fromkeys(_leaves(above), f"{where}: overrides.{pattern}")
         mine = merged(_filled(mine, name, path, reading, missing), _nested(parameter, path))
-        configs[name] = resolved(mine, Origins(where, frozenset(given), origins), application, reading)
+        configs[name] = resolved(mine, Origins(where, frozenset(content), origins), application, reading)
     first = next(iter(configs.values()))
-    refuse_overlap(configs, inputs, given["sequences"], base, where)
+    refuse_overlap(configs, inputs, content["sequences"], base, where)
     lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
     notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
     notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
-    retention = checked(Retention, given.get("retention") or {}, "retention", Origins(where, frozenset(given), {}))
-    hook = _hook(given.get("on_failure"), where)
-    metrics = _metrics(given.get("metrics"), base, where)
+    retention = checked(Retention, content.get("retention") or {}, "retention", Origins(where, frozenset(content), {}))
+    hook = _hook(content.get("on_failure"), where)
+    metrics = _metrics(content.get("metrics"), base, where)
     return DatasetConfig(where, root, first.store, configs, inputs, first.compute, hook, metrics, retention, tuple(notes))
 
 
@@ -182,37 +182,37 @@ def _input_parameter(application: Application, blocks: Mapping[str, Any], where:
     return keys
 
 
-def _overrides(given: Any, where: str) -> dict[str, dict[str, Any]]:
-    if given is None:
+def _overrides(block: Any, where: str) -> dict[str, dict[str, Any]]:
+    if block is None:
         return {}
-    if not isinstance(given, Mapping):
-        raise ConfigError(f"{where}: overrides: expected names of sequences with blocks of parameters, got {given!r}")
-    for name, blocks in given.items():
+    if not isinstance(block, Mapping):
+        raise ConfigError(f"{where}: overrides: expected names of sequences with blocks of parameters, got {block!r}")
+    for name, blocks in block.items():
         if not isinstance(blocks, Mapping):
             raise ConfigError(f"{where}: overrides.{name}: expected blocks of parameters, got {blocks!r}")
         shared = [key for key in blocks if key in (*KEYS, "extends", "output", "store", "compute")]
         if shared:
             raise ConfigError(f"{where}: overrides.{name}: {shared[0]} is the same for all sequences; set it at the top")
-    return {str(name): dict(blocks) for name, blocks in given.items()}
+    return {str(name): dict(blocks) for name, blocks in block.items()}
 
 
-def _hook(given: Any, where: str) -> tuple[str, ...]:
-    if given is None:
+def _hook(command: Any, where: str) -> tuple[str, ...]:
+    if command is None:
         return ()
-    if not isinstance(given, list) or not given or not all(isinstance(part, str) and part for part in given):
+    if not isinstance(command, list) or not command or not all(isinstance(part, str) and part for part in command):
         raise ConfigError(
-            f"{where}: on_failure: expected a program and its arguments as a list, e.g. [notify, --to, lab], got {given!r}; no"
-            " shell reads it"
+            f"{where}: on_failure: expected a program and its arguments as a list, e.g. [notify, --to, lab], got {command!r};"
+            " no shell reads it"
         )
-    return tuple(given)
+    return tuple(command)
 
 
-def _metrics(given: Any, base: Path, where: str) -> Path | None:
-    if given is None:
+def _metrics(file: Any, base: Path, where: str) -> Path | None:
+    if file is None:
         return None
-    if not isinstance(given, str) or not given or "://" in given:
-        raise ConfigError(f"{where}: metrics: expected the path of a file, e.g. metrics: results/metrics.prom, got {given!r}")
-    path = base / Path(given).expanduser()
+    if not isinstance(file, str) or not file or "://" in file:
+        raise ConfigError(f"{where}: metrics: expected the path of a file, e.g. metrics: results/metrics.prom, got {file!r}")
+    path = base / Path(file).expanduser()
     if path.is_dir():
         raise ConfigError(f"{where}: metrics: {path} is a folder; name a file in it, e.g. {path / 'metrics.prom'}")
     if path.exists() and not path.is_file():

@@ -51,9 +51,9 @@ class Metrics:
         of_set = {"data_set": Path(record["file"]).name}
 
         def gauge(name: str, what: str, rows: Mapping[Any, float], *labels: str) -> None:
-            made = Gauge(f"{self.prefix}_{name}", what, (*of_set, *labels), registry=registry)
+            metric = Gauge(f"{self.prefix}_{name}", what, (*of_set, *labels), registry=registry)
             for values, value in rows.items():
-                made.labels(*of_set.values(), *values).set(value)
+                metric.labels(*of_set.values(), *values).set(value)
 
         ended = datetime.fromisoformat(record["ended"]).timestamp()
         gauge("dataset_success", "Whether the last run did all it was asked for.", {(): record["status"] == "done"})

@@ -13,9 +13,9 @@ OUTPUT = f"results/{NAME}"
 """Where results lie if nothing else is said."""
 
 
-def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], given: Any, base: Path, where: str) -> None:
+def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], sequences: Any, base: Path, where: str) -> None:
     """Results must not lie where a later run would look for sequences, nor in the folder of the store."""
-    patterns = [given] if isinstance(given, str) else given if isinstance(given, list) else []
+    patterns = [sequences] if isinstance(sequences, str) else sequences if isinstance(sequences, list) else []
     wild = [os.path.normpath(base / Path(p).expanduser()) for p in patterns if WILD.search(p) and "://" not in p]
     for name, config in configs.items():
         places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}

@@ -17,25 +17,25 @@ NAME = "{name}"
 """Stands in the path of the output for the sequence's name."""
 
 
-def sequences(given: Any, template: Any, base: Path, where: str) -> tuple[dict[str, str], list[str]]:
+def sequences(entry: Any, template: Any, base: Path, where: str) -> tuple[dict[str, str], list[str]]:
     """The input of every sequence by name, sorted by name, and remarks on patterns that match nothing.
 
-    given    : a pattern, a list of patterns and paths, or a mapping from name to the path or pattern of one sequence's frames
+    entry    : a pattern, a list of patterns and paths, or a mapping from name to the path or pattern of one sequence's frames
     template : how a name is made of a path, e.g. "{parent}-{stem}"
     base     : the folder to which paths are relative
     where    : the file, for messages
     raises   : ConfigError
     """
-    if isinstance(given, Mapping):
-        named = {_named(name, f"{where}: sequences"): _text(path, f"{where}: sequences.{name}") for name, path in given.items()}
+    if isinstance(entry, Mapping):
+        named = {_named(name, f"{where}: sequences"): _text(path, f"{where}: sequences.{name}") for name, path in entry.items()}
         if not named:
             raise ConfigError(f"{where}: sequences: expected at least one name with a path, found none")
         return {name: _absolute(path, base) for name, path in sorted(named.items())}, []
-    patterns = [given] if isinstance(given, str) else given
+    patterns = [entry] if isinstance(entry, str) else entry
     if not isinstance(patterns, Sequence) or isinstance(patterns, bytes) or not patterns:
         raise ConfigError(
             f"{where}: sequences: expected a pattern such as takes/*, a list of patterns and paths, or names with paths, got"
-            f" {given!r}"
+            f" {entry!r}"
         )
     matched, empty = _matched([_absolute(_text(p, f"{where}: sequences"), base) for p in patterns])
     if not matched:
@@ -63,8 +63,8 @@ def frames_taken_for_sequences(inputs: Mapping[str, str]) -> list[str]:
     if len(inputs) < 2 or len(folders) != 1 or not all(Path(path).is_file() for path in inputs.values()):
         return []
     folder = folders.pop()
-    taken = f"sequences: each of {len(inputs)} files in {folder} is taken for a sequence"
-    return [f"{taken}; if they are the frames of one, give the folder: sequences: [{folder}]"]
+    remark = f"sequences: each of {len(inputs)} files in {folder} is taken for a sequence"
+    return [f"{remark}; if they are the frames of one, give the folder: sequences: [{folder}]"]
 
 
 def matches(path: Path, pattern: str) -> bool:

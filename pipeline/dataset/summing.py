@@ -13,7 +13,7 @@ from kinetree.pipeline.dataset.dataset_config import DatasetConfig
 from kinetree.pipeline.dataset.night import now
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.inspection.history import Heads, History
-from kinetree.pipeline.inspection.origins import found
+from kinetree.pipeline.inspection.origins import origin_artifacts
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.output.outcome import Outcome, computing_seconds, stamps
 from kinetree.pipeline.output.session import Session
@@ -55,7 +55,7 @@ class Summing:
         rows, links = self._rows()
         config = self._config(rows)
         history = History.of(self.store, config, Heads(self.store))
-        given, _ = found(self.graph, config, Files(self.store), history)
+        given, _ = origin_artifacts(self.graph, config, Files(self.store), history)
         schedule = Schedule(self.graph, config.params, self.store, given, recall=history.recall, links=links)
         return Snapshot(schedule, history)
 
@@ -109,11 +109,11 @@ class Summing:
         links: dict[str, dict[tuple[int, ...], str]] = {task.name: {} for task in self.linked}
         for number, (name, config) in enumerate(self.dataset.sequences.items()):
             outcome = Outcome.at(config.output)
-            made = outcome.artifacts if outcome is not None else {}
-            has_result = bool(made) and all(self._holds(made.get(task.name)) for task in self.linked)
+            artifacts = outcome.artifacts if outcome is not None else {}
+            has_result = bool(artifacts) and all(self._holds(artifacts.get(task.name)) for task in self.linked)
             if has_result:
                 for task in self.linked:
-                    links[task.name][number,] = made[task.name]
+                    links[task.name][number,] = artifacts[task.name]
             rows.append(
                 {
                     "name": name,

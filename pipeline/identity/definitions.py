@@ -114,8 +114,8 @@ class Code(Modules):
         parts = [part for one in below for part in self.parts(one)]
         changed |= self._handed(here, names, always=any(part.uses.stores_locally for part in parts))
         for part in parts:
-            made = {(part.module.name, name) for name in part.names} if part.kind == "value" else set()
-            changed |= self._changed(part.module, part.uses) - made
+            bound = {(part.module.name, name) for name in part.names} if part.kind == "value" else set()
+            changed |= self._changed(part.module, part.uses) - bound
         always = False
         if statement.kind == "effect":
             defined = {one for one in named if not self.is_import(one)}

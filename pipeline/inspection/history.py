@@ -149,8 +149,8 @@ def closing(
         for index, artifact in members.items():
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()
     asked = {task.name for task in schedule.graph.tasks}
-    left = {name: {**node, "state": "left"} for name, node in before.items() if name.partition("[")[0] not in asked}
-    nodes = {**left, **nodes}
+    unasked = {name: {**node, "state": "left"} for name, node in before.items() if name.partition("[")[0] not in asked}
+    nodes = {**unasked, **nodes}
     more = {"tasks": account.tasks, "failures": account.failures, "counts": summed["nodes"], "nodes": nodes}
     return {**{name: value for name, value in opened.items() if name != "uses"}, **summed, **more}
 

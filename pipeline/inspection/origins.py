@@ -13,30 +13,30 @@ from kinetree.pipeline.storage.files import Files
 from kinetree.schemas.array import Artifact, Index
 
 
-def found(graph: Graph, config: Config, files: Files, history: History) -> tuple[Given, list[str]]:
+def origin_artifacts(graph: Graph, config: Config, files: Files, history: History) -> tuple[Given, list[str]]:
     """What every origin of the graph finds, and remarks on what it did not.
 
     Where an output folder was named and its input is not to be found, as after a move, what its last run found is taken:
     a task that reads it checks that the bytes are the same.
     raises : InputError of an origin, where nothing of it is on record; ServiceError
     """
-    given: dict[str, Mapping[Index, Artifact]] = {}
+    artifacts: dict[str, Mapping[Index, Artifact]] = {}
     notes: list[str] = []
     for task in graph.tasks:
         if not task.is_origin or task.is_linked:
             continue
         try:
             listed = task(params=config.params[task.name], files=files)
-            given[task.name] = {(member,): value for member, value in listed.items()} if task.over else {(): listed}
+            artifacts[task.name] = {(member,): value for member, value in listed.items()} if task.over else {(): listed}
         except ServiceError:  # it is there and cannot be asked now
             raise
         except InputError as error:
             recorded = _recorded(graph, task, config, history) if config.is_left else {}
             if not recorded:
                 raise
-            given[task.name] = recorded
+            artifacts[task.name] = recorded
             notes.append(f"{task.name}: {error}; what the last run found there is used")
-    return given, notes
+    return artifacts, notes
 
 
 def _recorded(graph: Graph, task: AnyTask, config: Config, history: History) -> dict[Index, Artifact]:

@@ -15,7 +15,7 @@ from kinetree.pipeline.storage.store import Record
 from kinetree.schemas.array import Array, Artifact
 
 
-def shown(pipeline: Pipeline, node: str) -> dict[str, Any]:
+def node_details(pipeline: Pipeline, node: str) -> dict[str, Any]:
     """State, schema, arrays with statistics, values and provenance of one node, as JSON values.
 
     raises : UnknownNodeError

@@ -115,8 +115,8 @@ class Snapshot:
         """
         task = self.schedule.graph.writer(what)
         if set(index) != set(task.over):
-            given = ", ".join(index) or "no index"
-            raise UnknownNodeError(f"{task.name} runs over {'/'.join(task.over) or 'nothing'}; got {given}")
+            dims = ", ".join(index) or "no index"
+            raise UnknownNodeError(f"{task.name} runs over {'/'.join(task.over) or 'nothing'}; got {dims}")
         entry = self.entry(label(Node(task.name, tuple(index[d] for d in task.over)), task.over))
         if entry.artifact is None:
             raise UnknownNodeError(f"{self.plan[entry.label]}; it has no result until it is computed by a run")

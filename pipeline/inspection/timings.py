@@ -48,7 +48,7 @@ class Timings:
         for entry in entries:
             if entry.record is not None:
                 records[entry.node.task].append(entry.record)
-        return Timings(tuple(_timing(task, made) for task, made in records.items()))
+        return Timings(tuple(_timing(task, of_task) for task, of_task in records.items()))
 
     @property
     def seconds(self) -> float:

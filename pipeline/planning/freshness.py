@@ -45,8 +45,8 @@ class Freshness:
         """
         work = self._work(entry, entries)
         identity = [
-            [a.name, a.form, list(given["artifacts"]), self.numbers(entry, a, nodes)]
-            for (a, nodes), given in zip(entry.inputs or (), work.inputs, strict=True)
+            [a.name, a.form, list(work_input["artifacts"]), self.numbers(entry, a, nodes)]
+            for (a, nodes), work_input in zip(entry.inputs or (), work.inputs, strict=True)
         ]
         index = entry.node.at if entry.task.asks_index else None
         key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)

@@ -38,7 +38,7 @@ class ReadyNodes:
         """A node may run."""
         heapq.heappush(self._waiting, (-self._urgency[node.task], node.at, node))
 
-    def taken(self) -> Iterator[Entry]:
+    def popped(self) -> Iterator[Entry]:
         """Takes the nodes one after the other; the caller says what becomes of each before it takes the next."""
         while self._waiting:
             entry = self._entries[heapq.heappop(self._waiting)[2]]

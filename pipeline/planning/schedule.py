@@ -95,7 +95,7 @@ class Schedule:
 
     def ready(self) -> Iterator[Entry]:
         """Takes the stale nodes one after the other, in the order of `urgency`: a frame is finished before the next."""
-        for entry in self._ready.taken():
+        for entry in self._ready.popped():
             entry.state = "running"
             yield entry
 

@@ -107,16 +107,16 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     if not equals or not task or task == "extends":
         raise ConfigError(f"--set {text}: write task.name=value; kinetree tasks lists every parameter")
     bare = value.strip()
-    given = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
+    setting = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
     if not dot:
-        blocks.update(absolute({task: given}, Path.cwd(), paths))
+        blocks.update(absolute({task: setting}, Path.cwd(), paths))
         return
     for inner in reversed(name.split(".")):
-        given = {inner: given}
+        setting = {inner: setting}
     block = blocks.get(task)
     if block is not None and not isinstance(block, Mapping):
         raise ConfigError(f"--set {text}: {task} has no keys of its own")
-    blocks[task] = merged(block or {}, absolute({task: given}, Path.cwd(), paths)[task])
+    blocks[task] = merged(block or {}, absolute({task: setting}, Path.cwd(), paths)[task])
 
 
 def portable(blocks: Mapping[str, Any], folder: Path, paths: Paths) -> dict[str, Any]:

@@ -217,11 +217,11 @@ def with_compute(config: Config, **changes: Any) -> Config:
 
 def with_changes(compute: Compute, **changes: Any) -> Compute:
     """Compute settings of which some are replaced; None leaves one as it is; raises ConfigError."""
-    given = {k: v for k, v in changes.items() if v is not None}
-    if "executor" in given:
-        given.update({name: given.get(name) for name in ("scheduler", "scheduler_file", "cluster")})
+    changed = {k: v for k, v in changes.items() if v is not None}
+    if "executor" in changed:
+        changed.update({name: changed.get(name) for name in ("scheduler", "scheduler_file", "cluster")})
         # a scheduler that only the file names gives way to what is asked for now
-    return checked(Compute, {**compute.model_dump(), **given}, "compute")
+    return checked(Compute, {**compute.model_dump(), **changed}, "compute")
 
 
 def checked(

@@ -19,7 +19,7 @@ from typing import Any
 from kinetree.errors import StoreError
 from kinetree.pipeline.identity.key import file_digest
 from kinetree.pipeline.storage.place import Listed
-from kinetree.pipeline.storage.remote import ASKED_AT_ONCE, copied, found, is_remote, look
+from kinetree.pipeline.storage.remote import ASKED_AT_ONCE, copied, is_remote, listed_files, look
 from kinetree.pipeline.storage.sealed import sealed, unsealed
 from kinetree.pipeline.storage.store import Store
 
@@ -65,7 +65,7 @@ class Files:
     _known: dict[str, Any] = field(default_factory=dict)
     _learnt: bool = False
     _listed: dict[str, Listed] = field(default_factory=dict)
-    """What was found in buckets, by address."""
+    """What lies in buckets, by address."""
 
     @staticmethod
     def of(store: Store, settling: Settling | None = None, unknown: Callable[[], None] = _nothing) -> "Files":
@@ -79,14 +79,14 @@ class Files:
 
     @staticmethod
     def is_remote(where: str) -> bool:
-        """Whether this is an address in a bucket, which `found` reads, and not a path."""
+        """Whether this is an address in a bucket, which `addresses` reads, and not a path."""
         return is_remote(where)
 
-    def found(self, where: str) -> list[str]:
+    def addresses(self, where: str) -> list[str]:
         """The addresses at a folder, a pattern or an address in a bucket, sorted; raises InputError where there are none."""
-        listed = found(where)
-        self._listed |= listed
-        return list(listed)
+        by_address = listed_files(where)
+        self._listed |= by_address
+        return list(by_address)
 
     def digests(self, paths: Sequence[Path | str], most: int = sys.maxsize) -> list[str]:
         """Digest of the bytes of each file; "unreadable: …" for one that cannot be read, so that its node can say so.

@@ -51,8 +51,8 @@ def group_files(
     from zarr.codecs import ZstdCodec
     from zarr.storage import MemoryStore
 
-    held: dict[str, Any] = {}
-    group = zarr.create_group(store=MemoryStore(held), attributes=dict(attributes))
+    memory: dict[str, Any] = {}
+    group = zarr.create_group(store=MemoryStore(memory), attributes=dict(attributes))
     for name, array in arrays.items():
         group.create_array(
             name,
@@ -63,7 +63,7 @@ def group_files(
             compressors=ZstdCodec(level=1),
             config={"write_empty_chunks": True},
         )
-    return {name: data.to_bytes() for name, data in held.items()}
+    return {name: data.to_bytes() for name, data in memory.items()}
 
 
 def decoded(files: Mapping[str, bytes], spec: Array | None) -> NDArray[Any]:
@@ -98,11 +98,11 @@ def user_arrays(path: Path, names: Collection[str]) -> dict[str, NDArray[Any]]:
     if not isinstance(attributes, dict):
         raise StoreError(f"{path}: not a readable zarr group: its attributes are no JSON object")
     plain = {n: v for n, v in attributes.items() if n in names and isinstance(v, str | int | float)}
-    held = {name: np.asarray(value) for name, value in plain.items()}
+    arrays = {name: np.asarray(value) for name, value in plain.items()}
     for name in names:
         if (path / name / _META).is_file() or (path / name / ".zarray").is_file():
-            held[name] = _user_array(path, name)
-    return held
+            arrays[name] = _user_array(path, name)
+    return arrays
 
 
 def is_array(path: Path) -> bool:
@@ -263,8 +263,8 @@ def _read(files: Mapping[str, bytes]) -> NDArray[Any]:
     from zarr.storage import MemoryStore
 
     buffer = default_buffer_prototype().buffer
-    held: dict[str, Any] = {path: buffer.from_bytes(data) for path, data in files.items()}
-    return np.asarray(zarr.open_array(store=MemoryStore(held), mode="r", zarr_format=3)[...])
+    memory: dict[str, Any] = {path: buffer.from_bytes(data) for path, data in files.items()}
+    return np.asarray(zarr.open_array(store=MemoryStore(memory), mode="r", zarr_format=3)[...])
 
 
 def _codecs(meta: Mapping[str, Any]) -> list[str]:

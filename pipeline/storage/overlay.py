@@ -63,10 +63,10 @@ class Overlay:
         """Names directly below `path`, sorted; of a folder from which the last object was removed none."""
         within = f"{path}/" if path else ""
         inside = {name[len(within) :]: data for name, data in self._held.items() if name.startswith(within)}
-        held = {name.partition("/")[0] for name, data in inside.items() if data is not None}
-        less = {name.partition("/")[0] for name, data in inside.items() if data is None} - held
+        present = {name.partition("/")[0] for name, data in inside.items() if data is not None}
+        less = {name.partition("/")[0] for name, data in inside.items() if data is None} - present
         gone = less - {name.partition("/")[0] for name in self.listed(path)} if less else less
-        return sorted(({*self._below.names(path)} - gone) | held)
+        return sorted(({*self._below.names(path)} - gone) | present)
 
     def listed(self, path: str) -> dict[str, Listed]:
         """Every object below `path`, by path relative to it, sorted; empty where nothing is."""

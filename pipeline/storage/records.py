@@ -142,8 +142,8 @@ class Records:
                 self.place.put(_pack(name), packed(whole, is_deflated=True))
             else:
                 self.place.remove(_pack(name))
-            self._packs = {other: held for other, held in self._packs.items() if other != name}  # it is read again
-            self._where = {key: held for key, held in self._where.items() if held != name}
+            self._packs = {other: pack for other, pack in self._packs.items() if other != name}  # it is read again
+            self._where = {key: pack for key, pack in self._where.items() if pack != name}
         self._list()
 
     def damaged(self) -> list[str]:

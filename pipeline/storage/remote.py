@@ -41,7 +41,7 @@ def is_remote(where: object) -> bool:
     return isinstance(where, str) and where.startswith(SCHEME)
 
 
-def found(where: str) -> "dict[str, Listed]":
+def listed_files(where: str) -> "dict[str, Listed]":
     """What lies at a folder, a pattern or an address, by address, sorted; hidden files are passed over.
 
     raises : InputError where the service refuses or there is nothing

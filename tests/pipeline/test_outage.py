@@ -15,7 +15,7 @@ import pytest
 from kinetree.errors import InputError, ServiceError, StoreError
 from kinetree.pipeline.command_line import cli
 from kinetree.pipeline.storage import bucket
-from kinetree.pipeline.storage.remote import found
+from kinetree.pipeline.storage.remote import listed_files
 from kinetree.pipeline.storage.store import Store
 
 
@@ -126,10 +126,10 @@ def calm(toys):
 def test_input_that_cannot_be_asked_for_is_not_wrong(toys, url, service):
     service.refuse_every = 1
     with pytest.raises(ServiceError, match="^input s3://"):
-        found(f"s3://{service.bucket}/scans/")
+        listed_files(f"s3://{service.bucket}/scans/")
     service.status = 403
     with pytest.raises(InputError, match="the credentials in the environment") as refused:
-        found(f"s3://{service.bucket}/scans/")
+        listed_files(f"s3://{service.bucket}/scans/")
     assert not isinstance(refused.value, ServiceError)
 
 

@@ -67,14 +67,14 @@ def test_node_that_turns_out_fresh_after_it_was_sent_is_not_running():
 
 def test_time_left_is_what_is_left_by_the_mean_over_the_workers():
     made = rows(("layout", {"mesh": 5}), *[("start", "mesh"), ("finish", "mesh", {"seconds": 2.0})] * 2, workers=3)
-    assert made.left(made.rows["mesh"]) == pytest.approx(3 * 2.0 / 3)
+    assert made.seconds_left(made.rows["mesh"]) == pytest.approx(3 * 2.0 / 3)
 
 
 def test_time_left_is_unknown_before_anything_ran_and_none_at_the_end():
     made = rows(("layout", {"mesh": 2}), ("fresh", "mesh"))
-    assert made.left(made.rows["mesh"]) is None
+    assert made.seconds_left(made.rows["mesh"]) is None
     made.hear({"event": "fresh", "task": "mesh"})
-    assert made.left(made.rows["mesh"]) == 0
+    assert made.seconds_left(made.rows["mesh"]) == 0
 
 
 def test_events_of_no_task_change_nothing():

@@ -8,7 +8,7 @@ import pytest
 
 from kinetree.errors import InputError
 from kinetree.pipeline.storage.files import Files
-from kinetree.pipeline.storage.remote import brought, copied, found
+from kinetree.pipeline.storage.remote import brought, copied, listed_files
 from kinetree.pipeline.storage.store import Store
 from kinetree.schemas.array import Artifact, Location
 
@@ -31,7 +31,7 @@ def bucket(service):
 
 
 def names(where):
-    return [address.rpartition("/")[2] for address in found(where)]
+    return [address.rpartition("/")[2] for address in listed_files(where)]
 
 
 def test_folder_pattern_and_address_are_found_as_on_a_disk(bucket):
@@ -41,13 +41,13 @@ def test_folder_pattern_and_address_are_found_as_on_a_disk(bucket):
     assert names(f"{bucket.url}/in/**/a_*.txt") == ["a_1.txt", "a_2.txt", "a_3.txt"]
     assert names(f"{bucket.url}/*/*_1.t?t") == ["a_1.txt", "b_1.txt"]
     assert names(f"{bucket.url}/in/a_2.txt") == ["a_2.txt"]
-    assert next(iter(found(f"{bucket.url}/in/a_*"))) == f"{bucket.url}/in/a_1.txt"
+    assert next(iter(listed_files(f"{bucket.url}/in/a_*"))) == f"{bucket.url}/in/a_1.txt"
 
 
 @pytest.mark.parametrize("where", ["none/", "in/a_9.txt", "in/c_*.txt"])
 def test_where_nothing_is_that_is_said(bucket, where):
     with pytest.raises(InputError, match=r"there is nothing; a folder, a pattern or a file"):
-        found(f"{bucket.url}/{where}")
+        listed_files(f"{bucket.url}/{where}")
 
 
 def test_copy_has_name_and_bytes_and_goes_with_its_last_user(bucket):
@@ -95,7 +95,7 @@ def test_unchanged_objects_are_listed_and_not_read_again(bucket, service, tmp_pa
     def digests():
         service.asked.clear()
         files = Files.of(store)
-        told = files.parts_of_each(files.found(f"{bucket.url}/in/"), "upper", lambda path: [path.read_text().upper()])
+        told = files.parts_of_each(files.addresses(f"{bucket.url}/in/"), "upper", lambda path: [path.read_text().upper()])
         files.save()
         return [parts[0] for parts in told], {kind: n for kind, n in service.asked.items() if n}
 
@@ -109,7 +109,7 @@ def test_unchanged_objects_are_listed_and_not_read_again(bucket, service, tmp_pa
 
 @pytest.mark.parametrize("address", ["s3://key:word@bucket/in", "s3:///in", "s3://"])
 def test_address_that_is_none_is_refused_and_not_repeated(address):
-    for question in (lambda: found(address), lambda: Store.at(address)):
+    for question in (lambda: listed_files(address), lambda: Store.at(address)):
         with pytest.raises(InputError, match="credentials in the environment") as told:
             question()
         assert "word" not in str(told.value)

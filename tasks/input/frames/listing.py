@@ -106,7 +106,7 @@ def _animated(path: Path | str, clip: str, files: Files) -> dict[int, Source]:
 
 def _in_bucket(where: str, files: Files, clip: str) -> dict[int, Source]:
     """Every frame of a folder or pattern of mesh files in a bucket, or of one file there that holds all."""
-    addresses = files.found(where)
+    addresses = files.addresses(where)
     named = {PurePosixPath(address.partition("://")[2]): address for address in addresses}
     suffixes = {path.suffix.lower() for path in named}
     if suffixes == {".npz"} and len(addresses) == 1:
