@@ -1,10 +1,11 @@
-"""Which nodes travel together as one piece of work: those of one index, and a stretch of a chain."""
+"""Which nodes travel together as one piece of work: those of one member, and a stretch of a chain."""
 
 from collections.abc import Collection, Iterator, Mapping
 
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.node import Node
+from kinetree.pipeline.node import Node, project
 from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.task import Space
 
 STRETCH = 16
 """Nodes of a chain that travel together at most: their arrays stay in one process, and none waits to be sent. Each result is
@@ -18,7 +19,9 @@ def together(
     dependents: Mapping[Node, Collection[Node]],
     unlisted: Collection[Node],
 ) -> list[Entry]:
-    """A ready node and the nodes that need nothing else: the next ones of its own chain, or else all of its own index.
+    """A ready node and the nodes that need nothing else: the next ones of its own chain, or else all of its own member.
+
+    What is made of a frame once goes with what is made of it last in the last pass: it is of the same frame.
 
     A stretch of a chain takes nothing along, since the rest of the chain waits for it, and a chain that branches ends there, so
     that its branches go on side by side. What little waits for does not travel with what much waits for. A node whose task has
@@ -40,8 +43,8 @@ def together(
                 yield other
 
     def goes_along(other: Entry) -> bool:
-        is_here = other.node.at == first.node.at and other.task.over == first.task.over and not is_alone(other.task)
-        return is_here and (other.task.name not in graph.aside or first.task.name in graph.aside)
+        is_here = is_of_member(other.node, other.task.over, first.node, first.task.over)
+        return is_here and not is_alone(other.task) and (other.task.name not in graph.aside or first.task.name in graph.aside)
 
     def add(other: Entry) -> None:
         inside.add(other.node)
@@ -63,6 +66,12 @@ def together(
     rank = {task.name: n for n, task in enumerate(graph.tasks)}
     parcel.sort(key=lambda e: rank[e.node.task])
     return parcel
+
+
+def is_of_member(node: Node, over: Space, first: Node, first_over: Space) -> bool:
+    """Whether a node is of the member that another one is of: at its index, or at what its own dimensions have of that."""
+    is_within = set(over) <= set(first_over) and over[-1:] == first_over[-1:]
+    return is_within and node.at == project(first.at, first_over, over)
 
 
 def is_alone(task: AnyTask) -> bool:

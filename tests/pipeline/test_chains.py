@@ -198,6 +198,13 @@ def test_frames_travel_whole_and_the_deepest_go_first(toys):
     assert {name for name, _ in sent} == {"points+smooth"}
 
 
+def test_what_is_made_of_a_frame_after_all_passes_travels_with_its_last_pass(toys):
+    toys.main = "toy_passes"
+    sent = [labels for name, labels in sent_by_run(toys.pipeline().schedule(until=["pose"])) if name.startswith("refit")]
+    assert sent[:12] == [[f"refit[pass={p},frame={n}]"] for p in (0, 1) for n in range(6)]
+    assert sent[12:] == [[f"refit[pass=2,frame={n}]", f"pose[frame={n}]"] for n in range(6)]
+
+
 def test_each_side_of_a_chain_travels_by_itself_once_nothing_else_is_missing(toys):
     toys.run(until=("centred",))
     sent = [labels for name, labels in sent_by_run(toys.pipeline().schedule(until=["track"])) if name == "track"]
