@@ -15,7 +15,7 @@ RADIUS = 3.0
 RING = camera_ring(15, CENTRE, 5.0, (160, 200), elevation=30.0)
 
 
-def seen(scale: float = 1.0, shift: tuple[float, float, float] = (0.0, 0.0, 0.0), ring: Cameras = RING) -> np.ndarray:
+def ball_masks(scale: float = 1.0, shift: tuple[float, float, float] = (0.0, 0.0, 0.0), ring: Cameras = RING) -> np.ndarray:
     """(camera, row, column) masks of a long ball, taller than wide, that is scaled and moved."""
     V, F = long_ball(scale, shift)
     return silhouettes(V, F, ring)
@@ -37,13 +37,13 @@ def write_folder(folder: Path, frames: int = 3, ring: Cameras = RING) -> Path:
     known = calibration(ring)
     (folder / "calibration.json").write_text(written_calibration(known))
     for t in range(frames):
-        write_masks(folder, t, known.names, seen(0.9, (0.0, 0.0, 0.1 * t), ring))
+        write_masks(folder, t, known.names, ball_masks(0.9, (0.0, 0.0, 0.1 * t), ring))
     return folder
 
 
 def rewrite(folder: Path, **changes: object) -> None:
     """Changes the first camera of the folder's calibration."""
     path = folder / "calibration.json"
-    held = json.loads(path.read_text())
-    held["cameras"][0].update(changes)
-    path.write_text(json.dumps(held))
+    calibration = json.loads(path.read_text())
+    calibration["cameras"][0].update(changes)
+    path.write_text(json.dumps(calibration))

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import trimesh
-from numerics.input.animated_glbs import TENTHS, Made
+from numerics.input.animated_glbs import TENTHS, GlbDraft
 
 OK, REMARK, DROPPED, REFUSED = "ok", "remark", "dropped", "refused"
 BALL = trimesh.creation.icosphere(subdivisions=2)
@@ -31,7 +31,7 @@ FRAMES, SPOILT = 5, 2
 class Case(NamedTuple):
     """A nasty sequence."""
 
-    made: Callable[[Path], Path | str]
+    write: Callable[[Path], Path | str]
     """Writes it below a folder, and says what to name as the input."""
     outcome: str
     words: str = ""
@@ -104,13 +104,13 @@ def whole(folder: Path, suffix: str = "off", names: str = "frame_{}") -> Path:
 def one(content: bytes | str | Callable[[], bytes], suffix: str = "off") -> Callable[[Path], Path]:
     """Frame 2 holds this instead."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         raw = content() if callable(content) else content
         scans = whole(folder, suffix)
         (scans / f"frame_{SPOILT}.{suffix}").write_bytes(raw.encode() if isinstance(raw, str) else raw)
         return scans
 
-    return made
+    return write
 
 
 def mesh(change: Callable[[Any, Any], tuple[Any, Any]], suffix: str = "off") -> Callable[[Path], Path]:
@@ -121,38 +121,38 @@ def mesh(change: Callable[[Any, Any], tuple[Any, Any]], suffix: str = "off") -> 
 def all_of(change: Callable[[Any, Any], tuple[Any, Any]], suffix: str = "off") -> Callable[[Path], Path]:
     """Every frame is changed."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         scans = whole(folder, suffix)
         for t in range(FRAMES):
             (scans / f"frame_{t}.{suffix}").write_bytes(WRITERS[suffix](*change(*surface(t))))
         return scans
 
-    return made
+    return write
 
 
 def named(*names: str) -> Callable[[Path], Path]:
     """Frames under these names, in this order."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         (folder / "scans").mkdir()
         for t, name in enumerate(names):
             (folder / "scans" / name).write_bytes(WRITERS[name.lower().rpartition(".")[2]](*surface(t)))
         return folder / "scans"
 
-    return made
+    return write
 
 
 def beside(name: str, put: Callable[[Path], None], remove: str = "") -> Callable[[Path], Path]:
     """Something else lies in the folder."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         scans = whole(folder)
         if remove:
             (scans / remove).unlink()
         put(scans / name)
         return scans
 
-    return made
+    return write
 
 
 def text(change: Callable[[str], str], suffix: str = "off") -> Callable[[Path], Path]:
@@ -163,27 +163,27 @@ def text(change: Callable[[str], str], suffix: str = "off") -> Callable[[Path], 
 def packed(**changes: Any) -> Callable[[Path], Path]:
     """All frames in one npz."""
 
-    def made(folder: Path) -> Path:
-        held = {
+    def write(folder: Path) -> Path:
+        arrays = {
             "vertices": np.concatenate([vertices(t) for t in range(FRAMES)]).astype("f4"), "faces": F.astype("i4"),
             "vertex_offsets": np.arange(FRAMES + 1) * len(V), "face_offsets": np.array([0, len(F)]), "fps": 25.0, "unit": "mm",
         }  # fmt: skip
-        np.savez(folder / "walk.npz", **{k: v for k, v in {**held, **changes}.items() if v is not None})
+        np.savez(folder / "walk.npz", **{k: v for k, v in {**arrays, **changes}.items() if v is not None})
         return folder / "walk.npz"
 
-    return made
+    return write
 
 
 def zipped(members: Callable[[], dict[str, bytes]]) -> Callable[[Path], Path]:
     """A zip of these members."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         with zipfile.ZipFile(folder / "walk.zip", "w", zipfile.ZIP_DEFLATED) as archive:
             for name, content in members().items():
                 archive.writestr(name, content)
         return folder / "walk.zip"
 
-    return made
+    return write
 
 
 def frames_of_zip(pattern: str = "walk/frame_{}.off") -> dict[str, bytes]:
@@ -194,18 +194,18 @@ def frames_of_zip(pattern: str = "walk/frame_{}.off") -> dict[str, bytes]:
 def in_file(name: str, content: Callable[[], bytes]) -> Callable[[Path], Path]:
     """One file."""
 
-    def made(folder: Path) -> Path:
+    def write(folder: Path) -> Path:
         (folder / name).write_bytes(content())
         return folder / name
 
-    return made
+    return write
 
 
-def moving(change: Callable[[Made], object]) -> bytes:
+def moving(change: Callable[[GlbDraft], object]) -> bytes:
     """An animated GLB, spoilt."""
-    made = Made().moves("translation", TENTHS, np.outer(TENTHS, [1, 2, 3]))
-    change(made)
-    return made.raw()
+    draft = GlbDraft().moves("translation", TENTHS, np.outer(TENTHS, [1, 2, 3]))
+    change(draft)
+    return draft.raw()
 
 
 # ── shapes ──────────────────────────────────────────────────────────────────────────────────────────────────────────
@@ -481,35 +481,35 @@ CASES: dict[str, Case] = {
     "zip with a damaged frame": Case(
         zipped(lambda: frames_of_zip() | {"walk/frame_2.off": b"OFF\n9 9 9"}), DROPPED, "cut short"
     ),
-    "animated GLB": Case(in_file("walk.glb", lambda: moving(lambda made: None)), OK, numbers=TEN),
-    "GLB without motion": Case(in_file("walk.glb", lambda: Made().raw()), REFUSED, "one mesh without animation"),
+    "animated GLB": Case(in_file("walk.glb", lambda: moving(lambda draft: None)), OK, numbers=TEN),
+    "GLB without motion": Case(in_file("walk.glb", lambda: GlbDraft().raw()), REFUSED, "one mesh without animation"),
     "GLB with times that decrease": Case(
-        in_file("walk.glb", lambda: Made().moves("translation", TENTHS[::-1], np.outer(TENTHS, [1, 2, 3])).raw()),
+        in_file("walk.glb", lambda: GlbDraft().moves("translation", TENTHS[::-1], np.outer(TENTHS, [1, 2, 3])).raw()),
         REFUSED,
         "the keys of an animation do not fit its times",
     ),
     "GLB that lasts a century": Case(
-        in_file("walk.glb", lambda: Made().moves("translation", TENTHS * 3e10, np.outer(TENTHS, [1, 2, 3])).raw()),
+        in_file("walk.glb", lambda: GlbDraft().moves("translation", TENTHS * 3e10, np.outer(TENTHS, [1, 2, 3])).raw()),
         OK,
         numbers=TEN,
     ),
     "GLB whose nodes are a ring": Case(
-        in_file("walk.glb", lambda: moving(lambda made: made.document["nodes"][0].update(children=[0]))),
+        in_file("walk.glb", lambda: moving(lambda draft: draft.document["nodes"][0].update(children=[0]))),
         REFUSED,
         "its nodes are no tree",
     ),
     "GLB that names a file outside": Case(
-        in_file("walk.glb", lambda: moving(lambda made: made.document.update(images=[{"uri": "file:///etc/passwd"}]))),
+        in_file("walk.glb", lambda: moving(lambda draft: draft.document.update(images=[{"uri": "file:///etc/passwd"}]))),
         OK,
         numbers=TEN,
     ),
     "GLB with an accessor beyond its end": Case(
-        in_file("walk.glb", lambda: moving(lambda made: made.document["accessors"][0].update(count=10**9))),
+        in_file("walk.glb", lambda: moving(lambda draft: draft.document["accessors"][0].update(count=10**9))),
         REFUSED,
         "accessor 0 is of no known or of too large a layout",
     ),
     "GLB that wants an unknown extension": Case(
-        in_file("walk.glb", lambda: moving(lambda made: made.document.update(extensionsRequired=["X_none"]))),
+        in_file("walk.glb", lambda: moving(lambda draft: draft.document.update(extensionsRequired=["X_none"]))),
         REFUSED,
         "uses X_none, which is not read",
     ),

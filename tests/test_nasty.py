@@ -14,7 +14,7 @@ from kinetree.schemas.input.sequence import Sequence
 
 def ran(folder: Path, case: Case) -> tuple[Sequence, list[str], Pipeline]:
     """The frames and remarks of a run up to the connectivity; raises what the user would be told."""
-    told = {"source": {"input": str(case.made(folder))}, "output": str(folder / "out"), "compute": {"executor": "sync"}}
+    told = {"source": {"input": str(case.write(folder))}, "output": str(folder / "out"), "compute": {"executor": "sync"}}
     pipeline = Pipeline.of(told)
     assert pipeline.run(until=["connectivity"])["failures"] == []
     made: Any = pipeline.artifact("sequence")

@@ -151,11 +151,11 @@ def test_what_cannot_be_compared_is_refused_in_words(runs: tuple[str, str], tmp_
 
 def test_found_joints_are_called_as_people_call_them_and_the_truth_keeps_its_names() -> None:
     joints = (JointScore(name="knee_l", found="limb_a_2"), JointScore(name="hip_l"))
-    told = Evaluation(
+    evaluation = Evaluation(
         truth="t", frames=(0,), true_frames=1, unit=None, height=1.0, joints=joints, spurious=("limb_b_1", "root"),
         duplicate_of=("knee_l", ""), summary=None, error=np.zeros((1, 2)), detection=np.zeros(1), distance=np.zeros(1),
     )  # fmt: skip
-    named = labelled(told, {"limb_a_2": "left knee", "limb_b_1": "left elbow", "knee_l": "wrong"})
+    named = labelled(evaluation, {"limb_a_2": "left knee", "limb_b_1": "left elbow", "knee_l": "wrong"})
     assert [(joint.name, joint.found) for joint in named.joints] == [("knee_l", "left knee"), ("hip_l", None)]
     assert named.spurious == ("left elbow", "root")
     assert named.duplicate_of == ("knee_l", "")

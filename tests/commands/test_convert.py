@@ -115,16 +115,16 @@ def test_alembic_and_usd_of_blender_come_back_as_the_frames_that_they_were(insta
     for name in ("fixed", "changing"):
         convert(exported / f"{name}.abc", tmp_path / f"{name}-abc.npz", installed[0], fps=10.0)
         convert(exported / f"{name}.blend", tmp_path / f"{name}.npz", installed[0])
-        told = [read_npz(tmp_path / f"{name}-abc.npz"), read_npz(tmp_path / f"{name}.npz")]
+        sequences = [read_npz(tmp_path / f"{name}-abc.npz"), read_npz(tmp_path / f"{name}.npz")]
         if importlib.util.find_spec("pxr"):
-            told.append(read_animated(exported / f"{name}.usdc"))
+            sequences.append(read_animated(exported / f"{name}.usdc"))
         if name == "fixed":
-            for frames in told:
+            for frames in sequences:
                 assert_is_spider(frames)
         for t in range(12):
-            V, F = told[0].mesh(t)
+            V, F = sequences[0].mesh(t)
             counts[name, t] = len(V)
-            for frames in told[1:]:
+            for frames in sequences[1:]:
                 np.testing.assert_allclose(frames.mesh(t)[0], V, atol=1e-6)
                 assert len(frames.mesh(t)[1]) == len(F)
     assert counts["changing", 0] > counts["changing", 5] > counts["changing", 11]
@@ -169,9 +169,9 @@ def test_blender_is_told_to_run_nothing_of_the_file(file, tmp_path):
     recorder = program(tmp_path, f'echo "$@" > {tmp_path}/arguments; exit 1')
     with pytest.raises(InputError, match=r"cannot open it \(exit code 1\)"):
         convert(file, None, recorder)
-    given = (tmp_path / "arguments").read_text().split()
-    assert given.index("--disable-autoexec") < given.index("--python")
-    assert "--factory-startup" in given
+    arguments = (tmp_path / "arguments").read_text().split()
+    assert arguments.index("--disable-autoexec") < arguments.index("--python")
+    assert "--factory-startup" in arguments
 
 
 def test_python_that_has_blender_as_a_module_runs_the_script_itself(file, tmp_path, monkeypatch):
@@ -180,9 +180,9 @@ def test_python_that_has_blender_as_a_module_runs_the_script_itself(file, tmp_pa
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match=r"cannot open it \(exit code 1\)"):
         convert(file, None, "./python3.11")
-    given = (tmp_path / "arguments").read_text().split()
-    assert given[0].endswith("frames.py")
-    assert given[1:3] == ["--", str(file)]
+    arguments = (tmp_path / "arguments").read_text().split()
+    assert arguments[0].endswith("frames.py")
+    assert arguments[1:3] == ["--", str(file)]
 
 
 def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):
@@ -198,17 +198,17 @@ def test_files_that_are_there_and_other_formats_are_refused(file, tmp_path):
         convert(file, tmp_path / "walk.zip")
 
 
-def leaving(folder, told, vertices=72, faces=24):
+def leaving(folder, layout, vertices=72, faces=24):
     """A stand-in for Blender that leaves two frames of a triangle, in so many bytes; None leaves no such file."""
-    left = {"vertices": vertices, "faces": faces}
-    zeros = [f"head -c {size} /dev/zero > {name}" for name, size in left.items() if size is not None]
+    sizes = {"vertices": vertices, "faces": faces}
+    zeros = [f"head -c {size} /dev/zero > {name}" for name, size in sizes.items() if size is not None]
     there = r'while [ "$1" != -- ]; do shift; done; cd "$3"'
-    return program(folder, "; ".join([there, *zeros, f"printf '%s' '{told}' > layout.json"]))
+    return program(folder, "; ".join([there, *zeros, f"printf '%s' '{layout}' > layout.json"]))
 
 
 def test_what_is_left_by_blender_is_checked(file, tmp_path):
     counts, rest = '"counts": [[3, 1], [3, 1]]', '"scale": 1, "fps": 24'
-    for told, words in (
+    for layout, words in (
         ("nonsense", "what Blender says: not JSON"),
         (f'{{{counts}, "scale": NaN, "fps": 24}}', "a unit of nan m; set both in Blender"),
         (f'{{{counts}, "scale": 1, "fps": 0}}', "its scene has 0 frames a second"),
@@ -220,7 +220,7 @@ def test_what_is_left_by_blender_is_checked(file, tmp_path):
         (f'{{"counts": [[-3, 1], [9, 1]], {rest}}}', "no surface in some frames"),
     ):
         with pytest.raises(InputError, match=words):
-            convert(file, None, leaving(tmp_path, told))
+            convert(file, None, leaving(tmp_path, layout))
     assert not file.with_suffix(".npz").exists()
 
 

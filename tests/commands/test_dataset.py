@@ -25,20 +25,20 @@ def lab(tmp_path):
     (tmp_path / "takes" / "walk" / "truth.json").write_text("{}")
     keys = {"sequences": "takes/*", "output": "results/{name}", "truth": {"file": "{input}/truth.json"}}
     (tmp_path / "lab.yaml").write_text(json.dumps(keys))
-    found = Dataset.of(tmp_path / "lab.yaml", application=APPLICATION)
+    data_set = Dataset.of(tmp_path / "lab.yaml", application=APPLICATION)
     body = spider()
     zero = np.zeros(len(body.frames))
     sure = FrameConfidence(frames=body.frames, residual=zero, uncovered=zero, unreliable=zero, inlier=zero == 0)
-    found.store.create()
-    made = {"skeleton": body, "evaluation": evaluated(None), "frame_confidence": sure}
-    made["up_direction"] = UpDirection(up="z", confidence=1.0)
-    made["verdict"] = judged(body)
-    digests = {name: found.store.publish(artifact)[0] for name, artifact in made.items()}
+    data_set.store.create()
+    artifacts = {"skeleton": body, "evaluation": evaluated(None), "frame_confidence": sure}
+    artifacts["up_direction"] = UpDirection(up="z", confidence=1.0)
+    artifacts["verdict"] = judged(body)
+    digests = {name: data_set.store.publish(artifact)[0] for name, artifact in artifacts.items()}
     walk = Outcome("walk", "", "done", "2026-01-01", "run", 3.0, 12, artifacts=digests, files={"report.html": (1, 1)})
-    walk.write(found["walk"].config.output)
+    walk.write(data_set["walk"].config.output)
     why = {"node": "mesh[frame=3]", "error": "MeshError", "message": "torn"}
-    Outcome("dance", "", "failed", "2026-01-01", failures=(why,)).write(found["dance"].config.output)
-    return found
+    Outcome("dance", "", "failed", "2026-01-01", failures=(why,)).write(data_set["dance"].config.output)
+    return data_set
 
 
 def test_the_page_is_made_of_what_lies_in_the_store(lab):

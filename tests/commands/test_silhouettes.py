@@ -26,9 +26,9 @@ def meshes(tmp_path):
 
 def test_masks_of_every_frame_hold_the_images_of_all_vertices_and_are_read_back(meshes, tmp_path):
     silhouettes(str(meshes), tmp_path / "masks", cameras=4, size=96)
-    found = source(SourceParams(input=str(tmp_path / "masks")), Files.of(Store.at(tmp_path / "store")))
-    assert list(found) == [0, 1, 2]
-    for t, frame in found.items():
+    frames = source(SourceParams(input=str(tmp_path / "masks")), Files.of(Store.at(tmp_path / "store")))
+    assert list(frames) == [0, 1, 2]
+    for t, frame in frames.items():
         calibration, masks = read_back(frame)
         V = np.asarray(trimesh.load(meshes / f"{t}.ply", process=False).vertices)
         for P, mask in zip(calibration.P, masks, strict=True):

@@ -18,8 +18,8 @@ def frame(vertices=V, faces=F, origin=None):
 
 
 def test_moving_vertices_under_the_same_faces_are_fixed():
-    made = connectivity({t: frame(V * (t + 1)) for t in range(4)})
-    assert made == Connectivity(fixed=True, first_change=None, vertices=4, faces=4)
+    result = connectivity({t: frame(V * (t + 1)) for t in range(4)})
+    assert result == Connectivity(fixed=True, first_change=None, vertices=4, faces=4)
 
 
 @pytest.mark.parametrize(
@@ -42,16 +42,16 @@ def test_moving_vertices_under_the_same_faces_are_fixed():
     ],
 )
 def test_first_frame_that_differs_is_told_by_its_number(other):
-    made = connectivity({10: frame(), 12: frame(V * 2), 14: other, 16: frame()})
-    assert (made.fixed, made.first_change) == (False, 14)
+    result = connectivity({10: frame(), 12: frame(V * 2), 14: other, 16: frame()})
+    assert (result.fixed, result.first_change) == (False, 14)
 
 
 def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_reason():
     merged = Mesh(vertices=V[:3], faces=F[:1], vertex_of_input=np.array([0, 1, 2, 2]), cleaning=Cleaning(merged=1))
-    made = connectivity({10: merged, 12: frame(), 14: frame(V * 2), 16: frame(V * 3)})
-    assert not made.fixed
-    assert [(o.frame, o.welded, o.vertices, o.faces) for o in made.odd] == [(10, 1, -1, -3)]
-    (said,) = views.remarks(made)
+    result = connectivity({10: merged, 12: frame(), 14: frame(V * 2), 16: frame(V * 3)})
+    assert not result.fixed
+    assert [(o.frame, o.welded, o.vertices, o.faces) for o in result.odd] == [(10, 1, -1, -3)]
+    (said,) = views.remarks(result)
     assert "frame 10 does not: 1 of its vertices lies on another one and was merged with it (mesh.merge)" in said
 
 
@@ -65,21 +65,21 @@ def test_the_one_frame_that_keeps_a_sequence_from_being_fixed_is_told_with_its_r
     ids=["another file", "fewer faces", "another order"],
 )
 def test_what_differs_is_told_in_words(other, why):
-    made = connectivity({0: frame(), 1: frame(V * 2), 2: frame(V * 3), 3: other, 4: other})
-    (said,) = views.remarks(made)
+    result = connectivity({0: frame(), 1: frame(V * 2), 2: frame(V * 3), 3: other, 4: other})
+    (said,) = views.remarks(result)
     assert f"frame 3 (and 1 other frame) does not: {why};" in said
 
 
 def test_a_sequence_surfaced_anew_in_every_frame_says_nothing_of_fixed_connectivity():
-    made = connectivity({t: frame(faces=np.roll(F, t, axis=0)) for t in range(4)})
-    assert (made.fixed, made.odd, views.remarks(made)) == (False, (), ())
+    result = connectivity({t: frame(faces=np.roll(F, t, axis=0)) for t in range(4)})
+    assert (result.fixed, result.odd, views.remarks(result)) == (False, (), ())
 
 
 def test_change_is_seen_against_the_first_frame():
-    made = connectivity({0: frame(faces=F[:3]), 1: frame(), 2: frame()})
-    assert (made.fixed, made.first_change, made.vertices, made.faces) == (False, 1, 4, 3)
+    result = connectivity({0: frame(faces=F[:3]), 1: frame(), 2: frame()})
+    assert (result.fixed, result.first_change, result.vertices, result.faces) == (False, 1, 4, 3)
 
 
 def test_one_frame_alone_moves_nothing_and_is_not_fixed():
-    made = connectivity({5: frame()})
-    assert (made.fixed, made.first_change) == (False, None)
+    result = connectivity({5: frame()})
+    assert (result.fixed, result.first_change) == (False, None)

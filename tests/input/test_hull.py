@@ -29,10 +29,10 @@ def frame(walk, tmp_path):
 
 
 def test_hull_is_carved_with_all_views(frame):
-    made = hull(frame(), HullParams(**COARSE))
-    assert (made.views, made.missing, made.cut) == (15, (), ())
-    assert (made.values > 0).any()
-    assert hull_remarks(made) == ()
+    carved = hull(frame(), HullParams(**COARSE))
+    assert (carved.views, carved.missing, carved.cut) == (15, (), ())
+    assert (carved.values > 0).any()
+    assert hull_remarks(carved) == ()
 
 
 def test_missing_and_empty_masks_are_named_and_may_be_left_out(walk, frame):
@@ -41,9 +41,9 @@ def test_missing_and_empty_masks_are_named_and_may_be_left_out(walk, frame):
     words = "walk, frame 1: no mask, or an empty one, of camera cam_03, cam_08: 13 of 15 views, 15 .* set hull.least_views=13"
     with pytest.raises(HullError, match=words):
         hull(frame(), HullParams(**COARSE))
-    made = hull(frame(), HullParams(least_views=13, **COARSE))
-    assert (made.views, made.missing) == (13, ("cam_03", "cam_08"))
-    assert "without camera cam_03, cam_08" in hull_remarks(made)[0]
+    carved = hull(frame(), HullParams(least_views=13, **COARSE))
+    assert (carved.views, carved.missing) == (13, ("cam_03", "cam_08"))
+    assert "without camera cam_03, cam_08" in hull_remarks(carved)[0]
     assert hull(frame(0), HullParams(**COARSE)).views == 15
 
 
@@ -52,14 +52,14 @@ def test_views_that_cut_the_body_are_named(walk, frame):
     image = np.asarray(Image.open(path)).copy()
     image[:, :100] = 255 * (image[:, 100:101] > 0)
     Image.fromarray(image).save(path)
-    made = hull(frame(), HullParams(**COARSE))
-    assert made.cut == ("cam_05",)
-    assert "cuts the body in 1 of 15 views (cam_05)" in hull_remarks(made)[0]
+    carved = hull(frame(), HullParams(**COARSE))
+    assert carved.cut == ("cam_05",)
+    assert "cuts the body in 1 of 15 views (cam_05)" in hull_remarks(carved)[0]
 
 
 def test_calibration_that_does_not_fit_is_said_with_frame_and_camera(walk, frame):
-    held = np.array([[60.0, 0, 99.5, 0], [0, 60, 79.5, 0], [0, 0, 1, 500]])
-    rewrite(walk, P=held.tolist())
+    document = np.array([[60.0, 0, 99.5, 0], [0, 60, 79.5, 0], [0, 0, 1, 500]])
+    rewrite(walk, P=document.tolist())
     with pytest.raises(HullError, match=r"walk, frame 1: the rectangles of the 15 .* no common point; .* camera cam_00"):
         hull(frame(), HullParams(**COARSE))
 

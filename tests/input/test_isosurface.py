@@ -49,26 +49,26 @@ def pipeline(where, out, **blocks):
 
 @pytest.mark.parametrize(("suffix", "voxel"), [("npz", 0.5), ("nrrd", 0.5), ("npy", 1.0), ("zarr", 0.5)])
 def test_a_run_takes_volumes_of_every_kind_to_clean_meshes(tmp_path, suffix, voxel):
-    made = pipeline(volumes(tmp_path / "in", suffix), tmp_path / "out")
-    summary = made.run()
+    run = pipeline(volumes(tmp_path / "in", suffix), tmp_path / "out")
+    summary = run.run()
     assert summary["failures"] == []
-    mesh = made.artifact("mesh", frame=2)
+    mesh = run.artifact("mesh", frame=2)
     assert (mesh.cleaning.components, mesh.cleaning.boundary_edges, mesh.cleaning.euler) == (1, 0, 2)
     np.testing.assert_allclose(np.ptp(np.asarray(mesh.vertices), axis=0), 2 * voxel * 7.4, rtol=0.03)
     assert mesh.vertex_of_input.tolist() == list(range(len(mesh.vertices)))
-    assert not [label for label in made.plan().by_label if label.startswith("hull")]
+    assert not [label for label in run.plan().by_label if label.startswith("hull")]
 
 
 def test_a_run_takes_silhouettes_to_clean_meshes_and_replacing_one_mask_reruns_one_frame(tmp_path):
     walk = write_folder(tmp_path / "walk")
-    made = pipeline(walk, tmp_path / "out", hull={"resolution": 32})
-    assert made.run()["status"] == "done"
-    assert (made.artifact("sequence").fps, made.artifact("sequence").unit) == (25.0, "m")
-    mesh = trimesh.Trimesh(made.artifact("mesh", frame=1).vertices, made.artifact("mesh", frame=1).faces, process=False)
+    run = pipeline(walk, tmp_path / "out", hull={"resolution": 32})
+    assert run.run()["status"] == "done"
+    assert (run.artifact("sequence").fps, run.artifact("sequence").unit) == (25.0, "m")
+    mesh = trimesh.Trimesh(run.artifact("mesh", frame=1).vertices, run.artifact("mesh", frame=1).faces, process=False)
     assert mesh.is_watertight
     np.testing.assert_allclose(mesh.bounds.mean(axis=0), CENTRE + [0, 0, 0.1], atol=0.1)
     np.testing.assert_allclose(np.ptp(mesh.bounds, axis=0)[2], 2 * 0.9 * RADIUS, rtol=0.05)
-    assert made.plan().is_done
+    assert run.plan().is_done
 
     path = walk / "cam_05" / "frame_0001.png"
     path.write_bytes((walk / "cam_05" / "frame_0002.png").read_bytes())
@@ -84,8 +84,8 @@ def test_volume_that_ends_before_the_body_is_closed_and_named(tmp_path):
     for t in range(2):
         np.save(folder / f"{t}.npy", AWAY[8:])
     frame = source(SourceParams(input=str(folder)), Files.of(Store.at(tmp_path / "store")))[0]
-    made = isosurface(frame, (), IsosurfaceParams())
-    assert made.cut > 0
-    assert "reaches the border of its volume at" in isosurface_remarks(made)[0]
+    surface = isosurface(frame, (), IsosurfaceParams())
+    assert surface.cut > 0
+    assert "reaches the border of its volume at" in isosurface_remarks(surface)[0]
     with pytest.raises(HullError, match=r"0.npy: all values of the volume lie on one side of the level 99"):
         isosurface(frame, (), IsosurfaceParams(level=99.0))

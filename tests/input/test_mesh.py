@@ -25,44 +25,44 @@ def frame(tmp_path):
 
 
 def test_clean_tetrahedron_stays_as_it_is(frame):
-    made = mesh(frame(), MeshParams())
-    np.testing.assert_array_equal(made.vertices, V)
-    np.testing.assert_array_equal(made.vertex_of_input, range(4))
-    told = made.cleaning
-    assert (told.merged, told.flipped, told.components, told.boundary_edges, told.euler) == (0, 0, 1, 0, 2)
-    assert told.volume == pytest.approx(1 / 6)
-    assert told.area == pytest.approx(1.5 + np.sqrt(3) / 2)
+    cleaned = mesh(frame(), MeshParams())
+    np.testing.assert_array_equal(cleaned.vertices, V)
+    np.testing.assert_array_equal(cleaned.vertex_of_input, range(4))
+    cleaning = cleaned.cleaning
+    assert (cleaning.merged, cleaning.flipped, cleaning.components, cleaning.boundary_edges, cleaning.euler) == (0, 0, 1, 0, 2)
+    assert cleaning.volume == pytest.approx(1 / 6)
+    assert cleaning.area == pytest.approx(1.5 + np.sqrt(3) / 2)
 
 
 def test_every_corner_is_found_again_among_the_users_vertices(frame):
     soup = V[F].reshape(-1, 3)  # three vertices a face, as STL has them
-    made = mesh(frame(soup, np.arange(12).reshape(4, 3)), MeshParams())
-    assert len(made.vertices) == 4
-    assert made.cleaning.merged == 8
-    np.testing.assert_array_equal(made.vertices[made.vertex_of_input], soup)
+    cleaned = mesh(frame(soup, np.arange(12).reshape(4, 3)), MeshParams())
+    assert len(cleaned.vertices) == 4
+    assert cleaned.cleaning.merged == 8
+    np.testing.assert_array_equal(cleaned.vertices[cleaned.vertex_of_input], soup)
 
 
 def test_inside_out_is_turned_and_told(frame):
-    made = mesh(frame(faces=F[:, ::-1]), MeshParams())
-    assert made.cleaning.flipped == 4
-    assert made.cleaning.volume == pytest.approx(1 / 6)
+    cleaned = mesh(frame(faces=F[:, ::-1]), MeshParams())
+    assert cleaned.cleaning.flipped == 4
+    assert cleaned.cleaning.volume == pytest.approx(1 / 6)
 
 
 def test_open_surface_has_a_boundary_and_no_volume(frame):
-    made = mesh(frame(faces=F[:3]), MeshParams())
-    assert made.cleaning.boundary_edges == 3
-    assert made.cleaning.volume is None
-    assert made.cleaning.euler == 1
+    cleaned = mesh(frame(faces=F[:3]), MeshParams())
+    assert cleaned.cleaning.boundary_edges == 3
+    assert cleaned.cleaning.volume is None
+    assert cleaned.cleaning.euler == 1
 
 
 def test_debris_is_dropped_by_its_share_and_the_way_back_says_so(frame):
     both, faces = np.concatenate([V, 5 + V / 10]), np.concatenate([F, F + 4])
-    made = mesh(frame(both, faces), MeshParams())
-    assert (made.cleaning.components, made.cleaning.components_kept) == (2, 1)
-    np.testing.assert_array_equal(made.vertex_of_input, [0, 1, 2, 3, -1, -1, -1, -1])
-    assert made.cleaning.share_kept == pytest.approx(1 / 1.01)
-    kept = mesh(frame(both, faces), MeshParams(component_share=0))
-    assert kept.cleaning.components_kept == 2
+    cleaned = mesh(frame(both, faces), MeshParams())
+    assert (cleaned.cleaning.components, cleaned.cleaning.components_kept) == (2, 1)
+    np.testing.assert_array_equal(cleaned.vertex_of_input, [0, 1, 2, 3, -1, -1, -1, -1])
+    assert cleaned.cleaning.share_kept == pytest.approx(1 / 1.01)
+    whole = mesh(frame(both, faces), MeshParams(component_share=0))
+    assert whole.cleaning.components_kept == 2
 
 
 def test_unusable_frame_is_refused_by_its_name(frame):

@@ -10,23 +10,23 @@ from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
 
 
-def frames(*told, start=0):
-    return {t: Source(content=f"{t}", path="x", fps=fps, unit=unit) for t, (fps, unit) in enumerate(told, start)}
+def frames(*fields, start=0):
+    return {t: Source(content=f"{t}", path="x", fps=fps, unit=unit) for t, (fps, unit) in enumerate(fields, start)}
 
 
 def test_numbers_of_the_frames_are_kept():
-    given = {t: s for t, s in frames(*[(None, None)] * 6).items() if t % 2}
-    assert sequence(given, SequenceParams()) == Sequence(frames=(1, 3, 5), fps=None, unit=None)
+    sources = {t: s for t, s in frames(*[(None, None)] * 6).items() if t % 2}
+    assert sequence(sources, SequenceParams()) == Sequence(frames=(1, 3, 5), fps=None, unit=None)
 
 
 def test_what_the_files_state_is_believed():
-    made = sequence(frames((25.0, "mm"), (25.0, None), (None, "mm")), SequenceParams())
-    assert (made.fps, made.unit) == (25.0, "mm")
+    result = sequence(frames((25.0, "mm"), (25.0, None), (None, "mm")), SequenceParams())
+    assert (result.fps, result.unit) == (25.0, "mm")
 
 
 def test_user_goes_before_the_files():
-    made = sequence(frames((25.0, "mm"), (30.0, "cm")), SequenceParams(fps=50, unit="m"))
-    assert (made.fps, made.unit) == (50.0, "m")
+    result = sequence(frames((25.0, "mm"), (30.0, "cm")), SequenceParams(fps=50, unit="m"))
+    assert (result.fps, result.unit) == (50.0, "m")
 
 
 def test_files_that_disagree_are_refused_with_the_key_that_settles_it():
@@ -63,19 +63,23 @@ def test_many_gaps_are_counted():
 
 
 def test_frames_that_were_left_out_are_named_with_the_reason_and_are_no_gap():
-    given = frames((None, None), (None, None), (None, None))
-    given[3] = given[2].model_copy(update={"dropped": (BadFrame(frame=4, reason="torn"),)})
-    given[0] = given[0].model_copy(update={"dropped": (BadFrame(frame=2, reason="empty"),)})
-    del given[2]
-    made = sequence(given, SequenceParams())
-    assert (made.frames, [bad.frame for bad in made.dropped]) == ((0, 1, 3), [2, 4])
-    assert remarks(made) == ("2 of 5 frames were left out of everything: frame 2: empty; frame 4: torn",)
+    sources = frames((None, None), (None, None), (None, None))
+    sources[3] = sources[2].model_copy(update={"dropped": (BadFrame(frame=4, reason="torn"),)})
+    sources[0] = sources[0].model_copy(update={"dropped": (BadFrame(frame=2, reason="empty"),)})
+    del sources[2]
+    result = sequence(sources, SequenceParams())
+    assert (result.frames, [bad.frame for bad in result.dropped]) == ((0, 1, 3), [2, 4])
+    assert remarks(result) == ("2 of 5 frames were left out of everything: frame 2: empty; frame 4: torn",)
 
 
 def test_a_selection_says_which_frames_the_body_is_learned_from():
-    made = sequence(frames(*[(None, None)] * 6, start=3), SequenceParams(learn_from=":7"))
-    assert (made.frames, made.learned, made.further) == ((3, 4, 5, 6, 7, 8), (3, 4, 5, 6), (7, 8))
-    assert (made.selected(), made.members("further", ()), made.members("further/frame", (8,))) == ((3, 4, 5, 6), (7, 8), (8,))
+    result = sequence(frames(*[(None, None)] * 6, start=3), SequenceParams(learn_from=":7"))
+    assert (result.frames, result.learned, result.further) == ((3, 4, 5, 6, 7, 8), (3, 4, 5, 6), (7, 8))
+    assert (result.selected(), result.members("further", ()), result.members("further/frame", (8,))) == (
+        (3, 4, 5, 6),
+        (7, 8),
+        (8,),
+    )
     all_of_them = sequence(frames(*[(None, None)] * 6), SequenceParams())
     assert (all_of_them.learned, all_of_them.members("further", ())) == (all_of_them.frames, ())
 
@@ -90,16 +94,16 @@ def test_a_selection_of_one_frame_or_none_is_refused():
 
 
 def test_further_frames_are_told():
-    told = {"frames": tuple(range(8)), "fps": None, "unit": None}
-    assert remarks(Sequence(**told, further=(6, 7))) == (
+    fields = {"frames": tuple(range(8)), "fps": None, "unit": None}
+    assert remarks(Sequence(**fields, further=(6, 7))) == (
         "the body is learned from 6 frames (0 to 5); 2 other frames (6 to 7) are posed by it",
     )
-    assert remarks(Sequence(**told, further=(7,))) == ("the body is learned from 7 frames (0 to 6); frame 7 is posed by it",)
+    assert remarks(Sequence(**fields, further=(7,))) == ("the body is learned from 7 frames (0 to 6); frame 7 is posed by it",)
 
 
 def test_takes_are_named_and_each_is_learned_from_by_its_own_numbers():
-    given = {k * TAKE + t: Source(content=f"{k}{t}", path="x", take=take) for k, take in enumerate("ab") for t in range(4)}
-    made = sequence(given, SequenceParams(learn_from=":3"))
-    assert made.takes == ("a", "b")
-    assert made.further == (3, TAKE + 3)
-    assert remarks(made.model_copy(update={"further": ()})) == ()
+    sources = {k * TAKE + t: Source(content=f"{k}{t}", path="x", take=take) for k, take in enumerate("ab") for t in range(4)}
+    result = sequence(sources, SequenceParams(learn_from=":3"))
+    assert result.takes == ("a", "b")
+    assert result.further == (3, TAKE + 3)
+    assert remarks(result.model_copy(update={"further": ()})) == ()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 import zarr
-from numerics.input.animated_glbs import TENTHS, Made
+from numerics.input.animated_glbs import TENTHS, GlbDraft
 
 from kinetree.errors import MeshError, SourceError
 from kinetree.pipeline.identity.key import artifact_digest
@@ -44,7 +44,7 @@ def files(tmp_path):
 
 
 @pytest.fixture
-def found(files, tmp_path):
+def frames_of(files, tmp_path):
     """The frames at a path below the test's folder."""
 
     def find(where, frames=":", **params):
@@ -67,9 +67,9 @@ def as_npz(path, **changes):
 
 
 def as_zarr(path, **changes):
-    held = packed(**changes)
-    group = zarr.create_group(path, attributes={k: held.pop(k).item() for k in ("fps", "unit") if k in held})
-    for key, array in held.items():
+    arrays = packed(**changes)
+    group = zarr.create_group(path, attributes={k: arrays.pop(k).item() for k in ("fps", "unit") if k in arrays})
+    for key, array in arrays.items():
         group.create_array(key, data=array)
 
 
@@ -88,9 +88,9 @@ def zip_of(path, frames):
             file.writestr(f"walk/frame_{t}.off", content)
 
 
-def test_zip_of_frames_has_the_numbers_of_their_names(found, tmp_path):
+def test_zip_of_frames_has_the_numbers_of_their_names(frames_of, tmp_path):
     zip_of(tmp_path / "walk.zip", {t: off(1 + t / 10) for t in (1, 2, 9, 10)})
-    frames = found("walk.zip")
+    frames = frames_of("walk.zip")
     assert list(frames) == [1, 2, 9, 10]
     assert {s.kind for s in frames.values()} == {"animated"}
     np.testing.assert_array_equal(surface(frames[9])[0], V * 1.9)
@@ -99,9 +99,9 @@ def test_zip_of_frames_has_the_numbers_of_their_names(found, tmp_path):
         surface(frames[9])
 
 
-def test_damaged_member_of_a_zip_is_a_bad_frame_and_no_more(found, tmp_path):
+def test_damaged_member_of_a_zip_is_a_bad_frame_and_no_more(frames_of, tmp_path):
     zip_of(tmp_path / "walk.zip", {t: off(1) if t != 5 else off(1)[:30] for t in range(12)})
-    frames = found("walk.zip")
+    frames = frames_of("walk.zip")
     assert list(frames) == [t for t in range(12) if t != 5]
     ((bad,),) = [s.dropped for s in frames.values() if s.dropped]
     assert bad.frame == 5
@@ -118,11 +118,11 @@ def test_clip_of_what_is_no_glb_is_refused(files, scans):
         source(SourceParams(input="s3://bucket/scans", clip="wave"), files)
 
 
-def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_path):
-    made = Made().moves("translation", TENTHS / 3, np.outer(TENTHS, [1, 2, 3]))
-    made.moves("translation", [0, 2], [[0, 0, 0], [0, 0, 0.1]], name="wave")
-    (tmp_path / "walk.glb").write_bytes(made.raw())
-    frames = found("walk.glb")
+def test_animated_glb_is_a_sequence_and_its_clips_have_names(frames_of, files, tmp_path):
+    glb = GlbDraft().moves("translation", TENTHS / 3, np.outer(TENTHS, [1, 2, 3]))
+    glb.moves("translation", [0, 2], [[0, 0, 0], [0, 0, 0.1]], name="wave")
+    (tmp_path / "walk.glb").write_bytes(glb.raw())
+    frames = frames_of("walk.glb")
     assert (list(frames), frames[3].fps, frames[3].unit) == (list(range(11)), 30.0, "m")
     np.testing.assert_allclose(surface(frames[10])[0][0], [1, 2, 3], atol=1e-6)
     wave = source(SourceParams(input=str(tmp_path / "walk.glb"), clip="wave"), files)
@@ -133,7 +133,7 @@ def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_p
 
 
 @pytest.mark.parametrize(
-    ("suffix", "told"),
+    ("suffix", "advice"),
     [
         (".fbx", "kinetree convert makes a sequence of it where Blender is installed"),
         (".abc", "kinetree convert makes a sequence of it where Blender is installed"),
@@ -144,70 +144,70 @@ def test_animated_glb_is_a_sequence_and_its_clips_have_names(found, files, tmp_p
         (".uvol", "unpack it"),
     ],
 )
-def test_formats_that_are_not_read_end_in_what_to_do(found, tmp_path, suffix, told):
+def test_formats_that_are_not_read_end_in_what_to_do(frames_of, tmp_path, suffix, advice):
     (tmp_path / "many").mkdir()
     for where in ("many/a1", "many/a2", "a"):
         (tmp_path / f"{where}{suffix}").write_text("something")
     for where in ("many", f"a{suffix}"):
-        with pytest.raises(SourceError, match=told):
-            found(where)
+        with pytest.raises(SourceError, match=advice):
+            frames_of(where)
 
 
 # ── folders and patterns ────────────────────────────────────────────────────────────────────────────────────────────
 
 
-def test_folder_is_frames_in_natural_order_with_the_numbers_of_their_names(found, scans):
-    frames = found("scans")
+def test_folder_is_frames_in_natural_order_with_the_numbers_of_their_names(frames_of, scans):
+    frames = frames_of("scans")
     assert list(frames) == [1, 2, 9, 10]
     assert {s.series for s in frames.values()} == {(1, 10)}
     assert [name(s) for s in frames.values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
     assert all((s.part, s.kind, s.fps, s.unit) == (None, "file", None, None) for s in frames.values())
 
 
-def test_pattern_chooses_files(found, scans):
+def test_pattern_chooses_files(frames_of, scans):
     (scans / "frame_3.obj").write_text("")
-    assert [name(s) for s in found("scans/*.off").values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
-    assert [name(s) for s in found("scans/frame_1*.off").values()] == ["frame_1.off", "frame_10.off"]
+    assert [name(s) for s in frames_of("scans/*.off").values()] == ["frame_1.off", "frame_2.off", "frame_9.off", "frame_10.off"]
+    assert [name(s) for s in frames_of("scans/frame_1*.off").values()] == ["frame_1.off", "frame_10.off"]
 
 
 @pytest.mark.parametrize(
     ("frames", "numbers"),
     [(":", [1, 2, 9, 10]), ("1:3", [1, 2]), ("::2", [1, 9]), ("-2:", [9, 10]), ("2:99", [2, 9, 10]), (" 1 : 11 : 9 ", [1, 10])],
 )
-def test_chosen_frames_keep_their_numbers(found, scans, frames, numbers):
-    whole, chosen = found("scans"), found("scans", frames)
+def test_chosen_frames_keep_their_numbers(frames_of, scans, frames, numbers):
+    whole, chosen = frames_of("scans"), frames_of("scans", frames)
     assert list(chosen) == numbers
     assert all(chosen[t] == whole[t] for t in numbers)
 
 
-def test_frame_is_its_bytes_whatever_its_name_age_and_folder(found, scans, tmp_path):
-    before = {t: artifact_digest(s) for t, s in found("scans").items()}
+def test_frame_is_its_bytes_whatever_its_name_age_and_folder(frames_of, scans, tmp_path):
+    before = {t: artifact_digest(s) for t, s in frames_of("scans").items()}
     os.utime(scans / "frame_1.off", (1, 1))
     shutil.copytree(scans, tmp_path / "moved")
     for t in (1, 2, 9, 10):
         (tmp_path / "moved" / f"frame_{t}.off").rename(tmp_path / "moved" / f"walk_{t}.off")
-    assert {t: artifact_digest(s) for t, s in found("moved").items()} == before
+    assert {t: artifact_digest(s) for t, s in frames_of("moved").items()} == before
     (scans / "frame_2.off").write_text(off(1.7))
-    after = {t: artifact_digest(s) for t, s in found("scans").items()}
+    after = {t: artifact_digest(s) for t, s in frames_of("scans").items()}
     assert [t for t in before if before[t] != after[t]] == [2]
 
 
-def test_surface_is_the_users_own_vertices_and_faces(found, scans):
-    vertices, faces = surface(found("scans")[2])
+def test_surface_is_the_users_own_vertices_and_faces(frames_of, scans):
+    vertices, faces = surface(frames_of("scans")[2])
     np.testing.assert_array_equal(vertices, V * 1.2)
     np.testing.assert_array_equal(faces, F)
 
 
-def test_file_that_changes_between_planning_and_reading_is_refused(found, scans):
-    frames = found("scans")
+def test_file_that_changes_between_planning_and_reading_is_refused(frames_of, scans):
+    frames = frames_of("scans")
     (scans / "frame_2.off").write_text(off(3))
     with pytest.raises(SourceError, match=r"^frame_2\.off: the file changed while the run was under way; run again$"):
         surface(frames[2])
     surface(frames[1])
 
 
-def test_file_that_vanishes_between_planning_and_reading_is_refused(found, scans):
-    frames = found("scans")
+def test_file_that_vanishes_between_planning_and_reading_is_refused(frames_of, scans):
+    frames = frames_of("scans")
     (scans / "frame_2.off").unlink()
     with pytest.raises(MeshError, match=r"frame_2\.off: there is no such file"):
         surface(frames[2])
@@ -244,36 +244,36 @@ def test_bad_frames_that_leave_less_than_two_are_refused(files, scans):
 
 
 @PACKED
-def test_packed_frame_of_another_size_is_dropped(found, tmp_path, where, write):
+def test_packed_frame_of_another_size_is_dropped(frames_of, tmp_path, where, write):
     scales = [1, 1.1, 1000, 1.2, 1.1, 1]
     write(tmp_path / where, frames=6, vertices=np.concatenate([V * s for s in scales]))
-    frames = found(where)
+    frames = frames_of(where)
     assert list(frames) == [0, 1, 3, 4, 5]
     assert [bad.frame for bad in frames[1].dropped] == [2]
 
 
-def test_second_body_numbered_on_in_the_folder_is_refused_dropped_or_kept_as_wished(found, tmp_path):
+def test_second_body_numbered_on_in_the_folder_is_refused_dropped_or_kept_as_wished(frames_of, tmp_path):
     box = trimesh.creation.box((1, 2, 5))
     for t in range(16):
         heavier = 1.05 if t >= 10 else 1.0
         trimesh.Trimesh(box.vertices * heavier + [0.1 * t, 0, 0], box.faces).export(tmp_path / f"frame_{t:03d}.off")
     with pytest.raises(SourceError, match=r"^6 of 16 frames cannot be used .*: frames 10 to 15 show another body: "):
-        found(tmp_path)
-    kept = found(tmp_path, bad_share=0.4)
-    assert list(kept) == list(range(10))
-    assert [bad.frame for bad in kept[9].dropped] == list(range(10, 16))
-    assert len(found(tmp_path, other_body="keep")) == 16
+        frames_of(tmp_path)
+    first_body = frames_of(tmp_path, bad_share=0.4)
+    assert list(first_body) == list(range(10))
+    assert [bad.frame for bad in first_body[9].dropped] == list(range(10, 16))
+    assert len(frames_of(tmp_path, other_body="keep")) == 16
     with pytest.raises(SourceError, match="set source.on_bad_frame=drop"):
-        found(tmp_path, on_bad_frame="fail", bad_share=0.4)
+        frames_of(tmp_path, on_bad_frame="fail", bad_share=0.4)
 
 
 # ── all frames in one file ──────────────────────────────────────────────────────────────────────────────────────────
 
 
 @PACKED
-def test_packed_sequence_is_its_frames_with_rate_and_unit(found, tmp_path, where, write):
+def test_packed_sequence_is_its_frames_with_rate_and_unit(frames_of, tmp_path, where, write):
     write(tmp_path / where)
-    frames = found(where)
+    frames = frames_of(where)
     assert list(frames) == [0, 1, 2]
     assert {(s.fps, s.unit) for s in frames.values()} == {(25.0, "mm")}
     assert name(frames[2]) == f"{where}, frame 2"
@@ -284,27 +284,27 @@ def test_packed_sequence_is_its_frames_with_rate_and_unit(found, tmp_path, where
 
 
 @PACKED
-def test_packed_sequence_without_rate_and_unit_knows_none(found, tmp_path, where, write):
+def test_packed_sequence_without_rate_and_unit_knows_none(frames_of, tmp_path, where, write):
     write(tmp_path / where, fps=None, unit=None)
-    assert {(s.fps, s.unit) for s in found(where).values()} == {(None, None)}
+    assert {(s.fps, s.unit) for s in frames_of(where).values()} == {(None, None)}
 
 
 @PACKED
-def test_packed_frames_keep_their_identity_when_others_are_appended_or_changed(found, tmp_path, where, write):
+def test_packed_frames_keep_their_identity_when_others_are_appended_or_changed(frames_of, tmp_path, where, write):
     write(tmp_path / where)
-    before = {t: artifact_digest(s) for t, s in found(where).items()}
+    before = {t: artifact_digest(s) for t, s in frames_of(where).items()}
     path = tmp_path / where
     shutil.rmtree(path) if path.is_dir() else path.unlink()
     write(path, frames=4, vertices=np.concatenate([V, 1.9 * V, 1.2 * V, 1.3 * V]))
-    after = {t: artifact_digest(s) for t, s in found(where).items()}
+    after = {t: artifact_digest(s) for t, s in frames_of(where).items()}
     assert [t for t in before if before[t] == after[t]] == [0, 2]
     assert len(after) == 4
 
 
 @pytest.mark.parametrize(("where", "write"), [("a.npz", as_npz), ("a.zarr", as_zarr)])
-def test_packed_sequence_that_changes_between_planning_and_reading_is_refused(found, tmp_path, where, write):
+def test_packed_sequence_that_changes_between_planning_and_reading_is_refused(frames_of, tmp_path, where, write):
     write(tmp_path / where)
-    frames = found(where)
+    frames = frames_of(where)
     surface(frames[1])
     if where.endswith("zarr"):
         zarr.open_group(tmp_path / where)["vertices"][4:8] = 1.9 * V  # in place: only a chunk changes
@@ -315,25 +315,25 @@ def test_packed_sequence_that_changes_between_planning_and_reading_is_refused(fo
     surface(frames[0])
 
 
-def test_same_mesh_in_npz_and_zarr_is_the_same_but_for_how_it_is_read(found, tmp_path):
+def test_same_mesh_in_npz_and_zarr_is_the_same_but_for_how_it_is_read(frames_of, tmp_path):
     as_npz(tmp_path / "a.npz")
     as_zarr(tmp_path / "a.zarr")
-    assert [s.content for s in found("a.npz").values()] == [s.content for s in found("a.zarr").values()]
+    assert [s.content for s in frames_of("a.npz").values()] == [s.content for s in frames_of("a.zarr").values()]
 
 
 @pytest.mark.parametrize("unit", ["it's", 'say "mm"', "a\\b", "a\nb", "None", "µm"])
-def test_unit_is_told_as_it_is_written(found, tmp_path, unit):
+def test_unit_is_told_as_it_is_written(frames_of, tmp_path, unit):
     as_npz(tmp_path / "a.npz", unit=np.array(unit))
-    assert found("a.npz")[0].unit == unit
+    assert frames_of("a.npz")[0].unit == unit
 
 
-def test_damaged_zarr_is_refused_as_a_source_and_not_as_our_store(found, tmp_path):
+def test_damaged_zarr_is_refused_as_a_source_and_not_as_our_store(frames_of, tmp_path):
     as_zarr(tmp_path / "a.zarr")
     for chunk in (tmp_path / "a.zarr" / "vertices" / "c").rglob("*"):
         if chunk.is_file():
             chunk.write_bytes(b"x")
     with pytest.raises(SourceError, match=r"a\.zarr: not a readable zarr group"):
-        found("a.zarr")
+        frames_of("a.zarr")
 
 
 # ── refusals ────────────────────────────────────────────────────────────────────────────────────────────────────────
@@ -345,27 +345,27 @@ def test_no_input_says_what_to_give(files):
 
 
 @pytest.mark.parametrize("frames", ["", "1", "a:b", "1:2:3:4", "::0", "1.5:3"])
-def test_frames_that_are_no_range_are_refused(found, scans, frames):
+def test_frames_that_are_no_range_are_refused(frames_of, scans, frames):
     with pytest.raises(SourceError, match=r"write start:stop or start:stop:step, e\.g\. 10:60:2"):
-        found("scans", frames)
+        frames_of("scans", frames)
 
 
-def test_frames_backwards_or_beyond_are_refused(found, scans):
+def test_frames_backwards_or_beyond_are_refused(frames_of, scans):
     with pytest.raises(SourceError, match="the step must be positive; time runs forward"):
-        found("scans", "::-1")
+        frames_of("scans", "::-1")
     with pytest.raises(SourceError, match="selects none of the 4 frames of"):
-        found("scans", "11:")
+        frames_of("scans", "11:")
 
 
-def test_single_frame_is_refused_because_nothing_moves(found, scans):
+def test_single_frame_is_refused_because_nothing_moves(frames_of, scans):
     with pytest.raises(SourceError, match="^frames '1:2' selects a single frame; kinematics are seen in motion"):
-        found("scans", "1:2")
+        frames_of("scans", "1:2")
 
 
 @pytest.mark.parametrize("where", ["none.npz", "none.zarr", "none"])
-def test_missing_sequence_is_refused_by_name(found, tmp_path, where):
+def test_missing_sequence_is_refused_by_name(frames_of, tmp_path, where):
     with pytest.raises(SourceError, match=f"^{tmp_path / where}: there is no such "):
-        found(where)
+        frames_of(where)
 
 
 def test_source_that_is_told_by_hand_is_read_like_any_other(scans):
@@ -377,11 +377,11 @@ def test_takes_are_numbered_one_after_the_other(files, scans, tmp_path):
     shutil.copytree(scans, tmp_path / "other")
     (tmp_path / "other" / "frame_9.off").write_text(off(1.95))
     takes = [{"name": "a", "input": str(scans)}, {"name": "b-2", "input": str(tmp_path / "other")}]
-    found = source(SourceParams(takes=takes), files)
+    numbered = source(SourceParams(takes=takes), files)
     own = source(SourceParams(input=str(tmp_path / "other")), files)
-    assert list(found) == [*own, *(TAKE + t for t in own)]
-    assert [found[t].take for t in found] == ["a"] * len(own) + ["b-2"] * len(own)
-    assert [found[TAKE + t].content for t in own] == [own[t].content for t in own]
+    assert list(numbered) == [*own, *(TAKE + t for t in own)]
+    assert [numbered[t].take for t in numbered] == ["a"] * len(own) + ["b-2"] * len(own)
+    assert [numbered[TAKE + t].content for t in own] == [own[t].content for t in own]
 
 
 def test_the_same_frames_as_two_takes_are_refused(files, scans, tmp_path):

@@ -56,12 +56,12 @@ def files(tmp_path):
 def pipeline(tmp_path, place):
     """A run of the meshes with two workers; the store is shared with a run over the folder."""
 
-    def made(where=place.url, executor="threads", name="out", **blocks):
+    def pipeline_of(where=place.url, executor="threads", name="out", **blocks):
         compute = {"executor": executor, "workers": 2}
         shared = {"output": str(tmp_path / name), "store": str(tmp_path / "store"), "compute": compute}
         return Pipeline.of({**shared, "source": {"input": str(where)}, **blocks})
 
-    return made
+    return pipeline_of
 
 
 def contents(found):
@@ -104,10 +104,10 @@ def test_object_that_changes_or_goes_under_a_run_fails_its_frame_alone(pipeline,
     place.put("frame_2.off", off(1.3).encode())
     place.remove("frame_9.off")
     there._go(snapshot, Watch((account,)), None)
-    told = {failure["node"]: failure["message"] for failure in account.failures}
-    assert sorted(told) == ["mesh[frame=2]", "mesh[frame=9]"]
-    assert told["mesh[frame=2]"] == "frame_2.off: the file changed while the run was under way; run again"
-    assert told["mesh[frame=9]"].startswith(f"{place.url}/frame_9.off: there is no such object")
+    messages = {failure["node"]: failure["message"] for failure in account.failures}
+    assert sorted(messages) == ["mesh[frame=2]", "mesh[frame=9]"]
+    assert messages["mesh[frame=2]"] == "frame_2.off: the file changed while the run was under way; run again"
+    assert messages["mesh[frame=9]"].startswith(f"{place.url}/frame_9.off: there is no such object")
 
 
 def test_object_that_is_no_mesh_is_dropped_with_its_reason(place, files):
@@ -122,9 +122,9 @@ def test_one_npz_in_a_bucket_holds_all_frames(place, files, pipeline, tmp_path):
     offsets = {"vertex_offsets": np.arange(4) * len(V), "face_offsets": np.array([0, len(F)])}
     np.savez(tmp_path / "walk.npz", **arrays, **offsets, fps=25.0)
     place.put("packed/walk.npz", (tmp_path / "walk.npz").read_bytes())
-    found = frames(f"{place.url}/packed/walk.npz", files)
-    assert contents(found) == contents(frames(tmp_path / "walk.npz", files))
-    assert {s.fps for s in found.values()} == {25.0}
+    packed_frames = frames(f"{place.url}/packed/walk.npz", files)
+    assert contents(packed_frames) == contents(frames(tmp_path / "walk.npz", files))
+    assert {s.fps for s in packed_frames.values()} == {25.0}
     assert pipeline(f"{place.url}/packed/walk.npz").run(until=["mesh"])["nodes"]["ran"] == 3
 
 
@@ -147,9 +147,9 @@ def test_other_services_are_refused_in_words(files):
 
 
 def test_bucket_that_is_not_there_is_refused_in_words(service, files):
-    with pytest.raises(InputError, match="^input s3://no-such-bucket: cannot .*AWS_ENDPOINT_URL") as told:
+    with pytest.raises(InputError, match="^input s3://no-such-bucket: cannot .*AWS_ENDPOINT_URL") as refused:
         frames("s3://no-such-bucket/scans", files)
-    assert SECRET not in str(told.value)
+    assert SECRET not in str(refused.value)
 
 
 def test_credentials_are_neither_kept_nor_told(pipeline, place):
@@ -159,6 +159,6 @@ def test_credentials_are_neither_kept_nor_told(pipeline, place):
     listener = type("Heard", (), {"hear": staticmethod(heard.append)})
     summary = there.run(until=["mesh"], listeners=[listener])
     folder = there.config.output.parent
-    kept = b"".join(p.read_bytes() for at in ("out", "store") for p in (folder / at).rglob("*") if p.is_file())
-    assert place.url.encode() in kept
-    assert SECRET.encode() not in kept + json.dumps([summary, heard], default=str).encode()
+    files_written = b"".join(p.read_bytes() for at in ("out", "store") for p in (folder / at).rglob("*") if p.is_file())
+    assert place.url.encode() in files_written
+    assert SECRET.encode() not in files_written + json.dumps([summary, heard], default=str).encode()

@@ -13,17 +13,17 @@ from kinetree.tasks.numerics.kernel_list import compile_all, lines, text_of, typ
 LEXICOGRAPHIC = "kinetree.tasks.numerics.geometry.orientation.lexicographic"
 
 
-def seen(*values):
+def listed(*values):
     return [numba.typeof(value) for value in values]
 
 
 @pytest.mark.parametrize(
     "kind",
     [
-        *seen(1.5, 3, True, np.uint64(3), (1, 2, 3), (np.zeros(2, np.uint32), 1.0)),
-        *seen(np.zeros((2, 3)), np.zeros((2, 3), order="F"), np.zeros((4, 6))[::2, ::2], np.zeros(3, bool)),
-        *seen(np.frombuffer(bytes(16))),
-        *seen(np.zeros(2, np.dtype([("target", np.uint32), ("length", np.float32)]))),
+        *listed(1.5, 3, True, np.uint64(3), (1, 2, 3), (np.zeros(2, np.uint32), 1.0)),
+        *listed(np.zeros((2, 3)), np.zeros((2, 3), order="F"), np.zeros((4, 6))[::2, ::2], np.zeros(3, bool)),
+        *listed(np.frombuffer(bytes(16))),
+        *listed(np.zeros(2, np.dtype([("target", np.uint32), ("length", np.float32)]))),
         numba.types.BaseTuple.from_types([numba.float64[:, ::1]] * len(Cones._fields), Cones),
     ],
     ids=str,

@@ -16,26 +16,26 @@ def test_points_of_the_surface_are_their_own_nearest_points(rng):
     V, F = sphere(3)
     face = rng.integers(len(F), size=200)
     P = np.einsum("pk,pkx->px", rng.dirichlet([1, 1, 1], size=200), V[F[face]])
-    found = projected(P, V, F)
-    assert found.distance.max() < 1e-12
-    np.testing.assert_allclose(points(found, V, F), P, atol=1e-12)
+    nearest = projected(P, V, F)
+    assert nearest.distance.max() < 1e-12
+    np.testing.assert_allclose(points(nearest, V, F), P, atol=1e-12)
 
 
 def test_tree_that_is_asked_again_answers_as_one_made_anew(rng):
     V, F = sphere(2)
     tree = SurfaceTree.of(V, F)
     for P in (rng.normal(size=(40, 3)), rng.normal(size=(7, 3)) * 5):
-        for kept, anew in zip(tree.nearest(P), projected(P, V, F), strict=True):
-            np.testing.assert_array_equal(kept, anew)
+        for by_tree, anew in zip(tree.nearest(P), projected(P, V, F), strict=True):
+            np.testing.assert_array_equal(by_tree, anew)
 
 
 def test_shares_are_a_partition_of_unity_and_reach_the_stated_distance(rng):
     V, F = sphere(2)
     P = rng.normal(size=(300, 3))
-    found = projected(P, V, F)
-    assert found.share.min() > -1e-12
-    np.testing.assert_allclose(found.share.sum(axis=1), 1.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(P - points(found, V, F), axis=1), found.distance, atol=1e-12)
+    nearest = projected(P, V, F)
+    assert nearest.share.min() > -1e-12
+    np.testing.assert_allclose(nearest.share.sum(axis=1), 1.0, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(P - points(nearest, V, F), axis=1), nearest.distance, atol=1e-12)
 
 
 def test_outside_a_box_the_distance_is_that_of_the_box(rng):
@@ -65,8 +65,8 @@ def test_every_corner_side_and_the_inside_of_a_triangle_can_be_nearest(point, sh
 
 def test_a_triangle_without_area_is_its_longest_side():
     V, F = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]), np.array([[0, 1, 2]])
-    found = projected(np.array([[1.5, 1.0, 0.0], [3.0, 0.0, 0.0]]), V, F)
-    np.testing.assert_allclose(found.distance, [1.0, 1.0], atol=1e-12)
+    nearest = projected(np.array([[1.5, 1.0, 0.0], [3.0, 0.0, 0.0]]), V, F)
+    np.testing.assert_allclose(nearest.distance, [1.0, 1.0], atol=1e-12)
 
 
 def test_unused_vertices_are_no_part_of_the_surface():
@@ -107,9 +107,9 @@ def test_no_face_is_nearer_however_long_and_thin_faces_are(rng, faces, thin):
     F = np.arange(3 * faces).reshape(-1, 3)
     V[F[:, 2]] = V[F[:, 0]] + rng.uniform(size=(faces, 1)) * (V[F[:, 1]] - V[F[:, 0]]) + thin * V[F[:, 2]]
     P = rng.normal(size=(200, 3)) * 2.0
-    found = projected(P, V, F)
-    np.testing.assert_allclose(found.distance, nearest_of_all(P, V, F), atol=1e-9)
-    np.testing.assert_allclose(np.linalg.norm(P - points(found, V, F), axis=1), found.distance, atol=1e-9)
+    nearest = projected(P, V, F)
+    np.testing.assert_allclose(nearest.distance, nearest_of_all(P, V, F), atol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(P - points(nearest, V, F), axis=1), nearest.distance, atol=1e-9)
 
 
 def test_another_program_finds_the_same_points_of_a_body(rng):
@@ -118,9 +118,9 @@ def test_another_program_finds_the_same_points_of_a_body(rng):
     V = V + rng.normal(scale=0.1, size=V.shape)
     P = V[rng.integers(len(V), size=500)] + rng.normal(scale=0.5, size=(500, 3))
     square, _, there = igl.point_mesh_squared_distance(P, V, F)
-    found = projected(P, V, F)
-    np.testing.assert_allclose(found.distance, np.sqrt(square), atol=1e-9)
-    np.testing.assert_allclose(points(found, V, F), there, atol=1e-7)
+    nearest = projected(P, V, F)
+    np.testing.assert_allclose(nearest.distance, np.sqrt(square), atol=1e-9)
+    np.testing.assert_allclose(points(nearest, V, F), there, atol=1e-7)
 
 
 def test_of_faces_equally_near_the_first_is_taken_whatever_else_is_asked(rng):

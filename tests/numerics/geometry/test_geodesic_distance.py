@@ -22,10 +22,10 @@ Ints = npt.NDArray[np.int64]
 def relative_error(V: Floats, F: Ints, source: Ints, exact: Floats) -> Floats:
     """Signed, at vertices more than four mean edges from their source: nearer, one edge's worth is all there is."""
     surface = Surface.of(V, F)
-    found = geodesic_distance(surface, source)
+    distance = geodesic_distance(surface, source)
     far = exact > 4 * surface.edge
     assert far.any()
-    return (found - exact)[far] / exact[far]
+    return (distance - exact)[far] / exact[far]
 
 
 def straight(V: Floats, source: Ints) -> Floats:

@@ -99,5 +99,5 @@ def test_a_vertex_with_hundreds_of_edges_keeps_them_all(around: int) -> None:
     j = (i + 1) % around
     faces = (i, j, np.full(around, 2 * around)), (i, i + around, j + around), (i, j + around, j)
     F = np.concatenate([np.stack(face, axis=1) for face in faces])
-    found = geodesic_distance(Surface.of(V, F), [2 * around])[0]
-    assert np.allclose(found[:around], np.sqrt(2), rtol=1e-4)
+    distance = geodesic_distance(Surface.of(V, F), [2 * around])[0]
+    assert np.allclose(distance[:around], np.sqrt(2), rtol=1e-4)

@@ -32,5 +32,5 @@ def test_lines_that_leave_the_ball_cross_it_and_chords_within_do_not() -> None:
 
 
 def test_depth_is_the_distance_to_the_surface_behind() -> None:
-    found = depth_along(np.array([[0.97, 0.01, 0.02]]), np.array([[-1.0, 0.0, 0.0]]), V, F, 1e-6)
-    assert found[0] == pytest.approx(1.97, abs=0.02)
+    depth = depth_along(np.array([[0.97, 0.01, 0.02]]), np.array([[-1.0, 0.0, 0.0]]), V, F, 1e-6)
+    assert depth[0] == pytest.approx(1.97, abs=0.02)

@@ -75,11 +75,11 @@ def test_what_moves_rigidly_leaves_nothing_and_its_motion_is_found():
     V, x, R = cloud()
     M = moments(V, x, np.ones(x.shape[:2]), np.zeros(60, np.int64), 1)
     for f in range(3):
-        found, t = np.empty((3, 3)), np.empty(3)
-        motion(M[0, f], found, t)
+        rotation, t = np.empty((3, 3)), np.empty(3)
+        motion(M[0, f], rotation, t)
         assert residual(M[0, f]) < 1e-9
-        np.testing.assert_allclose(found, R[f], atol=1e-9)
-        np.testing.assert_allclose(V @ found.T + t, x[f], atol=1e-9)
+        np.testing.assert_allclose(rotation, R[f], atol=1e-9)
+        np.testing.assert_allclose(V @ rotation.T + t, x[f], atol=1e-9)
 
 
 def test_the_residual_is_that_of_the_best_motion_and_no_other_leaves_less():
@@ -89,12 +89,12 @@ def test_the_residual_is_that_of_the_best_motion_and_no_other_leaves_less():
     for f in range(3):
         R, t = np.empty((3, 3)), np.empty(3)
         motion(M[0, f], R, t)
-        left = (weight[f] * ((V @ R.T + t - x[f]) ** 2).sum(axis=1)).sum()
-        np.testing.assert_allclose(residual(M[0, f]), left, rtol=1e-9)
+        squared = (weight[f] * ((V @ R.T + t - x[f]) ** 2).sum(axis=1)).sum()
+        np.testing.assert_allclose(residual(M[0, f]), squared, rtol=1e-9)
         for axis in np.eye(3):
             other = rotation(tuple(axis), 0.02) @ R
             shift = (weight[f][:, None] * (x[f] - V @ other.T)).sum(axis=0) / weight[f].sum()
-            assert (weight[f] * ((V @ other.T + shift - x[f]) ** 2).sum(axis=1)).sum() > left
+            assert (weight[f] * ((V @ other.T + shift - x[f]) ** 2).sum(axis=1)).sum() > squared
 
 
 def test_sums_of_two_sets_are_those_of_their_union():

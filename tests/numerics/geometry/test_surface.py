@@ -51,6 +51,6 @@ def test_every_edge_is_in_the_rings_of_both_its_ends() -> None:
     for V, F in (shapes.sphere(2), shapes.open_cylinder(12, 5), shapes.three_pages(4, 6)[:2]):
         surface = Surface.of(V, F)
         owner = np.repeat(np.arange(len(V)), np.diff(surface.ring_start.astype(np.int64)))
-        found = {(int(surface.order[a]), int(surface.order[b])) for a, b in zip(owner, surface.ring >> 1, strict=True)}
+        pairs = {(int(surface.order[a]), int(surface.order[b])) for a, b in zip(owner, surface.ring >> 1, strict=True)}
         sides = F[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        assert found == {(int(a), int(b)) for a, b in sides} | {(int(b), int(a)) for a, b in sides}
+        assert pairs == {(int(a), int(b)) for a, b in sides} | {(int(b), int(a)) for a, b in sides}

@@ -22,12 +22,12 @@ def seen_from(V: Floats, F: npt.NDArray[np.int64], vertex: int, limit: float) ->
     a, b = P[head] - P[tail], P[s.apex] - P[tail]
     angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
     shape, _ = visibility.face_shapes(rings[0], rings[1], rings[2], angle, rings[5])
-    found = np.empty(1000, np.uint32), *(np.empty(1000, np.float32) for _ in range(3))
-    seen, v, none = np.zeros(len(V), np.uint32), np.uint64(np.flatnonzero(s.order == vertex)[0]), np.uint64(0)
-    k = np.uint64(visibility.append_edges(v, rings, shape, seen, none, found))
+    links = np.empty(1000, np.uint32), *(np.empty(1000, np.float32) for _ in range(3))
+    marks, v, none = np.zeros(len(V), np.uint32), np.uint64(np.flatnonzero(s.order == vertex)[0]), np.uint64(0)
+    k = np.uint64(visibility.append_edges(v, rings, shape, marks, none, links))
     room = np.empty((visibility.MAX_WINDOWS, 8)), np.empty(visibility.MAX_WINDOWS, np.uint32)
-    k = int(visibility.append_visible(v, limit**2, np.sin(NARROWEST_WINDOW), rings, shape, seen, none, k, found, *room))
-    return s.order[found[0][:k]], found[1][:k].astype(float), found[2][:k].astype(float)
+    k = int(visibility.append_visible(v, limit**2, np.sin(NARROWEST_WINDOW), rings, shape, marks, none, k, links, *room))
+    return s.order[links[0][:k]], links[1][:k].astype(float), links[2][:k].astype(float)
 
 
 def test_the_three_half_edges_of_a_face_follow_each_other() -> None:
@@ -64,5 +64,5 @@ def test_nothing_is_seen_beyond_the_limit_but_the_ends_of_edges() -> None:
 
 def test_directions_are_those_of_the_arctangent() -> None:
     theta = np.linspace(0, np.pi, 1001)
-    found = [visibility.direction(3 * np.cos(t), 3 * np.sin(t)) for t in theta]
-    assert np.abs(found - theta).max() < 1e-3
+    angles = [visibility.direction(3 * np.cos(t), 3 * np.sin(t)) for t in theta]
+    assert np.abs(angles - theta).max() < 1e-3

@@ -11,7 +11,7 @@ KINDS = {"f4": 5126, "u1": 5121, "u2": 5123, "u4": 5125, "i2": 5122}
 WIDTHS = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
-class Made:
+class GlbDraft:
     """A GLB with one tetrahedron, to which a test adds what it is about."""
 
     def __init__(self):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from numerics.input.animated_glbs import TENTHS, Made
+from numerics.input.animated_glbs import TENTHS, GlbDraft
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.input.animated import SUFFIXES, read_animated
@@ -10,10 +10,12 @@ from kinetree.tasks.numerics.input.animated import SUFFIXES, read_animated
 
 def test_same_file_is_read_once_and_a_changed_one_anew(tmp_path):
     path = tmp_path / "walk.GLB"
-    path.write_bytes(Made().moves("translation", TENTHS, np.outer(TENTHS, [1, 0, 0])).raw())
+    path.write_bytes(GlbDraft().moves("translation", TENTHS, np.outer(TENTHS, [1, 0, 0])).raw())
     frames = read_animated(path)
     assert read_animated(path) is frames
-    path.write_bytes(Made().moves("translation", TENTHS, np.outer(TENTHS, [1, 0, 0])).moves("scale", [0], [[1, 1, 1]]).raw())
+    path.write_bytes(
+        GlbDraft().moves("translation", TENTHS, np.outer(TENTHS, [1, 0, 0])).moves("scale", [0], [[1, 1, 1]]).raw()
+    )
     assert read_animated(path) is not frames
 
 

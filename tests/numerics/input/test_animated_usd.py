@@ -20,19 +20,19 @@ COUNTS, CORNERS = [4, 3, 3, 3, 3], [0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0,
 @pytest.fixture
 def stage(tmp_path):
     """A pyramid whose top rises by 1 a frame while all of it moves along x."""
-    made = Usd.Stage.CreateNew(str(tmp_path / "pyramid.usda"))
-    made.SetStartTimeCode(1)
-    made.SetEndTimeCode(4)
-    made.SetTimeCodesPerSecond(50)
-    UsdGeom.SetStageMetersPerUnit(made, 0.01)
-    moved = UsdGeom.Xform.Define(made, "/moved").AddTranslateOp()
-    mesh = UsdGeom.Mesh.Define(made, "/moved/pyramid")
+    created = Usd.Stage.CreateNew(str(tmp_path / "pyramid.usda"))
+    created.SetStartTimeCode(1)
+    created.SetEndTimeCode(4)
+    created.SetTimeCodesPerSecond(50)
+    UsdGeom.SetStageMetersPerUnit(created, 0.01)
+    moved = UsdGeom.Xform.Define(created, "/moved").AddTranslateOp()
+    mesh = UsdGeom.Mesh.Define(created, "/moved/pyramid")
     mesh.CreateFaceVertexCountsAttr(COUNTS)
     mesh.CreateFaceVertexIndicesAttr(CORNERS)
     for t in range(1, 5):
         moved.Set((t, 0, 0), t)
         mesh.CreatePointsAttr().Set([tuple(map(float, v)) for v in V + np.float32([0, 0, t]) * (V[:, 2:] > 0)], t)
-    return made
+    return created
 
 
 def read(stage):

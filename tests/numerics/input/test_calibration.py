@@ -47,16 +47,16 @@ def read(tmp_path):
     ],
 )
 def test_rate_and_unit_that_are_none_are_refused(read, key, value, words):
-    held = json.loads(written_calibration(calibration()))
+    document = json.loads(written_calibration(calibration()))
     with pytest.raises(SourceError, match=rf"calibration\.json: .*{words}"):
-        read({**held, key: value})
+        read({**document, key: value})
 
 
 def test_a_size_that_no_image_has_is_refused_with_its_camera(read):
-    held = json.loads(written_calibration(calibration()))
-    held["cameras"][3]["size"] = [-5, 512]
+    document = json.loads(written_calibration(calibration()))
+    document["cameras"][3]["size"] = [-5, 512]
     with pytest.raises(SourceError, match=r"camera cam_03: size is \[-5, 512\]; width and height"):
-        read(held)
+        read(document)
 
 
 def test_what_is_written_is_read_back(read):
@@ -70,17 +70,17 @@ def test_matrices_rotations_and_rotation_vectors_say_the_same(read):
 
     K, R, t = parted(RING.P[3])
     for turn in (R.tolist(), Rotation.from_matrix(R).as_rotvec().tolist()):
-        found = read({"cameras": [{"K": K.tolist(), "R": turn, "t": t.tolist(), "size": [200, 160]}]})
-        np.testing.assert_allclose(found.P[0], RING.P[3], atol=1e-9)
-        assert (found.names, found.sizes, found.unit) == (("cam_00",), ((160, 200),), None)
+        calibrated = read({"cameras": [{"K": K.tolist(), "R": turn, "t": t.tolist(), "size": [200, 160]}]})
+        np.testing.assert_allclose(calibrated.P[0], RING.P[3], atol=1e-9)
+        assert (calibrated.names, calibrated.sizes, calibrated.unit) == (("cam_00",), ((160, 200),), None)
 
 
 def test_npz_of_a_synthetic_sequence_is_read(tmp_path):
     np.savez(tmp_path / "cameras.npz", P=RING.P, size=RING.size)
-    found = read_calibration(calibration_files(tmp_path))
-    np.testing.assert_array_equal(found.P, RING.P)
-    assert found.names == tuple(NAMES)
-    assert set(found.sizes) == {(160, 200)}
+    calibrated = read_calibration(calibration_files(tmp_path))
+    np.testing.assert_array_equal(calibrated.P, RING.P)
+    assert calibrated.names == tuple(NAMES)
+    assert set(calibrated.sizes) == {(160, 200)}
 
 
 def test_opencv_yaml_in_two_files_is_read(tmp_path):
@@ -91,9 +91,9 @@ def test_opencv_yaml_in_two_files_is_read(tmp_path):
         extri += f"Rot_{name}: {matrix(R)}T_{name}: {matrix(t[:, None])}"
     (tmp_path / "intri.yml").write_text(intri)
     (tmp_path / "extri.yml").write_text(extri)
-    found = read_calibration(calibration_files(tmp_path))
-    assert (found.names, found.sizes) == (("a", "b"), ((160, 200), (160, 200)))
-    np.testing.assert_allclose(found.P, RING.P[:2], atol=1e-9)
+    calibrated = read_calibration(calibration_files(tmp_path))
+    assert (calibrated.names, calibrated.sizes) == (("a", "b"), ((160, 200), (160, 200)))
+    np.testing.assert_allclose(calibrated.P, RING.P[:2], atol=1e-9)
 
 
 def test_folder_without_calibration_has_none(tmp_path):

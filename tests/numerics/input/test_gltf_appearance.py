@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from numerics.input.animated_glbs import F, Made
+from numerics.input.animated_glbs import F, GlbDraft
 from PIL import Image
 from shapes import sphere
 from textured import png
@@ -34,43 +34,43 @@ def test_scene_of_textured_meshes_one_of_them_mirrored_is_read_in_the_order_of_i
     scene.add_geometry(textured(uv[1], "blue", (0, 0, 255)), node_name="b", geom_name="b", transform=mirror)
     raw = scene.export(file_type="glb")
     X, G = mesh_of(raw, "scene", ".glb")
-    found = glb_appearance(raw, G, moves=False)
-    np.testing.assert_array_equal(found.faces, G)
-    held = np.concatenate([uv[int(X[block].mean() > 0.5)] for block in np.split(np.arange(len(X)), 2)])
-    np.testing.assert_allclose(found.uv * (1, -1) + (0, 1), held[G], atol=1e-6)
-    first = [found.materials[k].name for k in (found.material[0], found.material[-1])]
+    look = glb_appearance(raw, G, moves=False)
+    np.testing.assert_array_equal(look.faces, G)
+    coordinates = np.concatenate([uv[int(X[block].mean() > 0.5)] for block in np.split(np.arange(len(X)), 2)])
+    np.testing.assert_allclose(look.uv * (1, -1) + (0, 1), coordinates[G], atol=1e-6)
+    first = [look.materials[k].name for k in (look.material[0], look.material[-1])]
     assert first == (["red", "blue"] if X[: len(V), 0].max() < 2 else ["blue", "red"])
-    assert [found.pictures[found.materials[k].picture].media for k in (1, 2)] == ["image/png"] * 2
+    assert [look.pictures[look.materials[k].picture].media for k in (1, 2)] == ["image/png"] * 2
 
 
 def test_moving_mesh_has_its_colours_material_and_picture():
-    made = Made().moves("translation", [0, 1, 2], [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    glb = GlbDraft().moves("translation", [0, 1, 2], [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
     colour = np.float32([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1], [1, 1, 1, 1]])
-    made.primitive["attributes"]["COLOR_0"] = made.add(colour)
-    made.document["images"] = [{"bufferView": made.view(png()), "mimeType": "image/png"}]
-    made.document["textures"] = [{"source": 0}]
+    glb.primitive["attributes"]["COLOR_0"] = glb.add(colour)
+    glb.document["images"] = [{"bufferView": glb.view(png()), "mimeType": "image/png"}]
+    glb.document["textures"] = [{"source": 0}]
     pbr = {"baseColorFactor": [0.5, 1, 1, 1], "baseColorTexture": {"index": 0}}
-    made.document["materials"] = [{"name": "skin", "pbrMetallicRoughness": pbr}]
-    made.primitive["material"] = 0
-    _, G = AnimatedGlb(made.raw(), "made").mesh(1)
-    found = glb_appearance(made.raw(), G, moves=True)
-    np.testing.assert_array_equal(found.faces, G)
-    np.testing.assert_allclose(found.colour, colour[G, :3])
-    assert found.pictures == (Picture(png(), "image/png"),)
-    assert found.materials[found.material[0]] == ("skin", (0.5, 1, 1, 1), 0)
+    glb.document["materials"] = [{"name": "skin", "pbrMetallicRoughness": pbr}]
+    glb.primitive["material"] = 0
+    _, G = AnimatedGlb(glb.raw(), "made").mesh(1)
+    look = glb_appearance(glb.raw(), G, moves=True)
+    np.testing.assert_array_equal(look.faces, G)
+    np.testing.assert_allclose(look.colour, colour[G, :3])
+    assert look.pictures == (Picture(png(), "image/png"),)
+    assert look.materials[look.material[0]] == ("skin", (0.5, 1, 1, 1), 0)
 
 
 def test_picture_outside_the_file_is_not_opened_and_said():
-    made = Made()
-    made.document |= {"images": [{"uri": "../skin.png", "name": "skin"}], "textures": [{"source": 0}]}
-    made.document["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
-    made.primitive["material"] = 0
-    found = glb_appearance(made.raw(), F, moves=False)
-    assert found.missing == ("picture skin: lies outside the file",)
-    assert found.materials[1].picture is None
+    glb = GlbDraft()
+    glb.document |= {"images": [{"uri": "../skin.png", "name": "skin"}], "textures": [{"source": 0}]}
+    glb.document["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
+    glb.primitive["material"] = 0
+    look = glb_appearance(glb.raw(), F, moves=False)
+    assert look.missing == ("picture skin: lies outside the file",)
+    assert look.materials[1].picture is None
 
 
 def test_mesh_without_appearance_has_none_and_another_mesh_is_refused():
-    assert glb_appearance(Made().raw(), F, moves=False) is None
+    assert glb_appearance(GlbDraft().raw(), F, moves=False) is None
     with pytest.raises(SourceError, match="shows other faces"):
-        glb_appearance(Made().raw(), F[1:], moves=False)
+        glb_appearance(GlbDraft().raw(), F[1:], moves=False)

@@ -10,12 +10,12 @@ ROWS, COLUMNS = np.mgrid[:120, :150]
 DISC = np.hypot(ROWS - 61.3, COLUMNS - 70.8) < 40.0
 
 
-def placed(found, shape=DISC.shape):
+def placed(distance, shape=DISC.shape):
     """The distances back in the image, NaN where nothing was kept."""
     whole = np.full(shape, np.nan)
-    rows, columns = found.values.shape
-    column, row = found.corner
-    whole[max(row, 0) : row + rows, max(column, 0) : column + columns] = found.values[max(-row, 0) :, max(-column, 0) :][
+    rows, columns = distance.values.shape
+    column, row = distance.corner
+    whole[max(row, 0) : row + rows, max(column, 0) : column + columns] = distance.values[max(-row, 0) :, max(-column, 0) :][
         : shape[0] - max(row, 0), : shape[1] - max(column, 0)
     ]
     return whole
@@ -48,15 +48,15 @@ def test_a_mask_at_the_border_of_its_image_is_cut_there_and_has_no_outline_there
     limits = [COLUMNS < 50, ROWS < 50, COLUMNS > 100, ROWS > 100]
     inside = limits[side] & (np.abs(ROWS - 60) < 50 if side % 2 == 0 else np.abs(COLUMNS - 75) < 50)
     assert [n for n, cut in enumerate(cut_sides(inside)) if cut] == [side]
-    found = mask_distance(inside, 5, 0.0)
+    distance = mask_distance(inside, 5, 0.0)
     middle = [(60, 0), (0, 75), (60, 149), (119, 75)][side]
-    assert placed(found)[middle] == 5.0
-    assert found.cut[side]
+    assert placed(distance)[middle] == 5.0
+    assert distance.cut[side]
 
 
 def test_a_mask_near_the_border_that_does_not_touch_it_is_not_cut():
     inside = (COLUMNS > 0) & (COLUMNS < 30) & (ROWS > 40) & (ROWS < 80)
-    found = mask_distance(inside, 5, 0.0)
-    assert not any(found.cut)
-    assert found.corner[0] < 0
-    assert found.values[:, 0].max() == -5.0
+    distance = mask_distance(inside, 5, 0.0)
+    assert not any(distance.cut)
+    assert distance.corner[0] < 0
+    assert distance.values[:, 0].max() == -5.0

@@ -17,9 +17,9 @@ def test_what_gltf_holds_is_kept_to_the_byte(form, media):
 def test_other_pictures_become_png_with_the_same_pixels(form):
     from io import BytesIO
 
-    made = picture(png(form=form))
-    assert made.media == "image/png"
-    with Image.open(BytesIO(made.raw)) as image:
+    converted = picture(png(form=form))
+    assert converted.media == "image/png"
+    with Image.open(BytesIO(converted.raw)) as image:
         assert image.getpixel((0, 0)) == (200, 30, 30)
 
 

@@ -38,25 +38,25 @@ def read(raw, suffix, files=FILES):
 def test_obj_has_the_coordinates_of_every_corner_from_the_upper_left(copies):
     V, F = sphere(2)
     uv = corner_uv(V, F)
-    found = read(obj(V, F, uv, copies=copies).encode(), ".obj")
-    np.testing.assert_allclose(found.uv, uv * (1, -1) + (0, 1), atol=1e-12)
-    assert [m.picture for m in found.materials] == [None, 0]
-    assert (found.material == 1).all()
-    assert found.pictures[0].raw == png()
-    assert found.materials[1].colour == (1, 1, 1, 1)  # not darkened under its picture
+    look = read(obj(V, F, uv, copies=copies).encode(), ".obj")
+    np.testing.assert_allclose(look.uv, uv * (1, -1) + (0, 1), atol=1e-12)
+    assert [m.picture for m in look.materials] == [None, 0]
+    assert (look.material == 1).all()
+    assert look.pictures[0].raw == png()
+    assert look.materials[1].colour == (1, 1, 1, 1)  # not darkened under its picture
 
 
 def test_obj_with_polygons_materials_colours_and_counts_from_the_end():
-    found = read(QUADS, ".obj", {"two.mtl": TWO})
+    look = read(QUADS, ".obj", {"two.mtl": TWO})
     _, F = mesh_of(QUADS, "frame", ".obj")
     expected = {0: (0, 1), 1: (1, 1), 2: (1, 0), 3: (0, 0)}
-    for corner, uv, material in zip(F.ravel(), found.uv.reshape(-1, 2), np.repeat(found.material, 3), strict=True):
+    for corner, uv, material in zip(F.ravel(), look.uv.reshape(-1, 2), np.repeat(look.material, 3), strict=True):
         if material == 1:
             np.testing.assert_allclose(uv, expected[corner])
-    assert sorted(found.material) == [1, 1, 2]
-    assert [m.colour for m in found.materials] == [(1, 1, 1, 1), (0.25, 0.5, 0.75, 1), (1, 1, 1, 1)]
-    assert found.missing == ("gone.png is not there",)
-    np.testing.assert_allclose(found.colour[F == 3], [[0.21404114] * 3] * (F == 3).sum(), atol=1e-7)  # sRGB 0.5
+    assert sorted(look.material) == [1, 1, 2]
+    assert [m.colour for m in look.materials] == [(1, 1, 1, 1), (0.25, 0.5, 0.75, 1), (1, 1, 1, 1)]
+    assert look.missing == ("gone.png is not there",)
+    np.testing.assert_allclose(look.colour[F == 3], [[0.21404114] * 3] * (F == 3).sum(), atol=1e-7)  # sRGB 0.5
 
 
 def test_obj_without_any_has_none():
@@ -70,11 +70,11 @@ def test_ply_has_the_colours_of_vertices_in_linear_light(encoding):
     V, F = sphere(1)
     rgb = np.random.default_rng(0).integers(0, 256, (len(V), 3)).astype(np.uint8)
     raw = trimesh.Trimesh(V, F, vertex_colors=rgb, process=False).export(file_type="ply", encoding=encoding)
-    found = read(raw, ".ply")
+    look = read(raw, ".ply")
     c = rgb / 255
     linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    np.testing.assert_allclose(found.colour, linear[F], atol=1e-12)
-    assert found.uv is None
+    np.testing.assert_allclose(look.colour, linear[F], atol=1e-12)
+    assert look.uv is None
 
 
 @pytest.mark.parametrize("way", ["corners", "vertices"])
@@ -91,9 +91,9 @@ def test_ply_has_coordinates_of_corners_or_of_vertices_and_the_texture_that_it_n
     text = [" ".join(map(repr, map(float, row))) for row in rows]
     for face, own in zip(F, uv, strict=True):
         text.append("3 " + " ".join(map(str, face)) + (" 6 " + " ".join(map(str, own.ravel())) if way == "corners" else ""))
-    found = read("\n".join([*head, "end_header", *text, ""]).encode(), ".ply")
-    np.testing.assert_allclose(found.uv, at * (1, -1) + (0, 1), atol=1e-6)
-    assert found.pictures[0].raw == png()
+    look = read("\n".join([*head, "end_header", *text, ""]).encode(), ".ply")
+    np.testing.assert_allclose(look.uv, at * (1, -1) + (0, 1), atol=1e-6)
+    assert look.pictures[0].raw == png()
 
 
 def test_draco_has_the_colours_of_vertices():
@@ -102,11 +102,11 @@ def test_draco_has_the_colours_of_vertices():
     rgb = np.full((len(V), 3), 255, np.uint8)
     rgb[V[:, 0] > 0] = (255, 0, 0)
     raw = draco.encode(V, F, colors=rgb)
-    found = read(raw, ".drc")
+    look = read(raw, ".drc")
     V, F = mesh_of(raw, "frame", ".drc")
     expected = np.where(V[:, :1] > 1e-3, (1.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     clear = np.abs(V[:, 0]) > 1e-2
-    np.testing.assert_allclose(found.colour[clear[F]], expected[F][clear[F]])
+    np.testing.assert_allclose(look.colour[clear[F]], expected[F][clear[F]])
 
 
 def test_faces_that_are_not_those_of_the_surface_are_refused():
@@ -129,7 +129,7 @@ def test_more_materials_than_a_capture_has_are_refused():
 
 def test_pictures_that_are_too_large_together_are_left_out(monkeypatch):
     monkeypatch.setattr(module, "MOST_PICTURE_BYTES", len(png()))
-    told = b"newmtl first\nmap_Kd skin.png\nnewmtl second\nmap_Kd -bm 1 other.png\n"
-    found = read(QUADS, ".obj", {"two.mtl": told, "skin.png": png(), "other.png": png()})
-    assert [m.picture for m in found.materials] == [None, 0, None]
-    assert found.missing == (f"other.png: with it all pictures have more than {len(png())} bytes",)
+    library = b"newmtl first\nmap_Kd skin.png\nnewmtl second\nmap_Kd -bm 1 other.png\n"
+    look = read(QUADS, ".obj", {"two.mtl": library, "skin.png": png(), "other.png": png()})
+    assert [m.picture for m in look.materials] == [None, 0, None]
+    assert look.missing == (f"other.png: with it all pictures have more than {len(png())} bytes",)

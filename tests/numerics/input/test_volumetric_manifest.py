@@ -24,20 +24,20 @@ def folder(tmp_path):
     return tmp_path
 
 
-def read(folder, held, wanted=""):
+def read(folder, document, wanted=""):
     path = folder / "manifest.json"
-    path.write_text(json.dumps(held))
+    path.write_text(json.dumps(document))
     return read_manifest(path, wanted)
 
 
-def refusal(folder, held, wanted=""):
+def refusal(folder, document, wanted=""):
     with pytest.raises(SourceError) as refused:
-        read(folder, held, wanted)
+        read(folder, document, wanted)
     return str(refused.value)
 
 
 @pytest.mark.parametrize(
-    "held",
+    "document",
     [
         target(),
         target("[target]/[index].drc"),
@@ -46,25 +46,25 @@ def refusal(folder, held, wanted=""):
         {"Version": "v2", "DRCURLPattern": "drc/#####.drc", "GeometryFrameRate": 25, "GeometryFrameCount": 3},
     ],
 )
-def test_every_form_of_a_manifest_names_its_frames(folder, held):
-    found = read(folder, held)
-    assert [path.name for path in found.files] == ["00001.drc", "00002.drc", "00010.drc"]
-    assert (found.numbers, found.holds, found.length, found.fps) == ((1, 2, 10), "file", 1, 25.0)
+def test_every_form_of_a_manifest_names_its_frames(folder, document):
+    manifest = read(folder, document)
+    assert [path.name for path in manifest.files] == ["00001.drc", "00002.drc", "00010.drc"]
+    assert (manifest.numbers, manifest.holds, manifest.length, manifest.fps) == ((1, 2, 10), "file", 1, 25.0)
     assert manifest_in(folder) == folder / "manifest.json"
 
 
 def test_finest_target_is_read_unless_one_is_named(folder):
-    held = target("[target]/[index][ext]")
-    held["geometry"]["targets"]["small"] = {**DRACO, "frameRate": 12, "frameCount": 1}
+    document = target("[target]/[index][ext]")
+    document["geometry"]["targets"]["small"] = {**DRACO, "frameRate": 12, "frameCount": 1}
     (folder / "small").mkdir()
     (folder / "small" / "7.drc").touch()
-    assert read(folder, held).fps == 25.0
-    assert (read(folder, held, "small").fps, read(folder, held, "small").numbers) == (12.0, (7,))
-    assert "source.clip big: its targets are drc, small" in refusal(folder, held, "big")
+    assert read(folder, document).fps == 25.0
+    assert (read(folder, document, "small").fps, read(folder, document, "small").numbers) == (12.0, (7,))
+    assert "source.clip big: its targets are drc, small" in refusal(folder, document, "big")
 
 
 @pytest.mark.parametrize(
-    ("held", "told"),
+    ("document", "told"),
     [
         (target("/etc/[index][ext]"), "outside its folder"),
         (target("../drc/[index][ext]"), "outside its folder"),
@@ -87,26 +87,26 @@ def test_finest_target_is_read_unless_one_is_named(folder):
         ([1, 2], "no manifest of Universal Volumetric 2"),
     ],
 )
-def test_what_cannot_be_read_ends_in_what_to_do(folder, held, told):
-    assert told in refusal(folder, held)
+def test_what_cannot_be_read_ends_in_what_to_do(folder, document, told):
+    assert told in refusal(folder, document)
 
 
 def test_of_targets_of_one_rate_that_with_the_finest_positions_is_read(folder):
-    held = target("[target]/[index][ext]", settings={"positionQuantizationBits": 8})
+    document = target("[target]/[index][ext]", settings={"positionQuantizationBits": 8})
     for name, settings in (("fine", {"positionQuantizationBits": 14}), ("usual", {})):
-        held["geometry"]["targets"][name] = {**DRACO, "frameCount": 1, "settings": settings}
+        document["geometry"]["targets"][name] = {**DRACO, "frameCount": 1, "settings": settings}
         (folder / name).mkdir()
         (folder / name / "1.drc").touch()
-    assert read(folder, held).files == (folder / "fine" / "1.drc",)
-    del held["geometry"]["targets"]["fine"]
-    assert read(folder, held).files == (folder / "usual" / "1.drc",)
+    assert read(folder, document).files == (folder / "fine" / "1.drc",)
+    del document["geometry"]["targets"]["fine"]
+    assert read(folder, document).files == (folder / "usual" / "1.drc",)
 
 
 @pytest.mark.parametrize("name", ["g#1", "g[index]", "g[ext]", "[g]"])
 def test_target_may_be_called_as_places_of_a_path_are(folder, name):
-    held = {"geometry": {"targets": {name: DRACO}, "path": "[target]/[index][ext]"}}
+    document = {"geometry": {"targets": {name: DRACO}, "path": "[target]/[index][ext]"}}
     (folder / "drc").rename(folder / name)
-    assert read(folder, held).numbers == (1, 2, 10)
+    assert read(folder, document).numbers == (1, 2, 10)
 
 
 @pytest.mark.parametrize("claimed", [2, 4])

@@ -43,9 +43,9 @@ def test_between_two_rotations_a_node_turns_by_one_in_the_middle(body: Deformati
 def test_a_frame_is_reached_from_where_the_nodes_carry_the_surface(body: DeformationGraph) -> None:
     V, F = tube(around=29, along=57, start=0.07)
     target = Target.of(bent(V, 1.2), F, body.size)
-    found = graph_tracking(body, carried(body, 1.0, off=0.05 * LENGTH), at_rest(body), target, FITTING)
-    assert found.attempt == CARRIED
-    x = shape(body, found.pose)[0]
+    fit = graph_tracking(body, carried(body, 1.0, off=0.05 * LENGTH), at_rest(body), target, FITTING)
+    assert fit.attempt == CARRIED
+    x = shape(body, fit.pose)[0]
     assert np.linalg.norm(x - bent(body.V, 1.2), axis=1).mean() < 0.01 * LENGTH
 
 
@@ -53,6 +53,6 @@ def test_where_the_nodes_are_lost_the_neighbouring_frame_is_the_start(body: Defo
     V, F = tube(around=29, along=57, start=0.07)
     target = Target.of(bent(V, 0.2), F, body.size)
     lost = carried(body, 2.4, off=3.0 * LENGTH)
-    found = graph_tracking(body, lost, at_rest(body), target, FITTING)
-    assert found.attempt >= 0
-    assert np.linalg.norm(shape(body, found.pose)[0] - bent(body.V, 0.2), axis=1).mean() < 0.01 * LENGTH
+    fit = graph_tracking(body, lost, at_rest(body), target, FITTING)
+    assert fit.attempt >= 0
+    assert np.linalg.norm(shape(body, fit.pose)[0] - bent(body.V, 0.2), axis=1).mean() < 0.01 * LENGTH

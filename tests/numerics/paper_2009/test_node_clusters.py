@@ -54,6 +54,6 @@ def test_bands_of_a_tube_become_the_parts_on_both_sides_of_its_joint() -> None:
 
 def test_motions_of_true_parts_are_theirs() -> None:
     body = chain((0.0,))
-    found = part_motions(body.V, body.x, np.ones(body.x.shape[:2]), body.area, body.label, 0.005)
-    assert np.allclose(found.R, body.R, atol=2e-3)
-    assert found.residual.max() < 0.01  # vertices at the joint itself follow both
+    motions = part_motions(body.V, body.x, np.ones(body.x.shape[:2]), body.area, body.label, 0.005)
+    assert np.allclose(motions.R, body.R, atol=2e-3)
+    assert motions.residual.max() < 0.01  # vertices at the joint itself follow both

@@ -87,17 +87,17 @@ def test_many_frames_at_once_share_one_factorisation_bit_by_bit():
 def test_with_large_weights_it_is_the_hard_constrained_arap_of_libigl():
     igl = pytest.importorskip("igl", reason="compares with libigl's ARAP; pip install libigl")
     ball, faces = sphere(3)  # of triangles so even that no weight is clamped
-    held = np.flatnonzero(np.abs(ball[:, 2]) > 0.6).astype(np.int32)
+    fixed = np.flatnonzero(np.abs(ball[:, 2]) > 0.6).astype(np.int32)
     wanted = np.where(ball[:, 2:] > 0.6, ball @ rotation((1, 0, 0), 0.9).T + [0.0, 0.0, 1.0], ball)
     soft = np.zeros(len(ball))
-    soft[held] = 1e7
+    soft[fixed] = 1e7
     steps = 300
     ours = Factorised.of(ball, faces, soft).solve(wanted, ball, steps=steps, tolerance=0.0)
     settings = igl.ARAPData()
     settings.energy = igl.ARAP_ENERGY_TYPE_SPOKES
     settings.max_iter = steps
-    igl.arap_precomputation(ball, faces, 3, held, settings)
-    theirs = igl.arap_solve(wanted[held], settings, ball.copy())
-    free = np.setdiff1d(np.arange(len(ball)), held)
+    igl.arap_precomputation(ball, faces, 3, fixed, settings)
+    theirs = igl.arap_solve(wanted[fixed], settings, ball.copy())
+    free = np.setdiff1d(np.arange(len(ball)), fixed)
     assert np.abs(theirs[free] - ball[free]).max() > 0.3, "the constraint bends it"
     np.testing.assert_allclose(ours.x, theirs, atol=1e-5)

@@ -18,35 +18,35 @@ def read(V, F, uv):
 
 def test_seams_are_welded_in_the_mesh_and_open_in_its_appearance():
     V, F = sphere(2)
-    cleaned, found = read(V, F, corner_uv(V, F))
+    cleaned, surface = read(V, F, corner_uv(V, F))
     assert len(cleaned.V) == len(V)
-    made = seamed(found, cleaned.vertex_map, cleaned.F)
-    np.testing.assert_array_equal(made.vertex[made.faces], cleaned.F)
-    np.testing.assert_allclose(made.uv[made.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
-    assert len(V) < len(made.vertex) < 3 * len(F)  # copies at seams alone
-    assert len(np.unique(np.column_stack([made.vertex, made.uv]), axis=0)) == len(made.vertex)
+    corners = seamed(surface, cleaned.vertex_map, cleaned.F)
+    np.testing.assert_array_equal(corners.vertex[corners.faces], cleaned.F)
+    np.testing.assert_allclose(corners.uv[corners.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
+    assert len(V) < len(corners.vertex) < 3 * len(F)  # copies at seams alone
+    assert len(np.unique(np.column_stack([corners.vertex, corners.uv]), axis=0)) == len(corners.vertex)
 
 
 def test_faces_that_cleaning_turned_keep_the_look_of_their_corners():
     V, F = sphere(2)
     inside_out = F.copy()
     inside_out[::3] = inside_out[::3, [0, 2, 1]]
-    cleaned, found = read(V, inside_out, corner_uv(V, inside_out))
+    cleaned, surface = read(V, inside_out, corner_uv(V, inside_out))
     assert cleaned.flipped > 0
-    made = seamed(found, cleaned.vertex_map, cleaned.F)
-    np.testing.assert_allclose(made.uv[made.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
+    corners = seamed(surface, cleaned.vertex_map, cleaned.F)
+    np.testing.assert_allclose(corners.uv[corners.faces], corner_uv(cleaned.V, cleaned.F) * (1, -1) + (0, 1), atol=1e-12)
 
 
 def test_face_that_the_file_does_not_have_leaves_no_appearance():
     V, F = sphere(1)
-    cleaned, found = read(V, F, corner_uv(V, F))
+    cleaned, surface = read(V, F, corner_uv(V, F))
     other = cleaned.F.copy()
     other[0] = (other[0, 0], other[0, 1], (other[0, 2] + 7) % len(cleaned.V))
-    assert seamed(found, cleaned.vertex_map, other) is None
+    assert seamed(surface, cleaned.vertex_map, other) is None
 
 
 def test_vertex_has_the_mean_of_what_its_faces_show_there():
-    found = Seamed(
+    corners = Seamed(
         vertex=np.array([0, 0, 1, 2, 4]),
         faces=np.array([[0, 2, 3], [1, 3, 2], [1, 4, 3]]),
         uv=np.array([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [1.1, -0.9], [0.1, 0.9]]),
@@ -54,7 +54,7 @@ def test_vertex_has_the_mean_of_what_its_faces_show_there():
         material=np.array([0, 0, 1]),
     )
     picture = np.array([[[1, 0, 0], [0, 1, 0]], [[0, 0, 1], [1, 1, 1]]], float)
-    colours = vertex_colours(found, np.array([[0.5, 0.5, 0.5], [0.2, 0.4, 0.8]]), [picture, None])
+    colours = vertex_colours(corners, np.array([[0.5, 0.5, 0.5], [0.2, 0.4, 0.8]]), [picture, None])
     upper_left, upper_right = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
     np.testing.assert_allclose(colours[0], (upper_left + upper_right + [0.2, 0.4, 0.8]) / 3)
     np.testing.assert_allclose(colours[1], [0.25, 0.5, 0.5])

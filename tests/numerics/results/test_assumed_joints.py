@@ -14,8 +14,8 @@ HEELS = ("heel_l", "heel_r")
 
 
 def recognised(body):
-    found = anatomy(body.motion)
-    return found.topology, [name.text if name else "" for name in anatomical_names(body.motion, body.ends, found)]
+    place_of = anatomy(body.motion)
+    return place_of.topology, [name.text if name else "" for name in anatomical_names(body.motion, body.ends, place_of)]
 
 
 def assumed(body):
@@ -32,19 +32,19 @@ def places(body):
     }
 
 
-def error(whole, found, name):
+def error(whole, place_of, name):
     """Distance of an assumed joint from the true one, share of the body's height."""
     true = whole.motion.rest[[HUMAN.get(n, n) for n in whole.names].index(name)]
-    return np.linalg.norm(found[name] - true) / np.ptp(whole.motion.rest[:, 2])
+    return np.linalg.norm(place_of[name] - true) / np.ptp(whole.motion.rest[:, 2])
 
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", ["knee_l", "knee_r", "elbow_l", "wrist_r"])
 def test_a_joint_of_a_person_lies_where_the_other_side_has_it(name, seed):
     whole = walker("human", "walk", seed)
-    found = places(without(whole, name, *HEELS))
-    assert list(found) == [name]
-    assert error(whole, found, name) < 0.02
+    place_of = places(without(whole, name, *HEELS))
+    assert list(place_of) == [name]
+    assert error(whole, place_of, name) < 0.02
 
 
 def test_a_knee_held_straight_over_the_sequence_is_assumed_near_the_true_one():
@@ -65,23 +65,23 @@ def test_joints_that_neither_side_has_lie_by_the_proportions_of_people(pair):
     whole = walker("human", "walk")
     body = without(whole, f"{pair}_l", f"{pair}_r", *HEELS)
     assert {joint.source for joint in assumed(body)} == {"proportions"}
-    found = places(body)
-    assert sorted(found) == [f"{pair}_l", f"{pair}_r"]
-    assert max(error(whole, found, name) for name in found) < 0.05
+    place_of = places(body)
+    assert sorted(place_of) == [f"{pair}_l", f"{pair}_r"]
+    assert max(error(whole, place_of, name) for name in place_of) < 0.05
 
 
 def test_two_joints_of_one_bone_stand_in_their_order():
-    found = assumed(without(walker("human", "walk"), "knee_l", "ankle_l", *HEELS))
-    assert [joint.named.text for joint in found] == ["knee_l", "ankle_l"]
-    assert found[0].child == found[1].child
-    assert 0 < found[0].share < found[1].share < 1
+    joints = assumed(without(walker("human", "walk"), "knee_l", "ankle_l", *HEELS))
+    assert [joint.named.text for joint in joints] == ["knee_l", "ankle_l"]
+    assert joints[0].child == joints[1].child
+    assert 0 < joints[0].share < joints[1].share < 1
 
 
 def test_a_neck_stands_between_the_chest_and_the_head():
     whole = walker("human", "walk")
-    found = places(without(whole, "neck", "head", *HEELS))
-    assert list(found) == ["neck"]
-    assert error(whole, found, "neck") < 0.05
+    place_of = places(without(whole, "neck", "head", *HEELS))
+    assert list(place_of) == ["neck"]
+    assert error(whole, place_of, "neck") < 0.05
 
 
 def test_animals_have_joints_of_the_other_side_and_no_proportions_of_people():

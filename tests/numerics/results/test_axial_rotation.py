@@ -23,9 +23,9 @@ def test_plane_of_a_bend_shows_the_turn(lost, sign):
     axes, turn, true = lost
     bend = np.radians(np.linspace(30, 150, FRAMES))[:, None]
     forearm = -np.cos(bend) * true[:, :, 1] + sign * np.sin(bend) * true[:, :, 0]
-    found = turn_of_bend(axes, 3.7 * forearm, sign)
-    np.testing.assert_allclose(found.turn, turn, atol=1e-9)
-    assert found.is_seen.all()
+    axial = turn_of_bend(axes, 3.7 * forearm, sign)
+    np.testing.assert_allclose(axial.turn, turn, atol=1e-9)
+    assert axial.is_seen.all()
 
 
 def test_direction_beyond_shows_the_turn_unless_it_goes_on_straight(lost):
@@ -41,21 +41,21 @@ def test_part_beyond_shows_the_turn_whatever_it_swings(lost):
     angle = np.random.default_rng(3).uniform(-1.2, 1.2, FRAMES)[:, None]
     across = np.cos(angle) * true[:, :, 0] + np.sin(angle) * true[:, :, 2]  # any axis across the segment
     swing = Rotation.from_rotvec(np.linspace(-1.3, 1.3, FRAMES)[:, None] * across).as_matrix()
-    found = turn_of_part(axes, swing @ true @ rest.T, rest)
-    np.testing.assert_allclose(found.turn, turn, atol=1e-9)
+    axial = turn_of_part(axes, swing @ true @ rest.T, rest)
+    np.testing.assert_allclose(axial.turn, turn, atol=1e-9)
 
 
 def test_frames_that_do_not_show_it_lie_between_those_that_do_on_the_shorter_way():
     turn = np.radians([0.0, 170, 99, 99, -170, 99])
-    found = filled(turn, np.array([False, True, False, False, True, False]))
-    np.testing.assert_allclose(np.degrees(found.turn), [170, 170, 170 + 20 / 3, 170 + 40 / 3, 190, 190])
+    axial = filled(turn, np.array([False, True, False, False, True, False]))
+    np.testing.assert_allclose(np.degrees(axial.turn), [170, 170, 170 + 20 / 3, 170 + 40 / 3, 190, 190])
     np.testing.assert_array_equal(filled(turn, np.zeros(6, bool)).turn, 0.0)
 
 
 def test_what_one_take_shows_says_nothing_of_another():
-    turn, seen = np.radians([40.0, 0, 0, 0, -60, 0]), np.array([True, False, False, False, True, False])
-    found = filled(turn, seen, [slice(0, 2), slice(2, 3), slice(3, 6)])
-    np.testing.assert_allclose(np.degrees(found.turn), [40, 40, 0, -60, -60, -60])
+    turn, is_seen = np.radians([40.0, 0, 0, 0, -60, 0]), np.array([True, False, False, False, True, False])
+    axial = filled(turn, is_seen, [slice(0, 2), slice(2, 3), slice(3, 6)])
+    np.testing.assert_allclose(np.degrees(axial.turn), [40, 40, 0, -60, -60, -60])
 
 
 def test_turned_axes_keep_their_length_and_stay_right_handed(lost):

@@ -31,13 +31,13 @@ def test_numbers_between_frames_are_missing_unless_the_gap_is_long() -> None:
 
 
 def test_constant_turning_is_met_exactly() -> None:
-    found = interpolated((0, 3, 6), (1, 2, 5), turning([0.0, 0.9, 1.2]), REST, PARENTS)
+    between = interpolated((0, 3, 6), (1, 2, 5), turning([0.0, 0.9, 1.2]), REST, PARENTS)
     expected = turning([0.3, 0.6, 1.1])
-    np.testing.assert_allclose(found.positions, expected.positions, atol=1e-12)
-    np.testing.assert_allclose(found.rotation, expected.rotation, atol=1e-12)
+    np.testing.assert_allclose(between.positions, expected.positions, atol=1e-12)
+    np.testing.assert_allclose(between.rotation, expected.rotation, atol=1e-12)
 
 
 def test_bones_keep_their_lengths_and_confidence_is_low() -> None:
-    found = interpolated((0, 2), (1,), turning([0.0, 2.0]), REST, PARENTS)
-    assert np.allclose(np.linalg.norm(np.diff(found.positions, axis=1), axis=2), [1.0, 2.0])
-    np.testing.assert_allclose(found.confidence, CERTAINTY * np.array([[0.7, 0.3, 0.3]]))
+    between = interpolated((0, 2), (1,), turning([0.0, 2.0]), REST, PARENTS)
+    assert np.allclose(np.linalg.norm(np.diff(between.positions, axis=1), axis=2), [1.0, 2.0])
+    np.testing.assert_allclose(between.confidence, CERTAINTY * np.array([[0.7, 0.3, 0.3]]))

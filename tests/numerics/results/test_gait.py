@@ -26,11 +26,11 @@ def test_strikes_and_offs_are_found_within_a_frame_on_the_ground_and_on_a_treadm
     events = walking(speed=speed, noise=noise)
     for foot, late in enumerate((0.0, 0.5)):
         for kind, at in (("strike", late), ("off", late + 0.5)):
-            found = np.array([e.time for e in events if (e.foot, e.kind) == (foot, kind)])
+            times = np.array([e.time for e in events if (e.foot, e.kind) == (foot, kind)])
             true = (np.arange(-1, 6) + at) * PERIOD
             true = true[(true > 0.5 / RATE) & (true < TIMES[-1] - 0.5 / RATE)]
-            assert len(found) == len(true)
-            np.testing.assert_allclose(found, true, atol=1 / RATE)
+            assert len(times) == len(true)
+            np.testing.assert_allclose(times, true, atol=1 / RATE)
 
 
 def test_events_are_in_order_and_strides_and_stances_have_their_length():

@@ -58,8 +58,8 @@ def places(parents, rest, R):
 )
 def test_one_turn_is_one_angle_and_the_others_stay(side, joint, turn, angle, expected):
     mirrored = turn if side == "r" else (-turn[0], -turn[1], turn[2])
-    found = angles({f"{joint}_{side}": mirrored})
-    for name, values in found.items():
+    result = angles({f"{joint}_{side}": mirrored})
+    for name, values in result.items():
         if name == f"{joint}_{side}.{angle}":
             np.testing.assert_allclose(values[1] - values[0], expected, atol=1e-9)
         elif not name.startswith("shoulder"):  # whose plane is open while the arm hangs
@@ -68,15 +68,15 @@ def test_one_turn_is_one_angle_and_the_others_stay(side, joint, turn, angle, exp
 
 @pytest.mark.parametrize(("turn", "plane"), [((-50, 0, 0), 0), ((0, 0, 50), 90), ((0, 0, -50), -90)])
 def test_arm_is_raised_sideways_ahead_or_back(turn, plane):
-    found = angles({"shoulder_r": turn})
-    np.testing.assert_allclose(found["shoulder_r.plane_of_elevation"][1], plane, atol=1e-9)
-    np.testing.assert_allclose(found["shoulder_r.elevation"][1], 50, atol=1e-9)
+    result = angles({"shoulder_r": turn})
+    np.testing.assert_allclose(result["shoulder_r.plane_of_elevation"][1], plane, atol=1e-9)
+    np.testing.assert_allclose(result["shoulder_r.elevation"][1], 50, atol=1e-9)
 
 
 def test_three_angles_of_a_hip_are_those_of_flexion_then_adduction_then_rotation():
     R = Rotation.from_euler("ZXY", [35, -20, 10], degrees=True)
-    found = angles({"hip_r": np.degrees(R.as_rotvec())})
-    np.testing.assert_allclose([found[f"hip_r.{a}"][1] for a in ("flexion", "adduction", "internal_rotation")], [35, -20, 10])
+    result = angles({"hip_r": np.degrees(R.as_rotvec())})
+    np.testing.assert_allclose([result[f"hip_r.{a}"][1] for a in ("flexion", "adduction", "internal_rotation")], [35, -20, 10])
 
 
 def test_angles_do_not_depend_on_where_the_body_stands_and_faces():
@@ -96,16 +96,16 @@ def test_reference_pose_with_a_raised_knee_has_its_angles_already():
     leg = [NAMES.index(f"{n}_r") for n in ("knee", "ankle", "foot_end")]
     hip = rest[NAMES.index("hip_r")]
     rest[leg] = hip + (rest[leg] - hip) @ lift.T
-    found = angles({}, rest)
-    np.testing.assert_allclose(found["hip_r.flexion"], 40, atol=1e-9)
-    np.testing.assert_allclose(found["knee_r.flexion"], 0, atol=1e-9)
+    result = angles({}, rest)
+    np.testing.assert_allclose(result["hip_r.flexion"], 40, atol=1e-9)
+    np.testing.assert_allclose(result["knee_r.flexion"], 0, atol=1e-9)
 
 
 def test_joint_whose_segment_has_no_end_has_no_angles():
-    found = joint_angles(
+    result = joint_angles(
         ["pelvis", "hip_r"], [-1, 0], np.zeros((2, 3)), np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1)), FRONT, UP
     )
-    assert (found.degrees, found.rotation_seen) == ({}, {})
+    assert (result.degrees, result.rotation_seen) == ({}, {})
 
 
 def test_hips_are_measured_from_the_bony_pelvis_and_not_from_a_surface_that_follows_the_thighs():
@@ -117,9 +117,9 @@ def test_hips_are_measured_from_the_bony_pelvis_and_not_from_a_surface_that_foll
         R[1, names.index(name)] = flexed
     X = places(parents, rest, R)
     R[1, 0] = Rotation.from_euler("z", 20, degrees=True).as_matrix()  # a third of the thighs' turning, in place
-    found = joint_angles(names, parents, rest, X, R, FRONT, UP).degrees
+    result = joint_angles(names, parents, rest, X, R, FRONT, UP).degrees
     for side in "lr":
-        np.testing.assert_allclose(found[f"hip_{side}.flexion"], [0, 60], atol=1e-9)
+        np.testing.assert_allclose(result[f"hip_{side}.flexion"], [0, 60], atol=1e-9)
     leaning = joint_angles(
         NAMES, PARENTS, rest[:-1], X[:, :-1], R[:, :-1], FRONT, UP
     ).degrees  # no spine: the surface is all there is
@@ -145,11 +145,11 @@ def test_turn_of_a_segment_is_that_of_the_bend_beyond_it_whatever_its_surface_do
         R[:, at[f"{name}_{side}"]] = raised @ turn @ bend
     X = places(PARENTS, standing(), R)
     R[:, at[f"{joint}_{side}"]] = raised
-    found = joint_angles(NAMES, PARENTS, standing(), X, R, FRONT, UP)
-    rotation = found.degrees[f"{joint}_{side}.internal_rotation"]
+    result = joint_angles(NAMES, PARENTS, standing(), X, R, FRONT, UP)
+    rotation = result.degrees[f"{joint}_{side}.internal_rotation"]
     np.testing.assert_allclose((rotation[1] - rotation[0] + 180) % 360 - 180, 25, atol=1e-6)
-    np.testing.assert_allclose(found.degrees[f"{beyond}_{side}.flexion"], abs(BENT[f"{beyond}_{side}"][2]), atol=1e-6)
-    assert found.rotation_seen[f"{joint}_{side}"].all()
+    np.testing.assert_allclose(result.degrees[f"{beyond}_{side}.flexion"], abs(BENT[f"{beyond}_{side}"][2]), atol=1e-6)
+    assert result.rotation_seen[f"{joint}_{side}"].all()
 
 
 def test_pronation_is_that_of_the_hand_without_its_flexion():
@@ -160,16 +160,16 @@ def test_pronation_is_that_of_the_hand_without_its_flexion():
     pronated = Rotation.from_euler("y", 40, degrees=True)
     R[1, -1] = pronated.as_matrix()  # the hand alone has turned; the surface of the forearm stayed
     R[2, -1] = (pronated * Rotation.from_euler("z", 50, degrees=True)).as_matrix()
-    found = joint_angles(names, parents, rest, places(parents, rest, R), R, FRONT, UP)
-    np.testing.assert_allclose(found.degrees["elbow_r.pronation"], [0, 40, 40], atol=1e-6)
-    assert found.rotation_seen["elbow_r"].all()
+    result = joint_angles(names, parents, rest, places(parents, rest, R), R, FRONT, UP)
+    np.testing.assert_allclose(result.degrees["elbow_r.pronation"], [0, 40, 40], atol=1e-6)
+    assert result.rotation_seen["elbow_r"].all()
 
 
 def test_straight_limbs_do_not_show_how_they_are_turned():
-    found = joint_angles(
+    result = joint_angles(
         NAMES, PARENTS, standing(), np.tile(standing(), (2, 1, 1)), np.tile(np.eye(3), (2, len(NAMES), 1, 1)), FRONT, UP
     )
-    assert {name: seen.tolist() for name, seen in found.rotation_seen.items()} == {
+    assert {name: is_seen.tolist() for name, is_seen in result.rotation_seen.items()} == {
         **{f"{j}_{s}": [False, False] for s in "lr" for j in ("hip", "shoulder", "elbow")},
         **{f"knee_{s}": [True, True] for s in "lr"},  # by the feet
     }

@@ -42,10 +42,10 @@ def tube(length=2.0, radius=0.1, rings=201, sides=16):
 
 def test_every_arm_has_one_leaf_at_its_tip_as_persistent_as_it_is_long():
     V, F, mu = star([1.0, 0.8, 0.5])
-    found = extrema(mu, F)
-    tips = V[found.vertex] / np.linalg.norm(V[found.vertex], axis=1, keepdims=True)
+    peaks = extrema(mu, F)
+    tips = V[peaks.vertex] / np.linalg.norm(V[peaks.vertex], axis=1, keepdims=True)
     np.testing.assert_allclose(tips, DIRECTIONS[:3], atol=0.05)
-    np.testing.assert_allclose(found.persistence, [1.0, 0.8, 0.5], atol=0.02)
+    np.testing.assert_allclose(peaks.persistence, [1.0, 0.8, 0.5], atol=0.02)
 
 
 def test_the_threshold_is_a_share_of_the_bodys_own_range():
@@ -59,9 +59,9 @@ def test_the_threshold_is_a_share_of_the_bodys_own_range():
 def test_a_ball_has_no_leaves(noise):
     V, F, mu = star([0.0])
     rough = mu + np.random.default_rng(1).normal(0.0, noise, len(mu))
-    found = extrema(rough, F)
-    assert found.vertex.shape == found.persistence.shape == found.level.shape == (0,)
-    assert stems(V, F, rough, np.ones(len(V)), found).shape == (0, 5, 3)
+    peaks = extrema(rough, F)
+    assert peaks.vertex.shape == peaks.persistence.shape == peaks.level.shape == (0,)
+    assert stems(V, F, rough, np.ones(len(V)), peaks).shape == (0, 5, 3)
 
 
 def test_a_mesh_without_faces_has_no_leaves():
@@ -71,9 +71,9 @@ def test_a_mesh_without_faces_has_no_leaves():
 def test_noise_below_the_threshold_adds_no_leaf_and_loses_none():
     V, F, mu = star([1.0, 0.8, 0.5])
     rough = mu + np.random.default_rng(2).uniform(-0.03, 0.03, len(mu))
-    found = extrema(rough, F)
-    assert len(found.vertex) == 3
-    assert np.linalg.norm(V[found.vertex] - V[extrema(mu, F).vertex], axis=1).max() < 0.25
+    peaks = extrema(rough, F)
+    assert len(peaks.vertex) == 3
+    assert np.linalg.norm(V[peaks.vertex] - V[extrema(mu, F).vertex], axis=1).max() < 0.25
 
 
 def test_leaves_follow_a_renumbering_and_do_not_see_the_unit():
@@ -88,27 +88,27 @@ def test_leaves_follow_a_renumbering_and_do_not_see_the_unit():
 
 def test_the_level_of_a_limb_is_where_the_first_other_limb_joins_it():
     V, F, mu = tube()
-    found = extrema(mu, F)
-    assert sorted(np.sign(V[found.vertex, 2]).tolist()) == [-1.0, 1.0]
-    np.testing.assert_allclose(found.level, 0.0, atol=1e-3)
+    peaks = extrema(mu, F)
+    assert sorted(np.sign(V[peaks.vertex, 2]).tolist()) == [-1.0, 1.0]
+    np.testing.assert_allclose(peaks.level, 0.0, atol=1e-3)
 
 
 def test_stations_of_a_tube_lie_on_its_axis_at_even_steps():
     V, F, mu = tube()
-    found = extrema(mu, F)
-    S = stems(V, F, mu, np.ones(len(V)), found)
-    side = np.sign(V[found.vertex, 2])[:, None]
+    peaks = extrema(mu, F)
+    S = stems(V, F, mu, np.ones(len(V)), peaks)
+    side = np.sign(V[peaks.vertex, 2])[:, None]
     np.testing.assert_allclose(side * S[:, :-1, 2], [[0.125, 0.375, 0.625, 0.875]] * 2, atol=0.01)
     np.testing.assert_allclose(S[:, :-1, :2], 0.0, atol=0.01)
-    np.testing.assert_array_equal(S[:, -1], V[found.vertex])
+    np.testing.assert_array_equal(S[:, -1], V[peaks.vertex])
 
 
 def test_stems_move_with_the_body():
     V, F, mu = star([1.0, 0.8, 0.5])
-    found, area = extrema(mu, F), np.ones(len(V))
+    peaks, area = extrema(mu, F), np.ones(len(V))
     R = trimesh.transformations.random_rotation_matrix(np.array([0.2, 0.5, 0.8]))[:3, :3]
-    moved = stems(V @ R.T + [3.0, -1.0, 2.0], F, mu, area, found)
-    np.testing.assert_allclose(moved, stems(V, F, mu, area, found) @ R.T + [3.0, -1.0, 2.0], atol=1e-9)
+    moved = stems(V @ R.T + [3.0, -1.0, 2.0], F, mu, area, peaks)
+    np.testing.assert_allclose(moved, stems(V, F, mu, area, peaks) @ R.T + [3.0, -1.0, 2.0], atol=1e-9)
 
 
 def test_a_band_without_area_stands_at_the_next_one_towards_the_tip():
@@ -121,27 +121,27 @@ def test_a_band_without_area_stands_at_the_next_one_towards_the_tip():
 def test_values_of_vertices_without_a_face_mean_nothing():
     V, F, mu = star([1.0, 0.8, 0.5])
     more, area = np.append(mu, np.nan), np.append(np.ones(len(V)), 0.0)
-    found, expected = extrema(more, F), extrema(mu, F)
-    for one, other in zip(found, expected, strict=True):
+    peaks, expected = extrema(more, F), extrema(mu, F)
+    for one, other in zip(peaks, expected, strict=True):
         np.testing.assert_array_equal(one, other)
     wide = np.vstack([V, np.zeros(3)])
-    np.testing.assert_array_equal(stems(wide, F, more, area, found), stems(V, F, mu, np.ones(len(V)), expected))
+    np.testing.assert_array_equal(stems(wide, F, more, area, peaks), stems(V, F, mu, np.ones(len(V)), expected))
 
 
 def test_the_three_arms_of_a_pipe_have_three_equal_leaves_at_their_ends():
     V, F, turned = shapes.y_pipe()
     mu, _ = integral(V, F)
-    found = extrema(mu, F)
-    assert len(found.vertex) == 3
-    np.testing.assert_allclose(mu[found.vertex], mu.max(), rtol=0.005)
+    peaks = extrema(mu, F)
+    assert len(peaks.vertex) == 3
+    np.testing.assert_allclose(mu[peaks.vertex], mu.max(), rtol=0.005)
     # the arms join at the edge of the middle, a little above the smallest μ, to which only the first one reaches down
-    np.testing.assert_allclose(found.level, found.level[0], rtol=0.005)
-    np.testing.assert_allclose(found.persistence[1:], found.persistence[1], atol=0.01)
-    assert found.persistence[1] > 0.9
-    reach = np.linalg.norm(V[found.vertex], axis=1)
+    np.testing.assert_allclose(peaks.level, peaks.level[0], rtol=0.005)
+    np.testing.assert_allclose(peaks.persistence[1:], peaks.persistence[1], atol=0.01)
+    assert peaks.persistence[1] > 0.9
+    reach = np.linalg.norm(V[peaks.vertex], axis=1)
     assert reach.min() > 0.9 * np.linalg.norm(V, axis=1).max()
-    carried = V[turned[found.vertex]]
-    nearest = np.linalg.norm(carried[:, None] - V[found.vertex][None], axis=2).argmin(axis=1)
+    carried = V[turned[peaks.vertex]]
+    nearest = np.linalg.norm(carried[:, None] - V[peaks.vertex][None], axis=2).argmin(axis=1)
     assert sorted(nearest.tolist()) == [0, 1, 2]
     assert (nearest != np.arange(3)).all()
 
@@ -149,10 +149,10 @@ def test_the_three_arms_of_a_pipe_have_three_equal_leaves_at_their_ends():
 def test_stations_climb_from_the_middle_of_a_pipe_to_its_ends():
     V, F, _ = shapes.y_pipe()
     mu, area = integral(V, F)
-    found = extrema(mu, F)
-    S = stems(V, F, mu, area, found)
+    peaks = extrema(mu, F)
+    S = stems(V, F, mu, area, peaks)
     assert (np.diff(np.linalg.norm(S, axis=2), axis=1) > 0).all()
-    direction = V[found.vertex] / np.linalg.norm(V[found.vertex], axis=1, keepdims=True)
+    direction = V[peaks.vertex] / np.linalg.norm(V[peaks.vertex], axis=1, keepdims=True)
     assert (np.einsum("lsk,lk->ls", S, direction) / np.linalg.norm(S, axis=2) > 0.9).all()
 
 

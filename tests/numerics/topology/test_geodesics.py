@@ -19,8 +19,8 @@ def from_bases(surface: Surface, count: int = 200) -> np.ndarray:
 
 def test_on_a_unit_sphere_mu_is_two_pi_squared_everywhere() -> None:
     # mean angle to a random point is π/2, area 4π
-    found = from_bases(Surface.of(*shapes.sphere(4)))
-    assert np.abs(found / (2 * np.pi**2) - 1).max() < 0.01
+    mu = from_bases(Surface.of(*shapes.sphere(4)))
+    assert np.abs(mu / (2 * np.pi**2) - 1).max() < 0.01
 
 
 def test_two_hundred_bases_miss_the_sum_over_all_vertices_by_half_a_percent_at_most() -> None:
@@ -72,17 +72,17 @@ def test_a_farther_base_is_never_chosen_after_a_nearer_one() -> None:
 def test_mu_of_a_pipe_with_three_arms_is_greatest_at_their_tips_and_least_in_the_middle() -> None:
     V, F, _ = shapes.y_pipe()
     surface = Surface.of(V, F)
-    found = mu_from_every_vertex(surface, surface.area)
-    tips = np.argsort(found)[-3:]
+    mu = mu_from_every_vertex(surface, surface.area)
+    tips = np.argsort(mu)[-3:]
     radius = np.linalg.norm(V[:, :2], axis=1)
     assert np.all(radius[tips] == radius.max())
-    assert radius[np.argmin(found)] == 0.0
+    assert radius[np.argmin(mu)] == 0.0
 
 
 def test_mu_is_the_same_on_each_of_three_equal_arms() -> None:
     V, F, onto = shapes.y_pipe()
-    found = mu_from_every_vertex(Surface.of(V, F))
-    assert np.abs(found[onto] / found - 1).max() < 0.005
+    mu = mu_from_every_vertex(Surface.of(V, F))
+    assert np.abs(mu[onto] / mu - 1).max() < 0.005
 
 
 def test_the_bases_are_where_they_were_after_moving_scaling_and_renumbering() -> None:

@@ -22,17 +22,17 @@ def swaying(frames, seed=0):
     return 30.0 + 0.6 * np.sin(np.arange(frames) * 1.1 + seed) + np.random.default_rng(seed).normal(0, 0.3, frames)
 
 
-def pairs(found):
-    return list(zip(found.begin.tolist(), found.end.tolist(), strict=True))
+def pairs(division):
+    return list(zip(division.begin.tolist(), division.end.tolist(), strict=True))
 
 
 def test_a_clean_drop_is_cut_there_and_nowhere_else():
     place = swaying(30)
     place[14:] += 12.0
-    found = intervals(bodies(place), {})
-    assert pairs(found) == [(0, 13), (14, 29)]
-    assert found.cues == (("correlation",),)
-    assert int(np.argmax(found.z)) == 13
+    division = intervals(bodies(place), {})
+    assert pairs(division) == [(0, 13), (14, 29)]
+    assert division.cues == (("correlation",),)
+    assert int(np.argmax(division.z)) == 13
 
 
 def test_motion_without_a_change_is_one_interval():
@@ -50,9 +50,9 @@ def test_a_change_spread_over_two_transitions_is_one_cut():
     place = swaying(30)
     place[14] += 7.0
     place[15:] += 13.0
-    found = intervals(bodies(place), {})
-    assert len(found.begin) == 2
-    assert found.end[0] in (13, 14)
+    division = intervals(bodies(place), {})
+    assert len(division.begin) == 2
+    assert division.end[0] in (13, 14)
 
 
 def test_both_sides_of_a_contact_are_cut():
@@ -81,10 +81,10 @@ def test_a_small_drop_counts_for_nothing_even_where_all_else_is_still():
 
 @pytest.mark.parametrize("frames", [1, 2, 12])
 def test_identical_frames_are_one_interval(frames):
-    found = intervals(np.tile(bodies([30.0]), (frames, 1)), {"leaves": Cue(np.ones((frames, 3)), 0.1)})
-    assert pairs(found) == [(0, frames - 1)]
-    assert found.z.tolist() == [0.0] * (frames - 1)
-    assert found.cues == ()
+    division = intervals(np.tile(bodies([30.0]), (frames, 1)), {"leaves": Cue(np.ones((frames, 3)), 0.1)})
+    assert pairs(division) == [(0, frames - 1)]
+    assert division.z.tolist() == [0.0] * (frames - 1)
+    assert division.cues == ()
 
 
 def test_two_frames_are_one_interval_however_different():
@@ -95,9 +95,9 @@ def test_a_cue_cuts_by_itself_and_can_be_left_out():
     H = bodies(swaying(30))
     profile = np.full((30, 2), 0.6)
     profile[10:, 1] = 0.3
-    found = intervals(H, {"leaves": Cue(profile, 0.1)})
-    assert pairs(found) == [(0, 9), (10, 29)]
-    assert found.cues == (("leaves",),)
+    division = intervals(H, {"leaves": Cue(profile, 0.1)})
+    assert pairs(division) == [(0, 9), (10, 29)]
+    assert division.cues == (("leaves",),)
     assert pairs(intervals(H, {})) == [(0, 29)]
 
 
@@ -111,9 +111,9 @@ def test_cues_that_agree_make_one_cut_and_are_both_named():
     place = swaying(30)
     place[14:] += 12.0
     profile = np.where(np.arange(30) < 15, 1.0, 0.0)[:, None]
-    found = intervals(bodies(place), {"loops": Cue(profile, 0.1)})
-    assert pairs(found) in ([(0, 13), (14, 29)], [(0, 14), (15, 29)])
-    assert found.cues == (("correlation", "loops"),)
+    division = intervals(bodies(place), {"loops": Cue(profile, 0.1)})
+    assert pairs(division) in ([(0, 13), (14, 29)], [(0, 14), (15, 29)])
+    assert division.cues == (("correlation", "loops"),)
 
 
 def test_a_step_must_be_sharp_and_must_last():
@@ -166,12 +166,12 @@ def test_profiles_of_different_lengths_are_padded_with_zeros():
 def test_intervals_partition_the_frames_and_none_is_too_short(seed, frames, minimum):
     rng = np.random.default_rng(seed)
     profile = rng.integers(0, 3, (frames, 2)).astype(float)
-    found = intervals(bodies(rng.uniform(10, 90, frames), seed), {"leaves": Cue(profile, 0.5)}, minimum=minimum)
-    covered = [t for begin, end in pairs(found) for t in range(begin, end + 1)]
+    division = intervals(bodies(rng.uniform(10, 90, frames), seed), {"leaves": Cue(profile, 0.5)}, minimum=minimum)
+    covered = [t for begin, end in pairs(division) for t in range(begin, end + 1)]
     assert covered == list(range(frames))
-    assert len(found.cues) == len(found.begin) - 1
-    assert all(found.cues)
-    assert all(end - begin + 1 >= min(minimum, frames) for begin, end in pairs(found))
+    assert len(division.cues) == len(division.begin) - 1
+    assert all(division.cues)
+    assert all(end - begin + 1 >= min(minimum, frames) for begin, end in pairs(division))
 
 
 @settings(deadline=None, max_examples=30)

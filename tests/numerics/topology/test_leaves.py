@@ -117,10 +117,10 @@ def test_short_gaps_are_bridged_on_a_straight_line_and_long_ones_are_not():
     line = [np.array([[[float(t), 0.0, 0.0]], [[0.0, 5.0, 0.0]]]) for t in range(12)]
     hidden = [S[1:] if t in (3, 4, 8, 9, 10) else S for t, S in enumerate(line)]
     tracks = np.array([[0, 0, 0, -1, -1, 0, 0, 0, -1, -1, -1, 0], [1, 1, 1, 0, 0, 1, 1, 1, 0, 0, 0, 1]])
-    X, seen = bridged(tracks, hidden, longest=2)
+    X, is_seen = bridged(tracks, hidden, longest=2)
     np.testing.assert_allclose(X[0, :8, 0], np.arange(8.0))
     assert np.isnan(X[0, 8:11]).all()
-    np.testing.assert_array_equal(seen, tracks >= 0)
+    np.testing.assert_array_equal(is_seen, tracks >= 0)
 
 
 def test_mutual_nearest_neighbours_follow_slow_tips_from_the_first_frame():

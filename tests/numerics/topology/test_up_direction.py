@@ -31,9 +31,9 @@ def to(X: np.ndarray, up: str) -> np.ndarray:
 
 @pytest.mark.parametrize("up", ["y", "z", "-y"])
 def test_walking_body_has_its_feet_down(up: str) -> None:
-    found = up_direction(to(walker(), up))
-    assert DIRECTIONS[found.direction] == up
-    assert found.confidence > 0.1
+    estimate = up_direction(to(walker(), up))
+    assert DIRECTIONS[estimate.direction] == up
+    assert estimate.confidence > 0.1
 
 
 def test_unit_and_place_of_the_body_change_nothing() -> None:

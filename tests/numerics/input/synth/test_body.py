@@ -285,20 +285,20 @@ def test_turning_of_joints_is_measured_once_for_all_frames(monkeypatch):
         return true_joints(figure, R)
 
     monkeypatch.setattr(module, "true_joints", counted)
-    made = body(frames=6)
-    V = made.X[0]
+    generated = body(frames=6)
+    V = generated.X[0]
     for t in range(6):
-        made.parts(t, V)
-    assert made.truth() == made.truth()
+        generated.parts(t, V)
+    assert generated.truth() == generated.truth()
     assert measured == [6]
 
 
 def test_truth_that_somebody_changes_stays_what_it_was():
-    made = body(frames=3)
-    told = made.truth()
-    told["joints"][0]["name"] = "changed"
-    told["parts"][0].append("changed")
-    assert "changed" not in str(made.truth())
+    generated = body(frames=3)
+    truth = generated.truth()
+    truth["joints"][0]["name"] = "changed"
+    truth["parts"][0].append("changed")
+    assert "changed" not in str(generated.truth())
 
 
 @pytest.mark.parametrize("joint", ["head_top", "hand_l", "toe_l"])

@@ -10,9 +10,9 @@ from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.input.synth.paint import Paint
 
 
-def coloured(**told):
+def coloured(**params):
     """Every frame's mesh and colours, and the same skin in every frame."""
-    written = recipe(SynthParams(frames=3, vertices=1500, **{"paint": "patterned", "grain": 0.0, **told}))
+    written = recipe(SynthParams(frames=3, vertices=1500, **{"paint": "patterned", "grain": 0.0, **params}))
     painted = paint(written)
     assert isinstance(painted, Paint)
     meshes = [body(written).frame(t) for t in range(3)]
@@ -26,9 +26,9 @@ def test_the_same_point_of_the_skin_has_the_same_colour_in_every_frame() -> None
     on = projected(meshes[0][0], first, F)
     there = np.einsum("vk,vkx->vx", on.share, last[F[on.face]])
     near = projected(there, *meshes[2])
-    seen = np.einsum("vk,vkx->vx", near.share, colours[2][meshes[2][1][near.face]])
-    assert np.median(np.abs(seen - colours[0])) < 0.02
-    assert np.abs(np.roll(seen, 300, axis=0) - colours[0]).mean() > 4 * np.abs(seen - colours[0]).mean()
+    carried = np.einsum("vk,vkx->vx", near.share, colours[2][meshes[2][1][near.face]])
+    assert np.median(np.abs(carried - colours[0])) < 0.02
+    assert np.abs(np.roll(carried, 300, axis=0) - colours[0]).mean() > 4 * np.abs(carried - colours[0]).mean()
 
 
 def test_plain_clothes_have_one_colour_until_light_or_noise_change_it() -> None:
@@ -40,6 +40,6 @@ def test_plain_clothes_have_one_colour_until_light_or_noise_change_it() -> None:
 
 
 def test_a_recipe_without_paint_says_nothing_of_it() -> None:
-    told = json.loads(recipe(SynthParams(illumination=0.5)))
-    assert not {"paint", "illumination", "grain"} & set(told)
+    params = json.loads(recipe(SynthParams(illumination=0.5)))
+    assert not {"paint", "illumination", "grain"} & set(params)
     assert paint(recipe(SynthParams())) is None
