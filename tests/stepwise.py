@@ -147,8 +147,9 @@ def one_pass(made: SimpleNamespace, number: int) -> None:
     before = made.refit[-1] if made.refit else {}
     earlier = (made.stiffness or [None])[-1], (made.roll or [None])[-1]
     stiff = stiffness(graph, made.first_fit, made.recovery, tuple(before.values()), earlier[0], index)
-    tried = {t: roll_candidates(m, graph, stiff, before.get(t), (number, t)) for t, m in made.mesh.items()}
-    chosen = roll(graph, stiff, tried, tuple(before.values()), earlier[1], index)
+    is_searched = len(graph.members("pass/search", index)) > 0
+    tried = {t: roll_candidates(m, graph, stiff, before.get(t)) for t, m in made.mesh.items()} if is_searched else {}
+    chosen = roll(graph, stiff, made.recovery, tuple(tried.values()), tuple(before.values()), earlier[1], index)
     made.stiffness.append(stiff)
     made.roll_candidates.append(tried)
     made.roll.append(chosen)
@@ -157,7 +158,8 @@ def one_pass(made: SimpleNamespace, number: int) -> None:
 
 def refitted(made: SimpleNamespace, number: int, frame: int, before: Any) -> Any:
     """One frame in one pass, from its pose of the pass before."""
-    told = made.stiffness[number], made.roll_candidates[number][frame], made.roll[number]
+    fits = made.roll_candidates[number]
+    told = made.stiffness[number], (fits[frame],) if fits else (), made.roll[number]
     here = made.mesh[frame], made.deformation_graph, made.first_fit[frame], made.recovery
     return refit(*here, *told, before, (number, frame))
 

@@ -73,7 +73,7 @@ def test_every_pass_has_its_nodes(tmp_path: Path) -> None:
     assert told["status"] == "done"
     tasks = [node.task for node in pipeline.schedule(until=STEP_TWO).entries]
     assert (tasks.count("stiffness"), tasks.count("roll")) == (len(PASSES), len(PASSES))
-    assert (tasks.count("refit"), tasks.count("roll_candidates")) == (2 * len(PASSES), 2 * len(PASSES))
+    assert (tasks.count("refit"), tasks.count("roll_candidates")) == (2 * len(PASSES), 2), "one pass searches for lost roll"
 
 
 def test_two_frames_are_aligned(tmp_path: Path) -> None:

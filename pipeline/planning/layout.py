@@ -106,7 +106,7 @@ class Layout:
         if member is None:
             return None, ()
         before = Node(task.name, (*index[:place], member, *index[place + 1 :]))
-        if not self.exists(before):
+        if not self.exists(before) and not self._members(task.over[: place + 1], index[:place], member):
             here, there = label(Node(task.name, index), task.over), label(before, task.over)
             raise GraphError(f"{here}: {task.along.__name__} puts {there} before it")
         return before.at, ()

@@ -47,12 +47,14 @@ class DeformationGraph(Artifact):
     With fixed connectivity there is nothing to fit: the graph is empty and has no passes.
     """
 
-    opens: ClassVar[tuple[str, ...]] = ("pass",)
+    opens: ClassVar[tuple[str, ...]] = ("pass", "pass/search")
     orders: ClassVar[str] = "pass"
     frame: int
     """Source frame number of the reference, which every fit leaves as it is."""
     passes: int
     """How many times all frames are fitted again with a learned stiffness."""
+    searched: tuple[int, ...] = ()
+    """Passes before which limbs that lost their roll are searched for."""
     vertices: Annotated[Floats, Array("float64", VERTEX, XYZ, unit="length")]
     """Position of every vertex at rest."""
     faces: Annotated[Ints, Array("int32", FACE, CORNER)]
@@ -85,8 +87,8 @@ class DeformationGraph(Artifact):
     """The block of every edge."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:
-        """The passes, numbered from 0."""
-        return range(self.passes)
+        """The passes, numbered from 0; the one search of a pass, if it has one."""
+        return range(self.passes) if space == "pass" else range(int(index[0] in self.searched))
 
     def previous(self, member: int) -> int | None:
         """The pass before; None for the first."""

@@ -7,7 +7,7 @@ from kinetree.schemas.dims import CANDIDATE, LIMB, ROW, XYZ
 
 
 class RollCandidates(Artifact):
-    """The fit of every limb from each start; the first start is where the limb is. No limbs in passes without a search."""
+    """The fit of every limb from each start; the first start is where the limb is."""
 
     angle: Annotated[Floats, Array("float64", LIMB, CANDIDATE, unit="radian")]
     """Roll of the limb about its axis from where it was."""

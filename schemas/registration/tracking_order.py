@@ -10,14 +10,14 @@ from kinetree.schemas.dims import FRAME
 class TrackingOrder(Artifact):
     """A tree of frames, whose root is the reference."""
 
-    opens: ClassVar[tuple[str, ...]] = ("pass/frame",)
+    opens: ClassVar[tuple[str, ...]] = ("pass/frame", "pass/search/frame")
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     before: Annotated[Ints, Array("int32", FRAME)]
     """Position of the frame from which each frame is reached, −1 for the reference, and for all with fixed connectivity."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:
-        """The frames of a pass, which are all."""
+        """The frames of a pass, or of its search, which are all."""
         return self.frames
 
     def previous(self, member: int) -> int | None:

@@ -6,6 +6,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.registration.deformation_graph import DeformationGraph, DeformationGraphParams
 from kinetree.schemas.registration.reference import Reference
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
+from kinetree.tasks.numerics.registration.stiffness import refit_pass
 
 
 @task()
@@ -20,6 +21,7 @@ def deformation_graph(reference: Reference, params: DeformationGraphParams) -> D
     return DeformationGraph(
         frame=reference.frame,
         passes=params.passes,
+        searched=tuple(p for p in range(1, params.passes) if refit_pass(p).roll),
         vertices=made.V,
         faces=made.F,
         normals=made.N,

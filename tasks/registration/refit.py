@@ -17,7 +17,7 @@ from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration.deformation import fit
 from kinetree.tasks.numerics.registration.roll import frame_rolls
 from kinetree.tasks.numerics.registration.stiffness import refit_pass
-from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, first_pose, graph, rolled_pose, target
+from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, first_pose, graph, pose, rolled_pose, target
 
 
 @task(over="pass/frame", along=DeformationGraph)
@@ -27,7 +27,7 @@ def refit(
     first_fit: FirstFit,
     recovery: Recovery,
     stiffness: Stiffness,
-    candidates: RollCandidates,
+    candidates: tuple[RollCandidates, ...],
     roll: Roll,
     previous: Refit | None,
     index: Index,
@@ -40,7 +40,9 @@ def refit(
     if previous is None:
         start = first_pose(first_fit, recovery, frame)
     else:
-        start = rolled_pose(nodes, previous, candidates, stiffness, _chosen(roll, candidates, frame))
+        start = pose(previous)
+        for fits in candidates:
+            start = rolled_pose(nodes, previous, fits, stiffness, _chosen(roll, fits, frame))
     if frame != deformation_graph.frame:  # the reference stays what it is
         surface = target(mesh, deformation_graph, vertex_colour, colour_agreement)
         start = fit(nodes, start, surface, refit_pass(number).fit, roll.stiffness.copy()).pose

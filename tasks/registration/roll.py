@@ -1,13 +1,12 @@
 """The roll of limbs over the whole sequence, and the stiffness that follows from it."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from kinetree.pipeline.task import Previous, task
 from kinetree.schemas.array import Floats, Index, Ints
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.deformation_graph import DeformationGraph
+from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.refit import Refit
 from kinetree.schemas.registration.roll import Roll
 from kinetree.schemas.registration.roll_candidates import RollCandidates
@@ -30,23 +29,25 @@ from kinetree.tasks.registration.pose import graph, rolled_pose
 def roll(
     deformation_graph: DeformationGraph,
     stiffness: Stiffness,
-    candidates: Mapping[int, RollCandidates],
+    recovery: Recovery,
+    candidates: tuple[RollCandidates, ...],
     refit: Previous[tuple[Refit, ...]],
     previous: Roll | None,
     index: Index,
 ) -> Roll:
     """Chooses for every limb the path through its candidates that fits clearly better than where it was tracked (ours)."""
-    nodes, frames = graph(deformation_graph), tuple(candidates)
-    cluster = stiffness.cluster.astype(np.int64)
-    angle, misfit = (np.stack([getattr(c, name) for c in candidates.values()]) for name in ("angle", "misfit"))
-    takes = take_spans(frames)
-    begins = [take.start for take in takes[1:]]
-    chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame), begins=begins).astype(np.int32)
+    nodes, frames = graph(deformation_graph), recovery.frames
+    cluster, takes = stiffness.cluster.astype(np.int64), take_spans(frames)
+    chosen = np.empty((len(frames), 0), np.int32)
+    if candidates:
+        angle, misfit = (np.stack([getattr(c, name) for c in candidates]) for name in ("angle", "misfit"))
+        begins = [take.start for take in takes[1:]]
+        chosen = chosen_rolls(angle, misfit, frames.index(deformation_graph.frame), begins=begins).astype(np.int32)
     limb = np.array(previous.limb) if previous is not None else np.full(len(nodes.node), -1, np.int32)
     corrected = np.array(stiffness.stiffness)
     if (chosen >= 0).any():
         limb = _rolled_limbs(nodes, cluster, chosen)
-        pairs = zip(refit, candidates.values(), chosen, strict=True)
+        pairs = zip(refit, candidates, chosen, strict=True)
         poses = [rolled_pose(nodes, r, c, stiffness, row) for r, c, row in pairs]
         corrected = learned_stiffness(nodes, poses, takes=takes)
     return Roll(

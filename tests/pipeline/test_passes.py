@@ -111,6 +111,14 @@ def test_every_pass_reads_its_own_index_and_the_pass_before(passing):
     assert made_from("pose[frame=3]") == {"smooth[frame=3]", *refits(0, 1, 2, frames=[3])}
 
 
+def test_what_one_pass_alone_has_reads_the_pass_before_though_that_has_none(passing):
+    passing.run()
+    plan = passing.pipeline().plan()
+    assert [n.node for n in plan.nodes if n.task == "checked"] == [f"checked[pass=1,check=0,frame={n}]" for n in FRAMES]
+    made = [passing.pipeline().artifact("checked", **{"pass": 1, "check": 0, "frame": n}).value for n in FRAMES]
+    assert made == [passing.pipeline().artifact("refit", **{"pass": 0, "frame": n}).value for n in FRAMES]
+
+
 def test_members_of_a_gather_are_numbered_by_the_dimension_gathered(passing):
     passing.run(source={"frames": "1::2"})
     pipeline = passing.pipeline(source={"frames": "1::2"})
@@ -166,7 +174,7 @@ def test_passes_are_the_same_bytes_wherever_they_are_computed(passing, tmp_path)
         return passing.artifacts(store=str(tmp_path / name))
 
     expected = made("sync")
-    assert len(expected) == 6 * 5 + 1 + 3 + 2 * 18
+    assert len(expected) == 6 * 6 + 1 + 3 + 2 * 18
     assert made("threads", executor="threads", workers=2) == expected
     assert made("processes", executor="processes", workers=2) == expected
 

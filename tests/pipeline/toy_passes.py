@@ -24,7 +24,7 @@ class PassesParams(Params):
 class Passes(Artifact):
     """The passes, each over all frames."""
 
-    opens: ClassVar[tuple[str, ...]] = ("pass", "pass/frame")
+    opens: ClassVar[tuple[str, ...]] = ("pass", "pass/frame", "pass/check", "pass/check/frame")
     orders: ClassVar[str] = "pass"
     count: int
     """How many."""
@@ -32,7 +32,9 @@ class Passes(Artifact):
     """Frame numbers."""
 
     def members(self, space: str, index: Index) -> tuple[int, ...]:
-        """The passes, or the frames of one."""
+        """The passes, or the frames of one; the second pass alone has a check."""
+        if space == "pass/check":
+            return (0,) if index == (1,) else ()
         return tuple(range(self.count)) if space == "pass" else self.frames
 
     def previous(self, member: int) -> int | None:
@@ -54,6 +56,13 @@ class Refit(Artifact):
 
     value: float
     """What became of it."""
+
+
+class Checked(Artifact):
+    """One frame before a pass that checks."""
+
+    value: float
+    """The refit's value in the pass before."""
 
 
 class Pose(Artifact):
@@ -102,6 +111,14 @@ def refit(smooth: Smooth, stiffness: Stiffness, before: Refit | None) -> Refit:
     return Refit(value=value)
 
 
+@task(over="pass/check/frame", along=Passes)
+def checked(refit: Refit | None) -> Checked:
+    """Looks at what the pass before made of a frame."""
+    value = -1.0 if refit is None else refit.value
+    executed("checked", value)
+    return Checked(value=value)
+
+
 @task(over="frame")
 def pose(smooth: Smooth, refit: Mapping[int, Refit]) -> Pose:
     """Takes the last pass."""
@@ -123,5 +140,5 @@ def numbered(smooth: Smooth, index: Index) -> Numbered:
     return Numbered(index=index)
 
 
-TASKS = (source, points, smooth, refit, stiffness, passes, pose, still, numbered)
+TASKS = (source, points, smooth, refit, stiffness, passes, pose, checked, still, numbered)
 GRAPH = Graph.of(TASKS)

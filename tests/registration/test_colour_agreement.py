@@ -57,7 +57,7 @@ def test_pass_fits_by_colours_that_count_and_else_as_without() -> None:
     made = walk()
     t = next(t for t in made.mesh if t != made.reference.frame)
     told = made.mesh[t], made.deformation_graph, made.first_fit[t], made.recovery
-    told = *told, made.stiffness[0], made.roll_candidates[0][t], made.roll[0], None, (0, t)
+    told = *told, made.stiffness[0], (), made.roll[0], None, (0, t)
     without = refit(*told)
     painted, plain = patterned(), noise()
     assert not np.array_equal(refit(*told, painted[t], agreed(painted)).translation, without.translation)

@@ -42,8 +42,8 @@ def test_fixed_connectivity_has_no_passes() -> None:
 
 def test_only_the_limb_that_rolled_moves_and_the_reference_stays() -> None:
     made = walk()
-    body, told = graph(made.deformation_graph), lost(1)
-    chosen = roll(made.deformation_graph, made.stiffness[1], told, tuple(made.refit[0].values()), made.roll[0], (1,))
+    body, told, before = graph(made.deformation_graph), lost(1), tuple(made.refit[0].values())
+    chosen = roll(made.deformation_graph, made.stiffness[1], made.recovery, tuple(told.values()), before, made.roll[0], (1,))
     for t, before in made.refit[0].items():
         start = rolled_pose(body, before, told[t], made.stiffness[1], chosen.row(t))
         moved = (start.rotation != before.rotation).any(axis=(1, 2))

@@ -17,7 +17,7 @@ def test_every_frame_has_a_row_and_the_reference_stays() -> None:
 def test_a_limb_that_had_lost_its_roll_rolls_and_no_other() -> None:
     made = walk()
     before = tuple(made.refit[0].values())
-    found = roll(made.deformation_graph, made.stiffness[1], lost(1), before, made.roll[0], (1,))
+    found = roll(made.deformation_graph, made.stiffness[1], made.recovery, tuple(lost(1).values()), before, made.roll[0], (1,))
     assert (found.candidate[:, 1] == np.where(np.array(found.frames) == made.reference.frame, -1, 3)).all()
     assert (np.delete(found.candidate, 1, axis=1) == -1).all()
     assert set(found.limb.tolist()) == {-1, 1}
@@ -28,7 +28,7 @@ def test_passes_without_a_search_choose_nothing_and_remember_which_limbs_rolled(
     made = walk()
     rolled = made.roll[1].model_copy(update={"limb": np.where(made.stiffness[1].cluster == 0, 0, -1).astype(np.int32)})
     before = tuple(made.refit[1].values())
-    found = roll(made.deformation_graph, made.stiffness[2], made.roll_candidates[2], before, rolled, (2,))
+    found = roll(made.deformation_graph, made.stiffness[2], made.recovery, (), before, rolled, (2,))
     assert found.candidate.shape == (len(made.mesh), 0)
     assert np.array_equal(found.limb, rolled.limb)
 
