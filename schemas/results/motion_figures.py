@@ -4,4 +4,4 @@ from kinetree.schemas.results.figures import Figures
 
 
 class MotionFigures(Figures):
-    """The tree of joints, their confidence and their angles."""
+    """The angles of joints."""

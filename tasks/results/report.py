@@ -19,6 +19,7 @@ from kinetree.schemas.results.report import Report, ReportParams
 from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
 from kinetree.schemas.results.topology_figures import TopologyFigures
+from kinetree.schemas.results.tree_figures import TreeFigures
 from kinetree.schemas.results.verdict import Verdict
 from kinetree.schemas.structure.error_bars import ErrorBars
 from kinetree.schemas.structure.skeleton import Skeleton
@@ -44,6 +45,7 @@ def report(
     skeleton: Skeleton,
     structure_figures: StructureFigures,
     skeleton_figures: SkeletonFigures,
+    tree_figures: TreeFigures,
     motion_figures: MotionFigures,
     topology_figures: TopologyFigures,
     alignment_figures: AlignmentFigures,
@@ -62,7 +64,7 @@ def report(
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
 ) -> Report:
     """Lays out the result of the run on one page that needs no network (ours)."""
-    structure = pictures(skeleton_figures) + pictures(motion_figures)
+    structure = pictures(skeleton_figures) + pictures(tree_figures) + pictures(motion_figures)
     label, truth = dict(zip(verdict.joints, verdict.labels, strict=True)), []
     if evaluation.summary is not None:
         truth = [Section("truth", "Comparison with the truth", _comparison(evaluation, evaluation_figures, label))]

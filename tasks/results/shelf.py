@@ -35,6 +35,7 @@ from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.tables import tables
 from kinetree.tasks.results.topology_figures import topology_figures
 from kinetree.tasks.results.trc import trc
+from kinetree.tasks.results.tree_figures import tree_figures
 from kinetree.tasks.results.truth import truth
 from kinetree.tasks.results.usd import usd
 from kinetree.tasks.results.verdict import verdict
@@ -64,6 +65,7 @@ RESULTS = (
     coarse_mesh,
     topology_figures,
     skeleton_figures,
+    tree_figures,
     motion_figures,
     alignment_figures,
     evaluation_figures,

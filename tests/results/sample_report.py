@@ -45,6 +45,7 @@ from kinetree.tasks.results.skeleton_figures import skeleton_figures
 from kinetree.tasks.results.structure_figures import structure_figures
 from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.topology_figures import topology_figures
+from kinetree.tasks.results.tree_figures import tree_figures
 from kinetree.tasks.results.verdict import verdict
 
 UP = UpDirection(up="y", confidence=1.0)
@@ -158,6 +159,7 @@ def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:
     all_of_it["verdict"] = verdict(**some("skeleton", "joint_names", "frame_confidence", "surface_error", "error_bars"))
     all_of_it["skeleton_figures"] = skeleton_figures(**some("skeleton", "excerpt", "up_direction"))
     all_of_it["appearance"] = changes.get("appearance", Appearance.none())
+    all_of_it["tree_figures"] = tree_figures(**some("skeleton", "joint_names"))
     all_of_it["motion_figures"] = motion_figures(**some("skeleton", "joint_names"))
     all_of_it["evaluation_figures"] = evaluation_figures(**some("evaluation", "sequence"))
     played = {argument.name: all_of_it[argument.name] for argument in played_body.arguments}
