@@ -12,6 +12,7 @@ from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned
+from kinetree.tasks.numerics.structure.rigid_cores import core_motions
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
@@ -123,11 +124,19 @@ def tree_joints(
     tree = left.part_tree.tree
     label = np.argsort(tree.order)[left.parts.label]
     tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)
+    if confidence is None:
+        left = left._replace(parts=_by_cores(body, left.parts))
     R, t = (np.ascontiguousarray(a[:, tree.order]) for a in (left.parts.R, left.parts.t))
     W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * body.size)
     rest, off = _joints(V, area, label, W, left, chosen)
     both = both_residuals(left.parts.residual[:, tree.order], tree.parents)
     return TreeJoints(left, used, label, W, R, t, rest, off, both)
+
+
+def _by_cores(body: MovingSurface, parts: MovingParts) -> MovingParts:
+    """The same parts; those that have a core move as it does."""
+    R, t, residual = core_motions(body.V, body.x, body.area, parts.label, parts.R, parts.t, parts.residual)
+    return parts._replace(R=R, t=t, residual=residual)
 
 
 def both_residuals(residual: Floats, parents: Ints) -> Floats:
