@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 import numba
 from numba.core.caching import UserProvidedCacheLocator
 
+from kinetree.tasks.numerics.kernel_cache import KernelCache
 from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -40,6 +41,8 @@ def compiled(function: Function) -> Function:
     folder = _kept_at(function.__module__)
     with _configured(CACHE_DIR=folder, CACHE_LOCATOR_CLASSES=LOCATOR):
         dispatcher: Function = numba.njit(cache=bool(folder), nogil=True, error_model="numpy")(function)
+        if folder:
+            dispatcher._cache = KernelCache(function)  # type: ignore[attr-defined]
     return dispatcher
 
 
