@@ -31,7 +31,7 @@ from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.events import Account, Listener, Watch
 from kinetree.pipeline.running.memory import Needs
-from kinetree.pipeline.running.worker_parent import WorkerParent
+from kinetree.pipeline.running.worker_parent import WorkerParent, refuse_within_import
 from kinetree.pipeline.settings import config as configuration
 from kinetree.pipeline.settings.config import Compute, Config
 from kinetree.pipeline.storage.files import Files, Settling
@@ -174,6 +174,8 @@ class Pipeline:
         """
         started = time.perf_counter()
         compute = self.config.compute
+        if client is None and compute.has_own_workers:
+            refuse_within_import()
 
         def begin() -> None:  # the files are new, so that there will be something to compute
             if client is None and compute.has_own_workers:

@@ -3,6 +3,7 @@
 import asyncio
 import concurrent.futures
 import contextlib
+import copy
 import importlib
 import logging
 import math
@@ -14,22 +15,24 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from distributed import Client, KilledWorker, LocalCluster, Security, WorkerPlugin, get_worker, performance_report
+from distributed import Client, KilledWorker, LocalCluster, Nanny, Security, WorkerPlugin, get_worker, performance_report
+from distributed.utils import get_mp_context
 
 from kinetree.errors import ClusterError, ConfigError, LostWorkerError
 from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.running.execute import Result, execute
 from kinetree.pipeline.running.following import MEMORY, begun_topic
-from kinetree.pipeline.running.living_workers import FOLLOW_SECONDS, LivingWorkers
+from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.running.own_workers import Starts, kept_up
 from kinetree.pipeline.running.parcels import Demand
+from kinetree.pipeline.running.worker_parent import refuse_within_import
 from kinetree.pipeline.settings.config import Compute
 
 CONNECT_SECONDS = 10
 SCHEDULER_FILE_BYTES = 2**20
+Configured = Callable[[], contextlib.AbstractContextManager[None]]
 ALLOWED_DEATHS = 1
 """How often a parcel is tried on another of our own worker processes before its first node is tried alone."""
-REPLACE_SECONDS = 30.0
-"""Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
 IDLE_PATIENCE = 2.0
 """Seconds in which a worker with nothing to do ends by itself."""
 LEAST_MEMORY = 600_000_000
@@ -43,11 +46,14 @@ _FILES = ("_file", "_cert", "_key")
 
 
 @contextlib.contextmanager
-def local(compute: Compute) -> Iterator[Client]:
+def local(compute: Compute, configured: Configured = contextlib.nullcontext, starts: Starts | None = None) -> Iterator[Client]:
     """Processes of this machine, one thread each, gone when the block ends, however it ends.
 
-    raises : ConfigError where they may hold less memory than they need for their code
+    configured : a context with what dask is to be configured to where they are made, and nowhere else
+    starts     : hears how often they ended while they started
+    raises     : ConfigError where they may hold less memory than they need for their code
     """
+    refuse_within_import()
     workers, memory = compute.worker_count, compute.memory_bytes
     if memory is not None and memory < LEAST_MEMORY:
         raise ConfigError(
@@ -55,24 +61,26 @@ def local(compute: Compute) -> Iterator[Client]:
             " give it more, or leave it out for no limit"
         )
     with contextlib.ExitStack() as stack:
-        made = LocalCluster(
-            n_workers=0,
-            threads_per_worker=1,
-            processes=True,
-            memory_limit=memory or 0,
-            resources={MEMORY: memory} if memory else {},
-            dashboard_address="127.0.0.1:0",
-            silence_logs=logging.CRITICAL,
-            scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
-            **secured(compute),
-        )
+        with configured():  # what the scheduler takes
+            made = LocalCluster(
+                n_workers=0,
+                threads_per_worker=1,
+                worker_class=OwnNanny,
+                configured=configured,
+                memory_limit=memory or 0,
+                resources={MEMORY: memory} if memory else {},
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                scheduler_kwargs={"allowed_failures": ALLOWED_DEATHS},
+                **secured(compute),
+            )
         cluster = stack.enter_context(_closed(made))
         client = stack.enter_context(_closed(Client(cluster)))
         client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
         cluster.scale(workers)
-        stack.enter_context(_kept_up(cluster, workers))
         try:
-            yield client
+            with kept_up(cluster, workers, starts or Starts()):
+                yield client
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
             cluster.sync(_end, cluster, patience=0.1)
             raise
@@ -89,39 +97,35 @@ def _closed(opened: Any) -> Iterator[Any]:
             opened.close()
 
 
-@contextlib.contextmanager
-def _kept_up(cluster: LocalCluster, workers: int) -> Iterator[None]:
-    """Replaces our own workers where none is left: one that dies while it starts is not started again by its nanny."""
-    keeping = asyncio.run_coroutine_threadsafe(_keep_up(cluster, workers), cluster.loop.asyncio_loop)
-    try:
-        yield
-    finally:
-        keeping.cancel()
+class OwnNanny(Nanny):  # type: ignore[misc]
+    """Looks after one of our own worker processes, configured as it is and not as another run of this program is."""
 
-
-async def _keep_up(cluster: LocalCluster, workers: int) -> None:
-    empty, times = 0.0, 0
-    while True:
-        await asyncio.sleep(FOLLOW_SECONDS)
-        empty, times = (0.0, 0) if cluster.scheduler.workers else (empty + FOLLOW_SECONDS, times)
-        if empty > REPLACE_SECONDS * 2**times:  # longer each time: a busy machine may start them slowly
-            empty, times = 0.0, times + 1
-            cluster.scale(0)
-            while cluster.workers:  # names are given anew once their workers are gone
-                await asyncio.sleep(FOLLOW_SECONDS)
-            cluster.scale(workers)
+    def __init__(self, *given: Any, configured: Configured, **named: Any) -> None:
+        with configured():
+            super().__init__(*given, **named)
+            self.config = copy.deepcopy(self.config)  # its inner parts are those of the program's
+        if get_mp_context().get_start_method() == "forkserver":
+            self.pre_spawn_env = {}  # dask would leave it in this program's own environment; a forked worker sets it itself
 
 
 @contextlib.contextmanager
-def connected(compute: Compute, client: Client | None = None) -> Iterator[Client]:
-    """The client handed in, or one of the cluster that the configuration names; raises ClusterError, ConfigError."""
+def connected(
+    compute: Compute,
+    client: Client | None = None,
+    configured: Configured = contextlib.nullcontext,
+    starts: Starts | None = None,
+) -> Iterator[Client]:
+    """The client handed in, or one of the cluster that the configuration names; raises ClusterError, ConfigError.
+
+    configured, starts : as in `local`
+    """
     with _quiet(), contextlib.ExitStack() as stack:
         if client is None and (compute.scheduler or compute.scheduler_file):
             client = stack.enter_context(at(compute))
         elif client is None and compute.cluster:
             client = stack.enter_context(started(compute))
         elif client is None:
-            client = stack.enter_context(local(compute))
+            client = stack.enter_context(local(compute, configured, starts))
         if compute.performance_report is not None:
             if find_spec("bokeh") is None:
                 raise ConfigError("--performance-report: bokeh is not installed; pip install 'kinetree[cluster]'")

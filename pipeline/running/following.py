@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from kinetree.errors import ClusterError
-from kinetree.pipeline.running.living_workers import FOLLOW_SECONDS, LivingWorkers
+from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.running.own_workers import FOLLOW_SECONDS, Starts
 from kinetree.pipeline.settings.config import Compute
 
 MEMORY = "memory"
@@ -15,13 +16,14 @@ MEMORY = "memory"
 
 
 @contextlib.contextmanager
-def followed(client: Any, compute: Compute, *, is_ours: bool = False) -> Iterator[LivingWorkers]:
+def followed(client: Any, compute: Compute, starts: Starts | None = None, *, is_ours: bool = False) -> Iterator[LivingWorkers]:
     """The workers of a client while they come and go, those asked for already there; raises ClusterError where they are not.
 
+    starts  : of our own workers, which may all end while they start
     is_ours : whether they are started with the memory that the configuration names
     """
     wanted, seconds = compute.wanted_workers
-    workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0)
+    workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0, starts=starts or Starts())
     client.subscribe_topic(begun_topic(client), workers.hear_begun)
     following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
     try:
@@ -32,6 +34,7 @@ def followed(client: Any, compute: Compute, *, is_ours: bool = False) -> Iterato
                     f"--wait-workers {wanted}: {workers.count} workers are there after {seconds:g} s; start more, or wait"
                     " longer (--wait-workers N,SECONDS)"
                 )
+            workers.starts.check()
             if not workers.is_known:
                 workers.check()
             time.sleep(0.02)

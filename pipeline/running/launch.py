@@ -5,8 +5,10 @@ threads; on workers, distributed does. Everything is a future.
 import contextlib
 import os
 import secrets
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 import dask.config
@@ -14,6 +16,7 @@ from dask.local import SynchronousExecutor
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.running.execute import Step, execute
+from kinetree.pipeline.running.own_workers import Starts
 from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.running.pool import Pool
 from kinetree.pipeline.running.sight import Sight
@@ -36,6 +39,11 @@ at once, which the kernel then clears for the next one. It stays where workers h
 by what they hold; where the run's own environment sets it, it holds."""
 VARIABLES: Mapping[str, Any] = {"OMP_NUM_THREADS": 1, "MKL_NUM_THREADS": 1, "OPENBLAS_NUM_THREADS": 1, TRIM: 65536}
 """Those that dask sets unless it is configured otherwise: processes are begun before the run has imported most of dask."""
+
+
+_CONFIGURING = threading.RLock()
+_FORKING: list[contextlib.AbstractContextManager[Any]] = []
+"""One for each run whose workers are forked; the first knows what dask was configured to before."""
 
 
 class Future(Protocol):
@@ -93,11 +101,11 @@ def launcher(compute: Compute, client: Any = None, parent: WorkerParent | None =
             if is_ours and not compute.cluster:
                 parent = stack.enter_context(WorkerParent()) if parent is None else parent
                 parent.begin(environment(compute))
-                watching = UNWATCHED if compute.performance_report is None else {}
-                starting = {ENVIRONMENT: environment(compute), **({METHOD: "forkserver"} if parent.is_there else {})}
-                stack.enter_context(dask.config.set({**starting, **watching}))
-            there = stack.enter_context(clusters.connected(compute, client))
-            yield _on_client(there, stack.enter_context(followed(there, compute, is_ours=is_ours)), compute)
+                if parent.is_there:
+                    stack.enter_context(_forking())
+            starts = Starts()
+            there = stack.enter_context(clusters.connected(compute, client, partial(_configured, compute), starts))
+            yield _on_client(there, stack.enter_context(followed(there, compute, starts, is_ours=is_ours)), compute)
         return
     if compute.performance_report is not None:
         raise ConfigError("--performance-report: dask reports on workers; add --executor processes or --scheduler ADDRESS")
@@ -112,9 +120,35 @@ def launcher(compute: Compute, client: Any = None, parent: WorkerParent | None =
             yield Launcher(lambda _, __, *work: here.submit(execute, *work), lambda: 1, is_apart=False)
 
 
+@contextlib.contextmanager
+def _configured(compute: Compute) -> Iterator[None]:
+    """How dask starts and watches processes of this run; its configuration is one for all threads, so one at a time sets it."""
+    watching = UNWATCHED if compute.performance_report is None else {}
+    with _CONFIGURING, dask.config.set({ENVIRONMENT: environment(compute), **watching}):
+        yield
+
+
+@contextlib.contextmanager
+def _forking() -> Iterator[None]:
+    """Has dask fork processes until the last run of this program that asked for it is over."""
+    with _CONFIGURING:
+        if not _FORKING:
+            _FORKING.append(dask.config.set({METHOD: "forkserver"}))
+        else:
+            _FORKING.append(contextlib.nullcontext())
+    try:
+        yield
+    finally:
+        with _CONFIGURING:
+            ended = _FORKING.pop()
+            if not _FORKING:
+                ended.__exit__(None, None, None)
+
+
 def environment(compute: Compute) -> dict[str, str]:
     """What is set in the environment of our own processes before they start."""
-    wanted = {**VARIABLES, **dask.config.get(ENVIRONMENT, {})}
+    with _CONFIGURING:
+        wanted = {**VARIABLES, **dask.config.get(ENVIRONMENT, {})}
     own = {name: str(value) for name, value in wanted.items() if name != TRIM or compute.memory_bytes}
     return own | {name: os.environ[name] for name in own if name in os.environ}
 

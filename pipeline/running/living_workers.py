@@ -6,9 +6,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from kinetree.errors import ClusterError
-
-FOLLOW_SECONDS = 0.25
-"""How often the scheduler is asked for its workers."""
+from kinetree.pipeline.running.own_workers import FOLLOW_SECONDS, Starts
 
 
 @dataclass
@@ -23,6 +21,8 @@ class LivingWorkers:
     """The most bytes that one of them declares to have for nodes, or will declare; 0 where none does."""
     began: dict[str, tuple[float, str]] = field(default_factory=dict)
     """By dask's key, when a parcel that tells it was begun last, and the address of the worker."""
+    starts: Starts = field(default_factory=Starts)
+    """Of our own."""
     is_known: bool = False
     """Whether the scheduler has answered once."""
     _answered: float = field(default_factory=time.monotonic)
@@ -64,7 +64,8 @@ class LivingWorkers:
         return max([*self._asked.values()], default=0)
 
     def check(self) -> None:
-        """Raises ClusterError where nobody answered, or there was no worker, for too long."""
+        """Raises ClusterError where nobody answered, or there was no worker, for too long, or none of our own starts."""
+        self.starts.check()
         long_ago = time.monotonic() - max(self.patience, 2 * FOLLOW_SECONDS)
         if self._answered < long_ago:
             raise ClusterError(f"the scheduler has not answered for {self.patience:g} s; check that it runs, then run again")

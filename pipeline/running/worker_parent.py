@@ -10,11 +10,12 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping
-from multiprocessing import forkserver, resource_tracker
+from multiprocessing import current_process, forkserver, resource_tracker
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, ClassVar
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.running import worker_preload
 
 CHOSEN = "DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD"
@@ -23,18 +24,32 @@ PATIENCE = 1.0
 """Seconds in which its end is waited for. One that is still importing ends a little later, and one of which another part of
 this program has children ends after them."""
 
+GUARD = 'what starts it belongs under `if __name__ == "__main__":`, since every worker process imports the script'
+
+
+def refuse_within_import() -> None:
+    """Raises ConfigError in a worker process that is about to start, and imports the script that runs the pipeline."""
+    if getattr(current_process(), "_inheriting", False):
+        raise ConfigError(f"a run on processes was started by a worker process: {GUARD}")
+
 
 class WorkerParent:
     """Begun by whoever knows first that there is something to compute; it ends with the block.
 
+    Python has one server of that kind. Runs of one program at the same time share the one that the first of them began, and the
+    last of them ends it.
+
     setup : what the product has it load (`Application.worker_setup`)
     """
 
+    _lock = threading.Lock()
+    _users: ClassVar[list["WorkerParent"]] = []
+    _preload: ClassVar[list[str]] = []
+    """What the program had set before."""
+
     def __init__(self, setup: str | None = None) -> None:
         self._setup = setup or ""
-        self._lock = threading.Lock()
         self._server: Any = None
-        self._preload: list[str] = []
 
     def __enter__(self) -> "WorkerParent":
         return self
@@ -42,8 +57,10 @@ class WorkerParent:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         with self._lock:
             if self._server is not None:
-                _ended(self._server)
-                self._server._preload_modules = self._preload  # dask has set its own since
+                self._users.remove(self)
+                if not self._users:
+                    _ended(self._server)
+                    self._server._preload_modules = list(self._preload)  # dask has set its own since
                 self._server = None
 
     def begin(self, environment: Mapping[str, str]) -> None:
@@ -56,19 +73,26 @@ class WorkerParent:
             server: Any = getattr(forkserver, "_forkserver", None)
             is_known = all(hasattr(server, name) for name in ("_forkserver_pid", "_forkserver_alive_fd", "_preload_modules"))
             is_wanted = sys.platform == "linux" and CHOSEN not in os.environ
-            if self._server is None and is_wanted and is_known and server._forkserver_pid is None:
-                # nothing is imported from the folder that the user happens to be in
-                variables = {**environment, worker_preload.SETUP: self._setup, "PYTHONSAFEPATH": "1"}
-                self._preload = server._preload_modules
-                try:
-                    with _set(variables):
-                        resource_tracker.ensure_running()  # which lets interrupts through again
-                    with _set(variables), _interrupts_held_back():
-                        forkserver.set_forkserver_preload([worker_preload.__name__])
-                        forkserver.ensure_running()
-                    self._server = server
-                except OSError:
-                    server._forkserver_pid, server._preload_modules = None, self._preload
+            if self._server is not None or not is_wanted or not is_known:
+                return
+            if self._users or (server._forkserver_pid is None and self._is_started(server, environment)):
+                self._server = server
+                self._users.append(self)
+
+    def _is_started(self, server: Any, environment: Mapping[str, str]) -> bool:
+        # nothing is imported from the folder that the user happens to be in
+        variables = {**environment, worker_preload.SETUP: self._setup, "PYTHONSAFEPATH": "1"}
+        self._preload[:] = server._preload_modules
+        try:
+            with _set(variables):
+                resource_tracker.ensure_running()  # which lets interrupts through again
+            with _set(variables), _interrupts_held_back():
+                forkserver.set_forkserver_preload([worker_preload.__name__])
+                forkserver.ensure_running()
+        except OSError:
+            server._forkserver_pid, server._preload_modules = None, list(self._preload)
+            return False
+        return True
 
     @property
     def is_there(self) -> bool:

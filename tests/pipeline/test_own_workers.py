@@ -1,0 +1,139 @@
+"""Laws of our own workers while they start: what ends is started again, and a run that can have none ends in words."""
+
+import asyncio
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+from multiprocessing import forkserver
+
+import dask.config
+import pytest
+from distributed import Client
+
+from kinetree.errors import ClusterError
+from kinetree.pipeline.running import own_workers
+from kinetree.pipeline.running.launch import ENVIRONMENT, METHOD, TRIM, environment, launcher
+from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.running.own_workers import STARTS, Starts, unguarded_script
+from kinetree.pipeline.running.worker_parent import CHOSEN, WorkerParent
+from kinetree.pipeline.settings.config import Compute
+
+TWO = Compute(executor="processes", workers=2)
+SCRIPT = """
+from kinetree.pipeline.inspect import Pipeline
+from {name}.toys import GRAPH
+Pipeline.of({config!r}, methods={{"toy": GRAPH}}).run()
+"""
+SOON = own_workers.REPLACE_SECONDS / 2
+is_linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere workers start as dask starts them")
+
+
+@pytest.mark.parametrize("method", ["", "spawn"])
+def test_a_script_that_lacks_the_guard_ends_in_words(toys, method):
+    script = toys.folder / "script.py"
+    script.write_text(SCRIPT.format(name=toys.name, config=toys.config(compute={"executor": "processes", "workers": 1})))
+    variables = {**os.environ, **({CHOSEN: method} if method else {})}
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=100, env=variables)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1].startswith(f"kinetree.errors.ClusterError: no worker process starts: {script} starts")
+    assert 'if __name__ == "__main__":' in done.stderr
+    assert toys.executions() == []
+
+
+def test_only_a_script_that_never_asks_for_its_name_is_blamed(tmp_path, monkeypatch):
+    main = sys.modules["__main__"]
+    script = tmp_path / "script.py"
+    monkeypatch.setattr(main, "__file__", str(script), raising=False)
+    assert unguarded_script() == ""
+    script.write_text("run()")
+    assert unguarded_script() == str(script)
+    script.write_text('if __name__ == "__main__":\n    run()')
+    assert unguarded_script() == ""
+    monkeypatch.delattr(main, "__file__")
+    assert unguarded_script() == ""
+
+
+def test_workers_that_end_while_they_start_end_the_run_after_some_tries(monkeypatch):
+    monkeypatch.setattr(own_workers, "unguarded_script", lambda: "")
+    workers = LivingWorkers(60, starts=Starts(in_vain=STARTS - 1))
+    workers.check()
+    workers.starts.in_vain += 1
+    with pytest.raises(ClusterError, match="no worker process starts, 3 times tried"):
+        workers.check()
+
+
+@is_linux
+def test_kill_9_of_their_parent_before_the_first_is_there_costs_a_moment(toys):
+    with WorkerParent() as parent:
+        parent.begin(environment(TWO))
+        server = forkserver._forkserver._forkserver_pid
+        os.kill(server, signal.SIGSTOP)  # so that they wait for it
+        with launcher(TWO, None, parent):
+            cluster = Client.current().cluster
+            toys.until(lambda: any(w.process and w.process.status.name == "starting" for w in cluster._created), "they start")
+            threading.Event().wait(0.2)
+            os.kill(server, signal.SIGKILL)
+            assert Client.current().submit(abs, -1).result(timeout=SOON) == 1
+
+
+def test_one_that_is_gone_is_replaced_while_others_live(toys):
+    with launcher(TWO):
+        cluster = Client.current().cluster
+        toys.until(lambda: len(cluster.workers) == len(cluster.scheduler.workers) == 2, "both are there")
+        gone = next(iter(cluster.workers.values()))
+        cluster.sync(gone.close)
+        toys.until(lambda: gone not in cluster.workers.values() and len(cluster.scheduler.workers) == 2, "both are there again")
+
+
+def test_runs_at_the_same_time_have_each_their_own_configuration_and_leave_none():
+    before = {key: dask.config.get(key) for key in (METHOD, ENVIRONMENT, "distributed.worker.profile.enabled")}
+    trim = os.environ.get(TRIM)
+    with contextlib.ExitStack() as first, contextlib.ExitStack() as second:
+        first.enter_context(launcher(Compute(executor="processes", workers=1)))
+        one = Client.current()
+        second.enter_context(launcher(Compute(executor="processes", workers=1, memory="2 GiB")))
+        other = Client.current()
+        assert one.submit(os.getenv, TRIM).result(timeout=60) == trim
+        assert other.submit(os.getenv, TRIM).result(timeout=60) == str(before[ENVIRONMENT][TRIM])
+        assert other.submit(dask.config.get, "distributed.worker.profile.enabled").result(timeout=60) is False
+        first.close()
+        worker = other.submit(os.getpid).result(timeout=60)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(worker, signal.SIGKILL)
+        assert other.submit(abs, -2).result(timeout=60) == 2
+    assert {key: dask.config.get(key) for key in before} == before
+    assert os.environ.get(TRIM) == trim
+
+
+@is_linux
+def test_runs_at_the_same_time_share_what_workers_are_forked_from_until_the_last_is_over():
+    with WorkerParent() as last:
+        with WorkerParent() as first:
+            first.begin({})
+            last.begin({})
+            server = forkserver._forkserver._forkserver_pid
+            assert first.is_there
+            assert last.is_there
+        os.kill(server, 0)
+        assert forkserver._forkserver._forkserver_pid == server
+    assert forkserver._forkserver._forkserver_pid is None
+
+
+def test_many_threads_leave_what_was_configured():
+    before = dask.config.get(METHOD)
+
+    async def all_at_once() -> None:
+        await asyncio.gather(*(asyncio.to_thread(forked) for _ in range(8)))
+
+    def forked() -> None:
+        from kinetree.pipeline.running.launch import _forking
+
+        for _ in range(50):
+            with _forking():
+                assert dask.config.get(METHOD) == "forkserver"
+
+    asyncio.run(all_at_once())
+    assert dask.config.get(METHOD) == before
