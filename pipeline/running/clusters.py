@@ -100,6 +100,9 @@ def _closed(opened: Any) -> Iterator[Any]:
 class OwnNanny(Nanny):  # type: ignore[misc]
     """Looks after one of our own worker processes, configured as it is and not as another run of this program is."""
 
+    config: dict[str, Any]
+    pre_spawn_env: dict[str, str]
+
     def __init__(self, *given: Any, configured: Configured, **named: Any) -> None:
         with configured():
             super().__init__(*given, **named)
