@@ -56,9 +56,9 @@ class Passing(BaseHTTPRequestHandler):
         answer = behind.getresponse()
         data = answer.read()
         dropped = ("transfer-encoding", "connection", "content-length")
-        kept = [(name, value) for name, value in answer.getheaders() if name.lower() not in dropped]
+        headers = [(name, value) for name, value in answer.getheaders() if name.lower() not in dropped]
         length = answer.getheader("Content-Length") if self.command == "HEAD" else str(len(data))
-        self.answer(answer.status, [*kept, ("Content-Length", length or "0")], data)
+        self.answer(answer.status, [*headers, ("Content-Length", length or "0")], data)
         behind.close()
 
     def answer(self, status, headers, data):
@@ -94,10 +94,10 @@ def service(behind, monkeypatch, request):
     }.items():  # fmt: skip
         monkeypatch.setenv(name, value)
     between.bucket = f"b{abs(hash(request.node.name)):x}"
-    made = http.client.HTTPConnection("127.0.0.1", behind)
-    made.request("PUT", f"/{between.bucket}")
-    assert made.getresponse().status == 200
-    made.close()
+    connection = http.client.HTTPConnection("127.0.0.1", behind)
+    connection.request("PUT", f"/{between.bucket}")
+    assert connection.getresponse().status == 200
+    connection.close()
     yield between
     between.shutdown()
     between.server_close()

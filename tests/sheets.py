@@ -47,12 +47,12 @@ def frame(t: int, *, hidden: tuple[int, ...] = (), bend: float = 0.15, anew: boo
     order = np.random.default_rng(t).permutation(len(V)) if anew else np.arange(len(V))
     number = np.argsort(order)
     mesh = Mesh(vertices=V[order], faces=number[FACES].astype(np.int32), vertex_of_input=np.arange(len(V)), cleaning=Cleaning())
-    seen = np.array([n for n in np.roll([0, 1, 2], t) if n not in hidden], np.int64)
-    vertex = number[CORNERS[seen]]
-    X = V[CORNERS[seen]]
+    visible = np.array([n for n in np.roll([0, 1, 2], t) if n not in hidden], np.int64)
+    vertex = number[CORNERS[visible]]
+    X = V[CORNERS[visible]]
     extrema = Extrema(
-        vertices=vertex, persistence=np.full(len(seen), 0.5), stems=np.stack([0 * X, X], axis=1),
-        normals=np.tile([0.0, 0.0, 1.0], (len(seen), 1)), value=np.full(len(seen), 0.7), peaks=np.full(len(seen), 0.5),
+        vertices=vertex, persistence=np.full(len(visible), 0.5), stems=np.stack([0 * X, X], axis=1),
+        normals=np.tile([0.0, 0.0, 1.0], (len(visible), 1)), value=np.full(len(visible), 0.7), peaks=np.full(len(visible), 0.5),
         loops=np.zeros(0), size=10.0, centre=(0.0, 0.0, 0.0), euler=1, components=1,
     )  # fmt: skip
     area = np.full(len(V), 13 * 8 / len(V))
@@ -70,9 +70,9 @@ def leaves_of(frames: dict[int, Frame], *ends: int) -> Leaves:
             if len(row):
                 rows[leaf, t], positions[leaf, t] = row[0], here.extrema.stems[row[0], -1]
     begin = [0, *(e + 1 for e in ends[:-1])]
-    kept = np.array([(rows[:, a : b + 1] >= 0).mean(axis=1) >= 0.5 for a, b in zip(begin, ends, strict=True)])
+    is_kept = np.array([(rows[:, a : b + 1] >= 0).mean(axis=1) >= 0.5 for a, b in zip(begin, ends, strict=True)])
     none = np.zeros(0, np.int64)
-    return Leaves(frames=tuple(frames), rows=rows, positions=positions, kept=kept, lost=none, lost_begin=none, lost_end=none)
+    return Leaves(frames=tuple(frames), rows=rows, positions=positions, kept=is_kept, lost=none, lost_begin=none, lost_end=none)
 
 
 def reference_of(

@@ -45,33 +45,33 @@ from kinetree.tasks.topology.mu_histogram import mu_histogram
 
 def cleaned(V: np.ndarray, F: np.ndarray) -> Mesh:
     """One frame as the task `mesh` leaves it."""
-    made = clean(V, F.astype(np.int32))
-    told = Cleaning(area=made.area, euler=made.euler)
-    return Mesh(vertices=made.V, faces=made.F, vertex_of_input=made.vertex_map, cleaning=told)
+    result = clean(V, F.astype(np.int32))
+    cleaning = Cleaning(area=result.area, euler=result.euler)
+    return Mesh(vertices=result.V, faces=result.F, vertex_of_input=result.vertex_map, cleaning=cleaning)
 
 
-def bodied(**told: Any) -> Body:
+def bodied(**params: Any) -> Body:
     """A generated body; a walking human of five frames, but for what is told."""
-    return body(recipe(SynthParams(**{"figure": "human", "frames": 5, "vertices": 1500, **told})))
+    return body(recipe(SynthParams(**{"figure": "human", "frames": 5, "vertices": 1500, **params})))
 
 
-def generated(**told: Any) -> dict[int, Mesh]:
+def generated(**params: Any) -> dict[int, Mesh]:
     """Every frame of it."""
-    made = bodied(**told)
-    return {t: cleaned(*made.frame(t)) for t in range(len(made.X))}
+    generator = bodied(**params)
+    return {t: cleaned(*generator.frame(t)) for t in range(len(generator.X))}
 
 
 def along(task: Any, order: Any, frames: abc.Sequence[int], **per_frame: Any) -> dict[int, Any]:
     """A task that reads its own previous artifact, over all frames in the order of its traversal."""
-    made: dict[int, Any] = {}
+    artifacts: dict[int, Any] = {}
 
     def at(frame: int) -> Any:
-        if frame not in made:
+        if frame not in artifacts:
             before = order.previous(frame)
             previous = None if before is None else at(before)
             here = {k: v[frame] if isinstance(v, dict) else v for k, v in per_frame.items()}
-            made[frame] = task(**here, previous=previous)
-        return made[frame]
+            artifacts[frame] = task(**here, previous=previous)
+        return artifacts[frame]
 
     return {frame: at(frame) for frame in frames}
 
@@ -87,26 +87,26 @@ def uncut(count: int) -> Intervals:
 def referred(meshes: dict[int, Mesh]) -> tuple[Any, dict[int, Extrema], Leaves]:
     """The reference of a sequence, the extrema of every frame, and its leaves."""
     mu = {t: geodesics(m, GeodesicsParams(bases=40)) for t, m in meshes.items()}
-    seen = {t: extrema(meshes[t], g, ExtremaParams()) for t, g in mu.items()}
-    followed = leaves(seen, uncut(len(seen)), LeavesParams())
+    tips = {t: extrema(meshes[t], g, ExtremaParams()) for t, g in mu.items()}
+    followed = leaves(tips, uncut(len(tips)), LeavesParams())
     chosen = reference(
         mesh=meshes,
         distribution={t: mu_histogram(g, MuHistogramParams()) for t, g in mu.items()},
-        tips=seen,
+        tips=tips,
         leaves=followed,
         connectivity=connectivity(meshes),
         params=ReferenceParams(),
     )
-    return chosen, seen, followed
+    return chosen, tips, followed
 
 
 def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
     """Every artifact of Step II, by the name of its task; per frame as a mapping, per pass as a list."""
-    made = SimpleNamespace(mesh=meshes)
-    made.reference, made.extrema, made.leaves = referred(meshes)
-    graph = made.deformation_graph = deformation_graph(made.reference, DeformationGraphParams(nodes=nodes))
-    made.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
-    made.take_entries, made.numbers = (
+    steps = SimpleNamespace(mesh=meshes)
+    steps.reference, steps.extrema, steps.leaves = referred(meshes)
+    graph = steps.deformation_graph = deformation_graph(steps.reference, DeformationGraphParams(nodes=nodes))
+    steps.sequence = Sequence(frames=tuple(meshes), fps=None, unit=None)
+    steps.take_entries, steps.numbers = (
         TakeEntries(
             frames=(),
             before=(),
@@ -117,51 +117,51 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         ),
         {t: (t,) for t in meshes},
     )
-    made.tracking_order = tracking_order(made.reference, made.take_entries, made.sequence, made.extrema, made.leaves)
-    made.tracking = along(
+    steps.tracking_order = tracking_order(steps.reference, steps.take_entries, steps.sequence, steps.extrema, steps.leaves)
+    steps.tracking = along(
         tracking,
-        made.tracking_order,
+        steps.tracking_order,
         list(meshes),
         mesh=meshes,
         deformation_graph=graph,
-        take_entries=made.take_entries,
-        index=made.numbers,
+        take_entries=steps.take_entries,
+        index=steps.numbers,
         params=TrackingParams(),
-        tips=made.extrema,
+        tips=steps.extrema,
     )
-    made.first_fit = {t: first_fit(m, graph, made.tracking[t]) for t, m in meshes.items()}
-    made.recovery = recovery(graph, made.take_entries, made.first_fit, meshes)
-    made.stiffness, made.roll_candidates, made.roll, made.refit = [], [], [], []
+    steps.first_fit = {t: first_fit(m, graph, steps.tracking[t]) for t, m in meshes.items()}
+    steps.recovery = recovery(graph, steps.take_entries, steps.first_fit, meshes)
+    steps.stiffness, steps.roll_candidates, steps.roll, steps.refit = [], [], [], []
     for number in graph.members("pass", ()):
-        one_pass(made, number)
-    final = {t: tuple(refit[t] for refit in made.refit) for t in meshes}
-    made.alignment = {t: alignment(m, made.reference, graph, made.recovery, final[t]) for t, m in meshes.items()}
-    made.projection = {t: projection(m, made.reference, made.alignment[t]) for t, m in meshes.items()}
-    made.frame_confidence = frame_confidence(made.alignment, meshes, made.sequence)
-    return made
+        one_pass(steps, number)
+    final = {t: tuple(refit[t] for refit in steps.refit) for t in meshes}
+    steps.alignment = {t: alignment(m, steps.reference, graph, steps.recovery, final[t]) for t, m in meshes.items()}
+    steps.projection = {t: projection(m, steps.reference, steps.alignment[t]) for t, m in meshes.items()}
+    steps.frame_confidence = frame_confidence(steps.alignment, meshes, steps.sequence)
+    return steps
 
 
-def one_pass(made: SimpleNamespace, number: int) -> None:
+def one_pass(steps: SimpleNamespace, number: int) -> None:
     """Appends what a pass leaves, made from the passes before it."""
-    graph, index = made.deformation_graph, (number,)
-    before = made.refit[-1] if made.refit else {}
-    earlier = (made.stiffness or [None])[-1], (made.roll or [None])[-1]
-    stiff = stiffness(graph, made.first_fit, made.recovery, tuple(before.values()), earlier[0], index)
+    graph, index = steps.deformation_graph, (number,)
+    before = steps.refit[-1] if steps.refit else {}
+    earlier = (steps.stiffness or [None])[-1], (steps.roll or [None])[-1]
+    stiff = stiffness(graph, steps.first_fit, steps.recovery, tuple(before.values()), earlier[0], index)
     is_searched = len(graph.members("pass/search", index)) > 0
-    tried = {t: roll_candidates(m, graph, stiff, before.get(t)) for t, m in made.mesh.items()} if is_searched else {}
-    chosen = roll(graph, stiff, made.recovery, tuple(tried.values()), tuple(before.values()), earlier[1], index)
-    made.stiffness.append(stiff)
-    made.roll_candidates.append(tried)
-    made.roll.append(chosen)
-    made.refit.append({t: refitted(made, number, t, before.get(t)) for t in made.mesh})
+    tried = {t: roll_candidates(m, graph, stiff, before.get(t)) for t, m in steps.mesh.items()} if is_searched else {}
+    chosen = roll(graph, stiff, steps.recovery, tuple(tried.values()), tuple(before.values()), earlier[1], index)
+    steps.stiffness.append(stiff)
+    steps.roll_candidates.append(tried)
+    steps.roll.append(chosen)
+    steps.refit.append({t: refitted(steps, number, t, before.get(t)) for t in steps.mesh})
 
 
-def refitted(made: SimpleNamespace, number: int, frame: int, before: Any) -> Any:
+def refitted(steps: SimpleNamespace, number: int, frame: int, before: Any) -> Any:
     """One frame in one pass, from its pose of the pass before."""
-    fits = made.roll_candidates[number]
-    told = made.stiffness[number], (fits[frame],) if fits else (), made.roll[number]
-    here = made.mesh[frame], made.deformation_graph, made.first_fit[frame], made.recovery
-    return refit(*here, *told, before, (number, frame))
+    fits = steps.roll_candidates[number]
+    of_pass = steps.stiffness[number], (fits[frame],) if fits else (), steps.roll[number]
+    here = steps.mesh[frame], steps.deformation_graph, steps.first_fit[frame], steps.recovery
+    return refit(*here, *of_pass, before, (number, frame))
 
 
 @cache
@@ -172,12 +172,12 @@ def walk() -> SimpleNamespace:
 
 def lost(limb: int) -> dict[int, RollCandidates]:
     """Candidates of `walk` as frames would have them if one limb fitted a quarter of a turn further, but in the reference."""
-    made, out = walk(), {}
-    for t, told in made.roll_candidates[1].items():
-        angle = np.tile(2 * np.pi * np.arange(told.angle.shape[1]) / told.angle.shape[1], (len(told.angle), 1))
+    steps, out = walk(), {}
+    for t, tried in steps.roll_candidates[1].items():
+        angle = np.tile(2 * np.pi * np.arange(tried.angle.shape[1]) / tried.angle.shape[1], (len(tried.angle), 1))
         misfit = np.full_like(angle, 0.2 + 0.001 * t)
         misfit[:, 0] -= 0.05
-        if t != made.reference.frame:
+        if t != steps.reference.frame:
             misfit[limb, 3] -= 0.15
-        out[t] = told.model_copy(update={"angle": angle, "misfit": misfit})
+        out[t] = tried.model_copy(update={"angle": angle, "misfit": misfit})
     return out

@@ -56,14 +56,14 @@ DOORS = ("kinetree.pipeline.storage.files", "kinetree.pipeline.identity.key", "k
 @cache
 def imports(path: Path) -> frozenset[str]:
     """Every module an import statement of the file names, `from a import b` as a and a.b."""
-    found: set[str] = set()
+    modules: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            modules |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
-            found |= {str(node.module)} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return frozenset(found)
+            modules |= {str(node.module)} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return frozenset(modules)
 
 
 def name(path: Path) -> str:
@@ -176,9 +176,9 @@ def test_no_module_imports_itself_in_a_ring() -> None:
     graph: nx.DiGraph[str] = nx.DiGraph()
     modules = {module(p): p for p in FILES}
     for here, path in modules.items():
-        seen = {m for m in imports(path) if m in modules}
-        packages = {m for m in seen if modules[m].name == "__init__.py" and m != "kinetree.errors"}
-        graph.add_edges_from((here, m) for m in seen - packages)
+        imported = {m for m in imports(path) if m in modules}
+        packages = {m for m in imported if modules[m].name == "__init__.py" and m != "kinetree.errors"}
+        graph.add_edges_from((here, m) for m in imported - packages)
     assert list(nx.simple_cycles(graph)) == []
 
 

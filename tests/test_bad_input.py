@@ -126,8 +126,8 @@ def test_folder_without_meshes(refused, tmp_path):
 
 def test_mixed_formats(refused, scans):
     (scans / "3.obj").write_text("")
-    told = refused("-i", "scans")
-    assert told == f"{scans}: meshes of several formats (1 × .obj, 3 × .off); choose by a pattern such as {scans}/*.off"
+    message = refused("-i", "scans")
+    assert message == f"{scans}: meshes of several formats (1 × .obj, 3 × .off); choose by a pattern such as {scans}/*.off"
 
 
 def test_remedy_for_mixed_formats_works(kinetree, scans):
@@ -136,22 +136,20 @@ def test_remedy_for_mixed_formats_works(kinetree, scans):
 
 
 def test_single_frame(refused, scans, tmp_path):
-    told = "a single frame; kinematics are seen in motion, give at least two frames"
-    assert refused("-i", "scans", "--frames", "1:2") == f"frames '1:2' selects {told}"
+    message = "a single frame; kinematics are seen in motion, give at least two frames"
+    assert refused("-i", "scans", "--frames", "1:2") == f"frames '1:2' selects {message}"
     for t in (1, 2):
         (scans / f"{t}.off").unlink()
-    assert refused("-i", "scans") == f"{scans}: there is {told}"
+    assert refused("-i", "scans") == f"{scans}: there is {message}"
 
 
 def test_one_mesh_instead_of_a_folder(refused, scans):
-    told = refused("-i", "scans/0.off")
-    assert (
-        told == f"{scans / '0.off'}: one file, not a sequence; give the folder of the frames' files, or a pattern such as *.off"
-    )
+    remedy = "give the folder of the frames' files, or a pattern such as *.off"
+    assert refused("-i", "scans/0.off") == f"{scans / '0.off'}: one file, not a sequence; {remedy}"
 
 
 @pytest.mark.parametrize(
-    ("frames", "told"),
+    ("frames", "message"),
     [
         ("5", "frames '5': write start:stop or start:stop:step, e.g. 10:60:2"),
         ("a:b", "frames 'a:b': write start:stop or start:stop:step, e.g. 10:60:2"),
@@ -164,8 +162,8 @@ def test_one_mesh_instead_of_a_folder(refused, scans):
     ],
     ids=lambda text: text[:12],
 )
-def test_wrong_frames(refused, scans, frames, told):
-    assert refused("-i", "scans", f"--frames={frames}").startswith(told.format(scans=scans))
+def test_wrong_frames(refused, scans, frames, message):
+    assert refused("-i", "scans", f"--frames={frames}").startswith(message.format(scans=scans))
 
 
 def test_folder_that_may_not_be_entered(refused, scans, monkeypatch):
@@ -202,10 +200,10 @@ def test_bad_frame_is_left_out_alone(left_out, scans):
 
 def test_bad_frames_beyond_the_share_or_against_the_users_word_are_refused(refused, scans):
     (scans / "1.off").write_bytes(b"hello")
-    told = "frame 1: 1.off: does not begin with OFF"
-    assert refused("-i", "scans").startswith(f"1 of 3 frames cannot be used (source.bad_share allows 0.2): {told}")
+    reason = "frame 1: 1.off: does not begin with OFF"
+    assert refused("-i", "scans").startswith(f"1 of 3 frames cannot be used (source.bad_share allows 0.2): {reason}")
     message = refused("-i", "scans", "--set", "source.bad_share=0.5", "--set", "source.on_bad_frame=fail")
-    assert message.startswith(f"1 of 3 frames cannot be used (set source.on_bad_frame=drop to go on without them): {told}")
+    assert message.startswith(f"1 of 3 frames cannot be used (set source.on_bad_frame=drop to go on without them): {reason}")
 
 
 def test_frame_made_whole_again_runs_with_the_frame_that_named_it(left_out, kinetree, scans, tmp_path):
@@ -270,9 +268,9 @@ def test_npz_with_pickled_objects_is_refused_and_not_unpickled(refused, tmp_path
     objects = np.empty(1, dtype=object)
     objects[0] = Bomb()
     np.savez(file, allow_pickle=True, **packed(vertices=objects))
-    told = refused("-i", "walk.npz")
-    assert told.startswith(f"{file}: cannot be read as .npz (ValueError: Object arrays cannot be loaded")
-    assert told.endswith("an archive of plain arrays is needed")
+    message = refused("-i", "walk.npz")
+    assert message.startswith(f"{file}: cannot be read as .npz (ValueError: Object arrays cannot be loaded")
+    assert message.endswith("an archive of plain arrays is needed")
     assert not (tmp_path / "exploded").exists()
 
 
@@ -296,7 +294,7 @@ def test_npz_whose_members_point_outside_reads_and_writes_nothing_there(refused,
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "words"),
     [
         ({"faces": None}, "no array faces; there are "),
         ({"vertices": V[:, :2]}, "vertices is float64 (4, 2); floating numbers (n, 3) are needed"),
@@ -309,11 +307,11 @@ def test_npz_whose_members_point_outside_reads_and_writes_nothing_there(refused,
     ],
     ids=lambda changes: next(iter(changes)) if isinstance(changes, dict) else "",
 )
-def test_npz_of_a_wrong_layout_is_refused_by_its_array(refused, tmp_path, changes, told):
+def test_npz_of_a_wrong_layout_is_refused_by_its_array(refused, tmp_path, changes, words):
     np.savez(tmp_path / "walk.npz", **packed(**changes))
     message = refused("-i", "walk.npz")
     assert "walk.npz" in message
-    assert told in message
+    assert words in message
 
 
 @pytest.mark.parametrize("unit", ["it's", 'a "b" \\ c', "a\nb", "[red]", "None", "µm", "\x1b[31m"])
@@ -330,9 +328,9 @@ def test_zarr_that_is_none_is_refused(refused, tmp_path, marker, content):
     folder = tmp_path / "walk.zarr"
     folder.mkdir()
     (folder / marker).write_text(content)
-    told = refused("-i", "walk.zarr")
-    assert told.startswith(f"{folder}: ")
-    assert "not a readable zarr group" in told or "no array vertices" in told
+    message = refused("-i", "walk.zarr")
+    assert message.startswith(f"{folder}: ")
+    assert "not a readable zarr group" in message or "no array vertices" in message
 
 
 # ── configuration ───────────────────────────────────────────────────────────────────────────────────────────────────
@@ -347,8 +345,8 @@ def test_typo_in_yaml_is_refused_with_the_nearest_key(refused, tmp_path):
 
 def test_what_the_command_line_says_is_blamed_on_it_and_not_on_the_file(refused, tmp_path):
     (tmp_path / "walk.yaml").write_text("source: {input: scans}\n")
-    told = refused("walk.yaml", "--set", "mesh.component_share=2")
-    assert told == "--set mesh.component_share=2: mesh.component_share: input should be less than or equal to 1, got 2"
+    message = refused("walk.yaml", "--set", "mesh.component_share=2")
+    assert message == "--set mesh.component_share=2: mesh.component_share: input should be less than or equal to 1, got 2"
 
 
 def test_yaml_that_would_run_code_is_refused_and_runs_none(refused, tmp_path):
@@ -443,7 +441,7 @@ def refuse_writes(monkeypatch, code):
 
 
 @pytest.mark.parametrize(
-    ("code", "told"),
+    ("code", "words"),
     [
         (errno.ENOSPC, "no space left while writing"),
         (errno.EDQUOT, "no space left while writing"),
@@ -452,13 +450,13 @@ def refuse_writes(monkeypatch, code):
     ],
 )
 @pytest.mark.parametrize("executor", ["sync", "threads"])
-def test_disk_that_refuses_keeps_everything_stored(kinetree, walked, monkeypatch, code, told, executor):
+def test_disk_that_refuses_keeps_everything_stored(kinetree, walked, monkeypatch, code, words, executor):
     before = everything(walked / "store" / "artifacts") | everything(walked / "store" / "records")
     with monkeypatch.context() as patched:
         refuse_writes(patched, code)
         exit_code, _, complained = kinetree("run", "out", "--set", "mesh.merge=0", "--executor", executor, "-q")
     assert exit_code == 2
-    assert told in complained
+    assert words in complained
     assert complained.count("kinetree: ") == 1
     assert everything(walked / "store" / "artifacts") | everything(walked / "store" / "records") == before
     exit_code, printed, _ = kinetree("run", "out", "--until", "mesh")
@@ -492,9 +490,9 @@ def test_disk_that_fills_up_in_the_middle_keeps_what_was_finished(kinetree, scan
 def test_disk_that_is_truly_full(kinetree, scans, tmp_path):
     tiny = tmp_path / "tiny"
     tiny.mkdir()
-    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=28k", "none", str(tiny)], capture_output=True, text=True)
-    if made.returncode:
-        pytest.skip(f"a small disk cannot be mounted here: {made.stderr.strip()}")
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=28k", "none", str(tiny)], capture_output=True, text=True)
+    if mounted.returncode:
+        pytest.skip(f"a small disk cannot be mounted here: {mounted.stderr.strip()}")
     try:
         code, _, complained = kinetree("run", "-i", "scans", "-o", "tiny/out", "--until", "mesh", "--executor", "sync", "-q")
         assert code == 2
@@ -562,13 +560,13 @@ def test_scheduler_that_does_not_answer_is_to_be_tried_again_and_a_wrong_address
 
 
 def test_scheduler_without_an_address(refused, scans):
-    told = "compute.scheduler: string should have at least 1 character, got ''"
-    assert refused("-i", "scans", "--scheduler", "") == told
+    message = "compute.scheduler: string should have at least 1 character, got ''"
+    assert refused("-i", "scans", "--scheduler", "") == message
 
 
 def test_memory_that_is_no_size(kinetree, scans):
     code, _, complained = kinetree(
         "run", "-i", "scans", "-o", "out", "--until", "mesh", "--executor", "processes", "--set", "compute.memory=lots", "-q"
     )
-    told = "--set compute.memory=lots: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'"
-    assert (code, complained) == (2, f"kinetree: {told}\n")
+    message = "--set compute.memory=lots: compute.memory: expected a size such as 4GB or 512MiB, got 'lots'"
+    assert (code, complained) == (2, f"kinetree: {message}\n")

@@ -44,8 +44,8 @@ def test_worker_process_with_other_numbers_of_threads_makes_the_same_bytes(
 ) -> None:
     there = pipeline(tmp_path, executor="processes", workers=1)
     (tmp_path / "run.yaml").write_text(str(there.config.saved() | {"compute": {"executor": "processes", "workers": 1}}))
-    kept = {name: value for name, value in os.environ.items() if name not in THREADS}
+    environment = {name: value for name, value in os.environ.items() if name not in THREADS}
     command = [str(Path(sys.executable).parent / "kinetree"), "run", str(tmp_path / "run.yaml"), "--quiet"]
     until = [word for name in UNTIL for word in ("--until", name)]
-    subprocess.run([*command, *until], env=kept | {"OMP_NUM_THREADS": "2"}, check=True)
+    subprocess.run([*command, *until], env=environment | {"OMP_NUM_THREADS": "2"}, check=True)
     assert artifacts(there) == expected

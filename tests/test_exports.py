@@ -181,17 +181,17 @@ def test_failed_skeleton_leaves_no_file(configured, tmp_path):
     assert names(tmp_path / "out") == ["config.yaml", "run.json", "store"]
 
 
-@pytest.mark.parametrize(("task", "array", "left"), [("bvh", "content", "skeleton.bvh"), ("segmentation", "part", LEFT[0])])
-def test_damaged_export_is_made_again_by_the_next_run(out, configured, task, array, left):
+@pytest.mark.parametrize(("task", "array", "expected"), [("bvh", "content", "skeleton.bvh"), ("segmentation", "part", LEFT[0])])
+def test_damaged_export_is_made_again_by_the_next_run(out, configured, task, array, expected):
     pipeline = Pipeline.of(configured)
     node = pipeline.why(task)
     alter(out / "store" / artifact_path(node.artifact), f"{array}/c/0", lambda data: bytes(len(data)))
-    shutil.rmtree(out / left) if (out / left).is_dir() else (out / left).unlink()
+    shutil.rmtree(out / expected) if (out / expected).is_dir() else (out / expected).unlink()
     with pytest.raises(DamagedArtifactError, match="will be computed again"):
         pipeline.run()
-    assert left not in names(out)
+    assert expected not in names(out)
     assert ran(Pipeline.of(configured).run()) == {task}
-    assert left in names(out)
+    assert expected in names(out)
 
 
 def test_labels_come_back_to_the_vertices_of_every_file(out):
@@ -216,9 +216,9 @@ def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):
     export(str(out), "ply", tmp_path / "coloured")
     assert names(tmp_path / "coloured") == [f"frame_{t:04d}.ply" for t in range(12)]
     exported = trimesh.load(tmp_path / "coloured" / "frame_0003.ply", process=False)
-    given = trimesh.load(scans / "0003.ply", process=False)
-    np.testing.assert_allclose(exported.vertices, given.vertices, atol=1e-6)
-    np.testing.assert_array_equal(exported.faces, given.faces)
+    scan = trimesh.load(scans / "0003.ply", process=False)
+    np.testing.assert_allclose(exported.vertices, scan.vertices, atol=1e-6)
+    np.testing.assert_array_equal(exported.faces, scan.faces)
     part = exported.metadata["_ply_raw"]["vertex"]["data"]["part"]
     np.testing.assert_array_equal(part[1:], spider().label[order(3)][1:])
     colour = exported.visual.vertex_colors
@@ -227,17 +227,17 @@ def test_own_meshes_come_back_with_their_parts(out, scans, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("form", "left"),
+    ("form", "expected"),
     [
         ("glb", ["skeleton.glb"]),
         ("csv", ["angles.csv", "bones.csv", "confidence.csv", "joints.csv", "motion.csv", "positions.csv", "turns.csv"]),
         ("rignet", ["skeleton.obj", "skeleton.txt"]),
     ],
 )
-def test_export_writes_into_a_folder_that_is_named(out, tmp_path, form, left):
+def test_export_writes_into_a_folder_that_is_named(out, tmp_path, form, expected):
     (tmp_path / "there").mkdir()
     export(str(out), form, tmp_path / "there")
-    assert names(tmp_path / "there") == left
+    assert names(tmp_path / "there") == expected
 
 
 def test_export_names_a_single_file_as_it_is_told(out, tmp_path, capsys):
@@ -338,9 +338,9 @@ def test_names_that_are_no_style_and_no_file_of_names_are_refused(out, tmp_path)
 def test_names_of_joints_that_are_not_there_are_told_and_too_long_ones_refused(out, tmp_path, capsys):
     (tmp_path / "names.yaml").write_text("arm: jaw\nelbow: x\n")
     export(str(out), "bvh", tmp_path / "named.bvh", names=str(tmp_path / "names.yaml"))
-    told = capsys.readouterr().err
-    assert f"{tmp_path}/names.yaml: no joint that was found is called elbow\n" in told
-    assert "arm" not in told
+    printed = capsys.readouterr().err
+    assert f"{tmp_path}/names.yaml: no joint that was found is called elbow\n" in printed
+    assert "arm" not in printed
     export(str(out), "bvh", tmp_path / "again.bvh", ["joint_names.rename={arm: jaw, elbow: x}"])
     assert "joint_names.rename: no joint that was found is called elbow\n" in capsys.readouterr().err
     (tmp_path / "names.yaml").write_text(f"arm: {'x' * 101}\n")

@@ -27,15 +27,15 @@ def output(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def ran(told: dict[str, Any]) -> set[str]:
-    return {name for name, task in told["tasks"].items() if task["ran"]}
+def ran(account: dict[str, Any]) -> set[str]:
+    return {name for name, task in account["tasks"].items() if task["ran"]}
 
 
 def test_most_joints_are_found_and_few_are_invented(output: Path) -> None:
-    told = json.loads((output / "evaluation.json").read_text())["summary"]
-    assert told["found"] >= 0.7 * told["scored"]
-    assert told["spurious"] <= 3
-    assert told["percent"] < 2.0
+    summary = json.loads((output / "evaluation.json").read_text())["summary"]
+    assert summary["found"] >= 0.7 * summary["scored"]
+    assert summary["spurious"] <= 3
+    assert summary["percent"] < 2.0
 
 
 def test_everything_of_the_readmes_table_is_left(output: Path) -> None:
@@ -73,7 +73,7 @@ def test_file_that_was_deleted_or_spoilt_is_back_after_a_run_that_computes_nothi
 def test_body_surfaced_anew_in_every_frame_is_found_too(tmp_path: Path) -> None:
     pipeline = pipeline_of(tmp_path / "out", ANEW)
     assert pipeline.run()["status"] == "done"
-    told: Any = pipeline.artifact("evaluation").summary  # type: ignore[attr-defined]
-    assert told.found >= 0.6 * told.scored
-    assert told.spurious <= 6
+    summary: Any = pipeline.artifact("evaluation").summary  # type: ignore[attr-defined]
+    assert summary.found >= 0.6 * summary.scored
+    assert summary.spurious <= 6
     assert all((tmp_path / "out" / name).exists() for name in LEFT)

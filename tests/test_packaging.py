@@ -31,12 +31,12 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) -> None:
-    held = set(zipfile.ZipFile(wheel).namelist())
+    names = set(zipfile.ZipFile(wheel).namelist())
     for folder in ("pipeline", "tasks", "schemas", "configs"):
         for file in (ROOT / folder).rglob("*"):
             if file.suffix in SHIPPED and "__pycache__" not in file.parts:
-                assert f"kinetree/{file.relative_to(ROOT)}" in held
-    assert {name.split("/")[0] for name in held if ".dist-info" not in name} == {"kinetree"}
+                assert f"kinetree/{file.relative_to(ROOT)}" in names
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"kinetree"}
 
 
 def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path, tmp_path: Path) -> None:
@@ -51,8 +51,8 @@ def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     generic = "import importlib.util as u; print([n for n in ('pipeline', 'tasks', 'schemas') if u.find_spec(n)])"
-    found = subprocess.run([home / "bin/python", "-c", generic], cwd=elsewhere, capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == "[]"
+    process = subprocess.run([home / "bin/python", "-c", generic], cwd=elsewhere, capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "[]"
     _write_two_tetrahedra(elsewhere / "two.npz")
     command = [home / "bin/kinetree", "run", "--input", "two.npz", "--output", "out", "--until", "connectivity", "--json"]
     for ran in (4, 0):
@@ -64,7 +64,7 @@ def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path
 
 
 def test_same_sources_give_the_same_wheel_to_the_byte(tmp_path: Path) -> None:
-    made = []
+    wheels = []
     for n, place in enumerate(("one", "another")):
         copy = tmp_path / place
         ignored = shutil.ignore_patterns(".*", "build", "dist", "*.egg-info", "__pycache__", "tests", "benchmarks")
@@ -84,8 +84,8 @@ def test_same_sources_give_the_same_wheel_to_the_byte(tmp_path: Path) -> None:
         done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
         assert done.returncode == 0, done.stdout + done.stderr
         (wheel,) = (tmp_path / f"dist-{n}").glob("*.whl")
-        made.append(wheel.read_bytes())
-    assert made[0] == made[1]
+        wheels.append(wheel.read_bytes())
+    assert wheels[0] == wheels[1]
 
 
 def test_every_direct_dependency_has_a_floor_and_a_newest_version_that_was_tested() -> None:
@@ -105,15 +105,15 @@ def required(wheel: Path) -> set[str]:
     """Names of the distributions that the wheel requires, and that these require."""
     (info,) = (entry for entry in zipfile.Path(zipfile.ZipFile(wheel)).iterdir() if entry.name.endswith(".dist-info"))
     waiting: list[tuple[metadata.Distribution, str]] = [(metadata.PathDistribution(info), "")]
-    found: set[tuple[str, str]] = set()
+    requirements: set[tuple[str, str]] = set()
     while waiting:
         distribution, extra = waiting.pop()
         for requirement in map(Requirement, distribution.requires or ()):
             if requirement.marker is None or requirement.marker.evaluate({"extra": extra}):
-                new = {(requirement.name, wanted) for wanted in {"", *requirement.extras}} - found
+                new = {(requirement.name, wanted) for wanted in {"", *requirement.extras}} - requirements
                 waiting += [(metadata.distribution(name), wanted) for name, wanted in new]
-                found |= new
-    return {name for name, _ in found}
+                requirements |= new
+    return {name for name, _ in requirements}
 
 
 def _link(distribution: metadata.Distribution, site: Path) -> None:

@@ -86,9 +86,9 @@ def test_varied_setting_changes_results_and_computes_nothing_before_them(bench: 
     body = bench.Body("starfish", 2, 400, 0)
 
     def run() -> dict[str, int]:
-        told = bench.outcome(body, tmp_path, until="extrema")
-        assert told.why == ""
-        return dict(told.ran)
+        outcome = bench.outcome(body, tmp_path, until="extrema")
+        assert outcome.why == ""
+        return dict(outcome.ran)
 
     def peaks() -> int:
         return len(bench.pipeline(body, tmp_path).artifact("extrema", frame=0).peaks)

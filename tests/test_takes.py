@@ -22,10 +22,10 @@ FRAMES = 5
 
 def written(folder: Path, motion: str, turn: float, shift: float) -> str:
     """A generated body in motion, turned and moved, as files."""
-    made = body(recipe(SynthParams(figure="human", motion=motion, frames=FRAMES, vertices=600)))
+    generated = body(recipe(SynthParams(figure="human", motion=motion, frames=FRAMES, vertices=600)))
     folder.mkdir(parents=True)
     for t in range(FRAMES):
-        V, F = made.frame(t)
+        V, F = generated.frame(t)
         trimesh.Trimesh(V @ rotation((0, 0, 1), turn).T + shift, F, process=False).export(folder / f"frame_{t}.ply")
     return str(folder)
 

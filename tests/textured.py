@@ -8,9 +8,9 @@ from PIL import Image
 
 def png(rgb=(200, 30, 30), size=(4, 4), form="PNG"):
     """The bytes of a picture of one colour."""
-    made = BytesIO()
-    Image.new("RGB", size, rgb).save(made, form)
-    return made.getvalue()
+    stream = BytesIO()
+    Image.new("RGB", size, rgb).save(stream, form)
+    return stream.getvalue()
 
 
 def corner_uv(V, F):

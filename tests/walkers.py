@@ -43,22 +43,22 @@ def shipped(name: str) -> Figure:
 
 def beast(*kind: str) -> Figure:
     """The quadruped with a large pair of ears, with horns, with tusks, with a long nose, or with a trunk that swings."""
-    told = yaml.safe_load((FIGURES / "quadruped.yaml").read_text("utf-8"))
-    joint = {j["name"]: j for j in told["joints"]}
+    figure = yaml.safe_load((FIGURES / "quadruped.yaml").read_text("utf-8"))
+    joint = {j["name"]: j for j in figure["joints"]}
     for side, x in (("l", 1), ("r", -1)):
         if "ears" in kind:
             joint[f"ear_{side}"]["position"] = [x * 230, -360, 960]
         for name, place in {"tusk": [x * 90, -640, 620], "horn": [x * 150, -330, 1080]}.items():
             if f"{name}s" in kind:
-                told["joints"].append({"name": f"{name}_{side}", "parent": "head", "position": place, "radii": [25, 15]})
+                figure["joints"].append({"name": f"{name}_{side}", "parent": "head", "position": place, "radii": [25, 15]})
     if "nose" in kind:
         joint["muzzle"]["position"] = [0, -800, 690]
     if "trunk" in kind:
         joint["muzzle"]["position"] = [0, -560, 640]
-        told["joints"].append({"name": "trunk_tip", "parent": "muzzle", "position": [0, -600, 250], "radii": [30, 20]})
-        for curves in told["motions"].values():
+        figure["joints"].append({"name": "trunk_tip", "parent": "muzzle", "position": [0, -600, 250], "radii": [30, 20]})
+        for curves in figure["motions"].values():
             curves["muzzle"] = [{"axis": [1, 0, 0], "amplitude": 25, "frequency": 0.7}]
-    return Figure.of(told)
+    return Figure.of(figure)
 
 
 def moved(figure: Figure, motion: str | None = None, seed: int = 0, frames: int = 24) -> Walker:

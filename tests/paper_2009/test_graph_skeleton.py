@@ -43,8 +43,8 @@ def test_bones_have_one_length_in_all_frames(letter: bool) -> None:
 
 def test_clusters_that_cost_less_than_asked_for_are_one_part() -> None:
     here = volumetric()
-    given = (here.integrated_structure, here.graph_motion, here.alignment, here.mesh)
-    kinds = [graph_skeleton(*given, GraphSkeletonParams(removal_cost=cost)).kinds for cost in (0.0025, 10.0)]
+    arguments = (here.integrated_structure, here.graph_motion, here.alignment, here.mesh)
+    kinds = [graph_skeleton(*arguments, GraphSkeletonParams(removal_cost=cost)).kinds for cost in (0.0025, 10.0)]
     assert [k.count("joint") for k in kinds] == [3, 0]
 
 
@@ -58,9 +58,9 @@ def test_joints_follow_the_aligned_surface_and_not_the_nodes() -> None:
 def test_second_ends_and_the_root_follow_their_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
     here, asked = volumetric(), []
 
-    def noted(*given: Any, settings: Any, **named: Any) -> Any:
+    def noted(*arguments: Any, settings: Any, **named: Any) -> Any:
         asked.append((settings.second_ends, settings.root_amid_limbs))
-        return whole(*given, settings=settings, **named)
+        return whole(*arguments, settings=settings, **named)
 
     whole = numerics.kinematic_tree
     monkeypatch.setattr(numerics, "kinematic_tree", noted)

@@ -10,13 +10,13 @@ from kinetree.schemas.paper_2014.interval_reference import IntervalReference
 FRAMES = {t: frame(t) for t in (3, 5, 7)}
 
 
-def made(chosen: int, *, threshold: float = 0.2, ends: tuple[int, ...] = ()) -> IntervalReference:
+def reference_of(chosen: int, *, threshold: float = 0.2, ends: tuple[int, ...] = ()) -> IntervalReference:
     return aligned_reference_of(FRAMES, reference_at(FRAMES, chosen), threshold, ends)
 
 
 @pytest.mark.parametrize("chosen", [3, 5, 7])
 def test_it_is_the_mesh_of_the_chosen_frame_with_the_leaves_of_that_frame(chosen: int) -> None:
-    reference, here = made(chosen), FRAMES[chosen]
+    reference, here = reference_of(chosen), FRAMES[chosen]
     assert (reference.frame, reference.frames) == (chosen, (3, 5, 7))
     np.testing.assert_array_equal(reference.vertices, here.mesh.vertices)
     assert set(reference.leaf_vertex.tolist()) == set(here.number[CORNERS].tolist())
@@ -28,10 +28,10 @@ def test_it_is_the_mesh_of_the_chosen_frame_with_the_leaves_of_that_frame(chosen
 
 
 def test_extrema_below_the_threshold_are_no_leaves() -> None:
-    assert len(made(5, threshold=0.49).leaf) == 3
-    assert made(5, threshold=0.51).coordinates.shape[0] == 0
+    assert len(reference_of(5, threshold=0.49).leaf) == 3
+    assert reference_of(5, threshold=0.51).coordinates.shape[0] == 0
 
 
 def test_a_sequence_that_is_cut_is_refused_in_words() -> None:
     with pytest.raises(ConfigError, match=r"cut into 2 intervals.*intervals\.threshold to -1"):
-        made(5, ends=(0,))
+        reference_of(5, ends=(0,))

@@ -21,8 +21,8 @@ def test_cone_has_the_range_of_mu_and_a_leaf_that_is_not_seen_has_none() -> None
     reference = here.interval_references[0]
     blind = reference.model_copy(update={"leaf_vertex": np.array([-1, *reference.leaf_vertex[1:]])})
     mu = reference.coordinates.sum(axis=0)
-    given = Geodesics(mu=mu, area=here.body.area, bases=np.zeros(0, int), share=1.0)
-    artifact = cones(blind, {blind.frame: given}, ConesParams())
+    distances = Geodesics(mu=mu, area=here.body.area, bases=np.zeros(0, int), share=1.0)
+    artifact = cones(blind, {blind.frame: distances}, ConesParams())
     assert (artifact.annulus[0] == -1).all()
     assert artifact.mu_range[0] == 0.0
     assert artifact.mu_range[1] == np.ptp(mu[artifact.annulus[1] >= 0])

@@ -66,9 +66,9 @@ class Run:
     @property
     def ran(self) -> set[str]:
         """Labels of the nodes that were computed."""
-        found = self.heard.nodes("finish")
-        assert len(found) == len(set(found)), "a node was computed twice"
-        return set(found)
+        computed = self.heard.nodes("finish")
+        assert len(computed) == len(set(computed)), "a node was computed twice"
+        return set(computed)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -123,9 +123,9 @@ class Toys:
 
     def config(self, **blocks: Any) -> dict[str, Any]:
         """A configuration: synchronous unless told otherwise, blocks of parameters by task."""
-        told = {"output": str(self.output), "compute": {"executor": "sync"}, **blocks}
-        told["source"] = {"input": str(self.frames), **blocks.get("source", {})}
-        return told
+        whole = {"output": str(self.output), "compute": {"executor": "sync"}, **blocks}
+        whole["source"] = {"input": str(self.frames), **blocks.get("source", {})}
+        return whole
 
     def pipeline(self, **blocks: Any) -> Pipeline:
         """The toy graph over the frames."""
@@ -134,8 +134,8 @@ class Toys:
     def run(self, client: Any = None, *, until: tuple[str, ...] = (), force: tuple[str, ...] = (), **blocks: Any) -> Run:
         """Runs in this process and keeps what was heard."""
         heard = Heard()
-        told = self.pipeline(**blocks).run(client, until=until, force=force, listeners=[heard])
-        return Run(told, heard)
+        account = self.pipeline(**blocks).run(client, until=until, force=force, listeners=[heard])
+        return Run(account, heard)
 
     def executions(self) -> list[str]:
         """What every process executed since the last `clear`, such as points-30, in the order of the log."""
@@ -214,17 +214,17 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     (package / "__main__.py").write_text(MAIN)
     for file in ("toys.py", "toy_sums.py", "toy_passes.py", "toy_links.py", "toy_datasets.py"):
         shutil.copy(HERE / file, package / file)
-    found = Toys(package.parent, name, tmp_path / "frames", tmp_path / "flags", tmp_path / "log", tmp_path / "out")
-    found.frames.mkdir()
-    found.flags.mkdir()
-    found.write(10, 20, 30, 40, 50, 60)
-    monkeypatch.syspath_prepend(str(found.folder))
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(found.folder), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep))
+    toy = Toys(package.parent, name, tmp_path / "frames", tmp_path / "flags", tmp_path / "log", tmp_path / "out")
+    toy.frames.mkdir()
+    toy.flags.mkdir()
+    toy.write(10, 20, 30, 40, 50, 60)
+    monkeypatch.syspath_prepend(str(toy.folder))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(toy.folder), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep))
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
-    monkeypatch.setenv("TOYS_LOG", str(found.log))
-    monkeypatch.setenv("TOYS_FLAGS", str(found.flags))
+    monkeypatch.setenv("TOYS_LOG", str(toy.log))
+    monkeypatch.setenv("TOYS_FLAGS", str(toy.flags))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    yield found
-    found.end()
+    yield toy
+    toy.end()
     with contextlib.suppress(ImportError):
-        found.forget()
+        toy.forget()

@@ -26,11 +26,11 @@ class Lab:
     def of(toys: Toys) -> "Lab":
         """Three takes of two and three frames."""
         home = toys.folder.parent / "lab"
-        made = Lab(toys, home / "takes", home / "lab.yaml")
-        made.take("a", 10, 20)
-        made.take("b", 30, 40, 50)
-        made.take("c", 60, 70)
-        return made.write()
+        lab = Lab(toys, home / "takes", home / "lab.yaml")
+        lab.take("a", 10, 20)
+        lab.take("b", 30, 40, 50)
+        lab.take("c", 60, 70)
+        return lab.write()
 
     @property
     def results(self) -> Path:
@@ -49,8 +49,8 @@ class Lab:
 
     def write(self, **keys: Any) -> "Lab":
         """Writes the file; None leaves a key out."""
-        told = {"sequences": "takes/*", "output": "results/{name}", "compute": {"executor": "sync"}, **keys}
-        self.file.write_text(json.dumps({key: value for key, value in told.items() if value is not None}))
+        blocks = {"sequences": "takes/*", "output": "results/{name}", "compute": {"executor": "sync"}, **keys}
+        self.file.write_text(json.dumps({key: value for key, value in blocks.items() if value is not None}))
         return self
 
     def dataset(self) -> Dataset:
@@ -73,9 +73,9 @@ class Lab:
         return self.dataset().run(**options)
 
     @staticmethod
-    def states(told: dict[str, Any]) -> dict[str, str]:
+    def states(record: dict[str, Any]) -> dict[str, str]:
         """What a run did with each sequence."""
-        return {name: row["state"] for name, row in told["sequences"].items()}
+        return {name: row["state"] for name, row in record["sequences"].items()}
 
     def summary(self) -> dict[str, float | None]:
         """What the summary holds."""

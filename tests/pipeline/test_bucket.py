@@ -70,10 +70,10 @@ def test_planning_lists_and_asks_for_no_artifact_alone(toys, url, service):
         for frames, blocks in stores.items():
             service.asked.clear()
             plan = toys.pipeline(**blocks, **changes).plan()
-            made = service.asked.copy()
+            counts = service.asked.copy()
             assert plan.counts["stale"] == frames if changes else plan.is_done
-            assert made["LIST"] <= 12
-            requests.append((made["GET"], made["HEAD"]))
+            assert counts["LIST"] <= 12
+            requests.append((counts["GET"], counts["HEAD"]))
         assert requests[0] == requests[1]
         assert requests[0][1] <= 2
 
@@ -81,9 +81,9 @@ def test_planning_lists_and_asks_for_no_artifact_alone(toys, url, service):
 def test_plan_from_a_listing_sees_what_is_missing_or_cut(toys, url, service):
     blocks = uploaded(toys, url, 6)
     store = Store.at(blocks["store"])
-    made = {node.node: node.artifact for node in toys.pipeline(**blocks).plan().nodes}
-    store.discard(made["points[frame=3]"])
-    store.place.put(artifact_path(made["smooth[frame=4]"]), b"PK")
+    artifact_of = {node.node: node.artifact for node in toys.pipeline(**blocks).plan().nodes}
+    store.discard(artifact_of["points[frame=3]"])
+    store.place.put(artifact_path(artifact_of["smooth[frame=4]"]), b"PK")
     plan = toys.pipeline(**blocks).plan()
     assert sorted(node.node for node in plan.nodes if node.state == "stale") == ["points[frame=3]", "smooth[frame=4]"]
 
@@ -118,14 +118,14 @@ def test_two_runs_at_once_share_a_bucket(toys, url, service, tmp_path):
 
 
 def test_credentials_are_neither_stored_nor_printed(toys, url, service, tmp_path):
-    told = toys.command("run", str(toys.yaml()), "--store", url, "--until", "points")
-    assert told.returncode == 0, told.stderr
+    process = toys.command("run", str(toys.yaml()), "--store", url, "--until", "points")
+    assert process.returncode == 0, process.stderr
     place = Store.at(url).place
     objects = [o["path"] for chunk in place._store.list("deep/store/") for o in chunk]
     assert len(objects) > 6
     stored = b"".join(place.get(key.removeprefix("deep/store/")) for key in objects)
-    left = b"".join(p.read_bytes() for p in toys.output.rglob("*") if p.is_file())
-    assert SECRET.encode() not in stored + left + (told.stdout + told.stderr).encode()
+    exported = b"".join(p.read_bytes() for p in toys.output.rglob("*") if p.is_file())
+    assert SECRET.encode() not in stored + exported + (process.stdout + process.stderr).encode()
 
 
 def test_bucket_that_is_not_there_is_refused_in_words(service):

@@ -58,7 +58,7 @@ def walked(kinetree, scans):
     return "walk"
 
 
-def told(printed):
+def parsed(printed):
     return json.loads(printed)
 
 
@@ -160,13 +160,13 @@ def test_run_says_what_it_did_and_where_the_results_are(kinetree, scans, tmp_pat
 
 
 def test_run_leaves_its_account_and_its_configuration(kinetree, walked, tmp_path):
-    left = json.loads((tmp_path / "walk" / "run.json").read_text())
-    assert left["status"] == "done"
-    assert left["nodes"] == {"ran": 5, "fresh": 0, "failed": 0, "skipped": 0}
-    assert set(left["tasks"]) == {"mesh", "sequence", "connectivity"}
-    assert {"ran", "fresh", "failed", "seconds"} <= set(left["tasks"]["mesh"])
-    assert left["failures"] == []
-    assert {"seconds", "versions"} <= set(left)
+    account = json.loads((tmp_path / "walk" / "run.json").read_text())
+    assert account["status"] == "done"
+    assert account["nodes"] == {"ran": 5, "fresh": 0, "failed": 0, "skipped": 0}
+    assert set(account["tasks"]) == {"mesh", "sequence", "connectivity"}
+    assert {"ran", "fresh", "failed", "seconds"} <= set(account["tasks"]["mesh"])
+    assert account["failures"] == []
+    assert {"seconds", "versions"} <= set(account)
     saved = yaml.safe_load((tmp_path / "walk" / "config.yaml").read_text())
     assert saved["source"] == {"input": "../scans"}
 
@@ -174,10 +174,10 @@ def test_run_leaves_its_account_and_its_configuration(kinetree, walked, tmp_path
 def test_run_prints_its_account_as_json(kinetree, scans, tmp_path):
     code, printed, complained = kinetree("run", "-i", "scans", "-o", "w", "--until", "sequence", "--json")
     assert (code, complained) == (0, "")
-    found = told(printed)
-    assert found.pop("run") in [r["name"] for r in told(kinetree("runs", "w", "--json")[1])]
-    left = json.loads((tmp_path / "w" / "run.json").read_text())
-    assert found == {key: left[key] for key in found}
+    printed_account = parsed(printed)
+    assert printed_account.pop("run") in [r["name"] for r in parsed(kinetree("runs", "w", "--json")[1])]
+    account = json.loads((tmp_path / "w" / "run.json").read_text())
+    assert printed_account == {key: account[key] for key in printed_account}
 
 
 def test_quiet_run_prints_nothing(kinetree, scans):
@@ -206,7 +206,7 @@ def test_options_win_over_set_and_set_over_the_file(kinetree, scans, tmp_path):
     (tmp_path / "w.yaml").write_text("source: {input: nothing, frames: '2:'}\noutput: a\n")
     code, printed, _ = kinetree("plan", "w.yaml", "-i", "scans", "--set", "source.frames=1:", "--frames", "0:2", "--json")
     assert code == 0
-    nodes = [n["node"] for n in told(printed)["nodes"]]
+    nodes = [n["node"] for n in parsed(printed)["nodes"]]
     assert {"mesh[frame=0]", "mesh[frame=1]"} <= set(nodes)
     assert "mesh[frame=2]" not in nodes
 
@@ -214,7 +214,7 @@ def test_options_win_over_set_and_set_over_the_file(kinetree, scans, tmp_path):
 def test_frames_keep_their_numbers(kinetree, scans):
     code, printed, _ = kinetree("plan", "-i", "scans", "--frames", "0:3:2", "--json")
     assert code == 0
-    assert {n["node"] for n in told(printed)["nodes"] if n["task"] == "mesh"} == {"mesh[frame=0]", "mesh[frame=2]"}
+    assert {n["node"] for n in parsed(printed)["nodes"] if n["task"] == "mesh"} == {"mesh[frame=0]", "mesh[frame=2]"}
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_input_and_output_may_be_called_anything(kinetree, scans, tmp_path, name
 def test_force_runs_what_is_fresh(kinetree, walked):
     code, printed, _ = kinetree("run", walked, "--until", "mesh", "--force", "mesh", "--json", "--executor", "sync")
     assert code == 0
-    assert told(printed)["tasks"]["mesh"]["ran"] == 3
+    assert parsed(printed)["tasks"]["mesh"]["ran"] == 3
 
 
 @pytest.mark.parametrize("option", ["--until", "--force"])
@@ -259,8 +259,8 @@ def test_failed_node_is_told_and_exits_1(kinetree, scans, monkeypatch):
     assert complained.count("mesh[frame=1]: MeshError: ") == 1
     code, printed, _ = kinetree("run", "w", "--until", "connectivity", "--json")
     assert code == 1
-    assert told(printed)["failures"][0]["node"] == "mesh[frame=1]"
-    assert told(printed)["status"] == "failed"
+    assert parsed(printed)["failures"][0]["node"] == "mesh[frame=1]"
+    assert parsed(printed)["status"] == "failed"
 
 
 def test_interrupt_exits_130_and_says_how_to_go_on(kinetree, scans, monkeypatch):
@@ -324,7 +324,7 @@ def test_plan_tells_states_and_reasons(kinetree, walked):
 
 
 def test_plan_as_json(kinetree, walked):
-    plan = told(kinetree("plan", walked, "--until", "connectivity", "--json")[1])
+    plan = parsed(kinetree("plan", walked, "--until", "connectivity", "--json")[1])
     assert set(plan) == {"counts", "tasks", "nodes"}
     assert plan["counts"] == {"fresh": 8}
     assert set(plan["nodes"][0]) == {"node", "task", "state", "reasons", "waits", "key", "artifact"}
@@ -341,10 +341,10 @@ def test_why_tells_state_and_neighbours(kinetree, walked):
     assert code == 0
     assert printed.startswith("mesh[frame=1]: fresh\n  reads source[frame=1]\n  is read by ")
     assert "connectivity" in printed
-    found = told(kinetree("why", "mesh[1]", walked, "--set", "mesh.merge=0", "--json")[1])
-    assert set(found) == {"node", "state", "waits", "reasons", "reads", "feeds"}
-    assert found["state"] == "stale"
-    assert found["reasons"] == [{"kind": "params", "what": "merge 1e-07 → 0.0"}]
+    answer = parsed(kinetree("why", "mesh[1]", walked, "--set", "mesh.merge=0", "--json")[1])
+    assert set(answer) == {"node", "state", "waits", "reasons", "reads", "feeds"}
+    assert answer["state"] == "stale"
+    assert answer["reasons"] == [{"kind": "params", "what": "merge 1e-07 → 0.0"}]
 
 
 @pytest.mark.parametrize("command", ["why", "show"])
@@ -367,10 +367,10 @@ def test_show_tells_schema_shapes_statistics_and_provenance(kinetree, walked):
         "params: merge 1e-07",
     ):
         assert words in printed
-    found = told(kinetree("show", "mesh[1]", walked, "--json")[1])
-    assert found["node"] == "mesh[frame=1]"
-    assert found["arrays"]["vertices"]["shape"] == [4, 3]
-    assert {"key", "code", "versions", "seconds", "peak_bytes_of_the_process", "inputs", "params"} <= set(found["made"])
+    answer = parsed(kinetree("show", "mesh[1]", walked, "--json")[1])
+    assert answer["node"] == "mesh[frame=1]"
+    assert answer["arrays"]["vertices"]["shape"] == [4, 3]
+    assert {"key", "code", "versions", "seconds", "peak_bytes_of_the_process", "inputs", "params"} <= set(answer["made"])
 
 
 def test_a_single_number_is_shown_as_itself():
@@ -398,7 +398,7 @@ def test_graph_of_the_method_and_of_a_sequence(kinetree, walked, form):
 
 def test_graph_groups_mapped_nodes(kinetree, walked):
     assert "mesh ×3: 3 fresh" in kinetree("graph", walked)[1]
-    drawn = told(kinetree("graph", walked, "--json")[1])
+    drawn = parsed(kinetree("graph", walked, "--json")[1])
     assert {"from": "source", "to": "mesh", "argument": "source", "form": "one", "previous": False} in drawn["edges"]
     assert next(n for n in drawn["nodes"] if n["name"] == "mesh")["states"] == {"fresh": 3}
 
@@ -413,19 +413,19 @@ def test_wrong_drawing_is_refused(kinetree):
 def test_runs_diff_and_gc_tell_what_changed_between_runs(kinetree, walked):
     code, _, _ = kinetree("run", walked, "--until", "connectivity", "--set", "mesh.component_share=0.1", "-q")
     assert code == 0
-    rows = told(kinetree("runs", walked, "--json")[1])
+    rows = parsed(kinetree("runs", walked, "--json")[1])
     assert [r["status"] for r in rows] == ["done", "done"]
     a, b = (r["name"] for r in rows)
     assert a in kinetree("runs", walked)[1]
-    found = told(kinetree("diff", a, b, walked, "--json")[1])
-    assert set(found) == {"a", "b", "only_a", "only_b", "changed", "begins"}
-    assert found["begins"]["mesh[frame=0]"] == ["params: component_share 0.05 → 0.1"]
-    assert found["changed"] == []
+    answer = parsed(kinetree("diff", a, b, walked, "--json")[1])
+    assert set(answer) == {"a", "b", "only_a", "only_b", "changed", "begins"}
+    assert answer["begins"]["mesh[frame=0]"] == ["params: component_share 0.05 → 0.1"]
+    assert answer["changed"] == []
     assert "0 nodes have other results" in kinetree("diff", a, b, walked)[1]
     code, printed, _ = kinetree("gc", walked, "--dry-run")
     assert code == 0
     assert printed.startswith("would delete ")
-    freed = told(kinetree("gc", walked, "--json")[1])
+    freed = parsed(kinetree("gc", walked, "--json")[1])
     assert set(freed) == {"runs", "records", "artifacts", "leftovers", "bytes"}
     assert freed["runs"] == [a]
     assert "everything is up to date" in kinetree("plan", walked, "--until", "connectivity")[1]
@@ -447,7 +447,7 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert "mesh: Source, Isosurface of all → Mesh per frame" in printed
     assert "mesh.component_share = 0.05" in printed
     assert "set by kinematic_tree.degrees, kinematic_tree.ratio, kinematic_tree.hidden_bones\n" in printed
-    rows = told(kinetree("tasks", "--json")[1])
+    rows = parsed(kinetree("tasks", "--json")[1])
     assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {
         "cut_poses": [f"rigid_parts.{name}" for name in ("rings", "patches", "removal_cost", "cuts")],
         "further_cut": [f"kinematic_tree.{name}" for name in ("degrees", "ratio", "hidden_bones")],

@@ -19,9 +19,9 @@ def under_way(toys, after, **changes):
     for name in store.run_names():
         store.place.remove(f"runs/{name}.json")
     name = "20260101-000000-aaaaaa"
-    told = {"name": name, "status": "running", "epoch": time.time() + after, "output": str(toys.output), "nodes": {}}
-    told |= {**identity(), **changes}
-    store.write_run(name, told)
+    run = {"name": name, "status": "running", "epoch": time.time() + after, "output": str(toys.output), "nodes": {}}
+    run |= {**identity(), **changes}
+    store.write_run(name, run)
     return store
 
 
@@ -59,7 +59,7 @@ def version(monkeypatch, name):
     original = freshness.code_digest
     with monkeypatch.context() as patched:
         for module in (freshness, execute):
-            patched.setattr(module, "code_digest", lambda *given: f"{name}{original(*given)}"[:40])
+            patched.setattr(module, "code_digest", lambda *arguments: f"{name}{original(*arguments)}"[:40])
         yield
 
 

@@ -21,7 +21,7 @@ def home(tmp_path, monkeypatch):
     key.forget_code()
 
 
-def kept(texts=TEXTS):
+def cache_of(texts=TEXTS):
     cache = CodeCache.of(texts)
     cache.add("a.b:f", FOUND)
     cache.save()
@@ -29,18 +29,18 @@ def kept(texts=TEXTS):
 
 
 def test_what_was_kept_is_found_again():
-    kept()
+    cache_of()
     assert CodeCache.of(dict(reversed(TEXTS.items()))).known == {"a.b:f": FOUND}
 
 
 @pytest.mark.parametrize("texts", [{**TEXTS, "a.c": "X = 3\n"}, {**TEXTS, "a.d": ""}, {"a.b": TEXTS["a.b"]}, {}])
 def test_other_code_finds_nothing(texts):
-    kept()
+    cache_of()
     assert CodeCache.of(texts).known == {}
 
 
 def test_every_altered_byte_of_a_kept_file_is_noticed(home):
-    path = kept().path
+    path = cache_of().path
     whole = path.read_bytes()
     for place in range(len(whole)):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
@@ -53,23 +53,23 @@ def test_a_place_that_cannot_be_written_is_no_failure(home, tmp_path):
     home.parent.mkdir(parents=True)
     home.write_text("not a folder")
     assert CodeCache.of(TEXTS).known == {}
-    kept()
+    cache_of()
     assert CodeCache.of(TEXTS).known == {}
 
 
 def test_old_files_go(home):
     for number in range(FILES_KEPT + 3):
-        kept({**TEXTS, "a.e": f"{number}"})
+        cache_of({**TEXTS, "a.e": f"{number}"})
     assert len([*home.glob("*.json")]) == FILES_KEPT
 
 
 def test_a_file_that_is_used_stays(home):
-    used = kept().path
+    used = cache_of().path
     os.utime(used, (0, 0))
     for number in range(FILES_KEPT - 1):
-        os.utime(kept({**TEXTS, "a.e": f"{number}"}).path, (number + 1, number + 1))
+        os.utime(cache_of({**TEXTS, "a.e": f"{number}"}).path, (number + 1, number + 1))
     assert CodeCache.of(TEXTS).known
-    kept({**TEXTS, "a.e": "one more"})
+    cache_of({**TEXTS, "a.e": "one more"})
     assert used.exists()
 
 

@@ -119,7 +119,7 @@ def test_store_may_be_in_a_bucket_and_is_saved_as_its_address(write):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "words"),
     [
         ("msh: {}", "no such key 'msh'; did you mean 'mesh'?"),
         ("stoer: x", "no such key 'stoer'; did you mean 'store'?"),
@@ -149,10 +149,10 @@ def test_store_may_be_in_a_bucket_and_is_saved_as_its_address(write):
         ("store: gs://bucket/x", "store: gs://bucket/x is the address of a service, which is not supported; give a folder"),
     ],
 )  # fmt: skip
-def test_wrong_key_or_value_is_refused_with_file_key_and_what_was_expected(write, text, told):
+def test_wrong_key_or_value_is_refused_with_file_key_and_what_was_expected(write, text, words):
     path = write("walk.yaml", text)
     message = refusal(path)
-    assert message.startswith(f"{path}: {told}")
+    assert message.startswith(f"{path}: {words}")
 
 
 def test_wrong_key_within_a_key_is_refused_with_the_nearest_there(write):
@@ -162,8 +162,8 @@ def test_wrong_key_within_a_key_is_refused_with_the_nearest_there(write):
 
 @pytest.mark.parametrize("memory", ["lots", "4", "4 gb", "-1GB", ""])
 def test_memory_that_is_no_size_is_refused(memory):
-    told = f"config: compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}"
-    assert refusal({"compute": {"memory": memory}}) == told
+    words = f"config: compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}"
+    assert refusal({"compute": {"memory": memory}}) == words
 
 
 def test_every_wrong_key_is_told_at_once(write):
@@ -174,7 +174,7 @@ def test_every_wrong_key_is_told_at_once(write):
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "told"),
+    ("text", "line", "words"),
     [
         ("mesh:\n  merge: [1\nsequence: {}\n", 3, "expected ',' or ']'"),
         ("a: 1\n\tb: 2", 2, "cannot start any token"),
@@ -186,12 +186,12 @@ def test_every_wrong_key_is_told_at_once(write):
         ("mesh: !!python/name:os.system\n", 1, "could not determine a constructor"),
     ],
 )
-def test_yaml_that_is_none_is_refused_with_its_line(write, tmp_path, monkeypatch, text, line, told):
+def test_yaml_that_is_none_is_refused_with_its_line(write, tmp_path, monkeypatch, text, line, words):
     monkeypatch.chdir(tmp_path)
     path = write("walk.yaml", text)
     message = refusal(path)
     assert message.startswith(f"{path}, line {line}: not valid YAML: ")
-    assert told in message
+    assert words in message
     assert [p.name for p in tmp_path.iterdir()] == ["walk.yaml"]
 
 
@@ -263,7 +263,7 @@ def test_set_that_sets_nothing_says_how_it_is_written(text):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "words"),
     [
         ("mesh.mrge=1", "--set mesh.mrge=1: mesh.mrge: no such key; did you mean 'merge'?"),
         ("mseh.merge=1", "--set mseh.merge=1: no such key 'mseh'; did you mean 'mesh'?"),
@@ -278,8 +278,8 @@ def test_set_that_sets_nothing_says_how_it_is_written(text):
         ("mesh=3", "--set mesh=3: mesh: expected keys with values, got 3"),
     ],
 )
-def test_wrong_set_is_refused_in_words(text, told):
-    assert refusal(None, text).startswith(told)
+def test_wrong_set_is_refused_in_words(text, words):
+    assert refusal(None, text).startswith(words)
 
 
 def test_option_and_file_are_each_blamed_for_their_own(write):
@@ -351,14 +351,14 @@ def test_values_may_hold_equals_signs_and_spaces():
 )  # fmt: skip
 @example(0.0, None, "1e3", "0E0", None, "sync")  # texts to YAML 1.1, numbers to 1.2
 def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, workers, executor):
-    told = {
+    blocks = {
         "mesh": {"merge": merge},
         "sequence": {"fps": fps, "unit": unit},
         "source": {"input": "/scans/[1]", "frames": frames},
         "output": "/out",
         "compute": {"workers": workers, "executor": executor},
     }
-    config = of(told)
+    config = of(blocks)
     again = of(parsed(as_yaml(config.saved()), ""))
     assert again == config
 
@@ -378,17 +378,17 @@ def test_compute_output_and_store_are_never_in_a_key(tmp_path):
     for number, compute in enumerate([{}, {"workers": 3, "executor": "sync", "memory": "1GB"}, {"scheduler": "tcp://x:1"}]):
         config = {"output": str(tmp_path / str(number)), "compute": compute}
         pipeline = Pipeline.of(config)
-        given = {"source": {(t,): Source(content="ab", path=str(tmp_path / str(number))) for t in range(2)}}
-        schedule = configuration_schedule(pipeline, given)
+        members = {"source": {(t,): Source(content="ab", path=str(tmp_path / str(number))) for t in range(2)}}
+        schedule = configuration_schedule(pipeline, members)
         keys.add(tuple(sorted(e.key for e in schedule.entries.values() if e.key)))
     assert len(keys) == 1
     assert len(next(iter(keys))) == 3  # two meshes, one sequence
 
 
-def configuration_schedule(pipeline, given):
+def configuration_schedule(pipeline, members):
     from kinetree.pipeline.planning.schedule import Schedule
 
-    return Schedule(pipeline.tasks.until(["mesh", "sequence"]), pipeline.config.params, pipeline.store, given)
+    return Schedule(pipeline.tasks.until(["mesh", "sequence"]), pipeline.config.params, pipeline.store, members)
 
 
 def test_compute_is_replaced_where_something_is_said():

@@ -20,9 +20,9 @@ def lab(toys):
 
 
 def test_all_sequences_run_and_are_summed_up(lab):
-    told = lab.run()
-    assert told["status"] == "done"
-    assert lab.states(told) == {"a": "ran", "b": "ran", "c": "ran"}
+    record = lab.run()
+    assert record["status"] == "done"
+    assert lab.states(record) == {"a": "ran", "b": "ran", "c": "ran"}
     for name in "abc":
         report = lab.dataset()[name].artifact("report")
         assert lab.summary()[name] == report.value
@@ -33,8 +33,8 @@ def test_a_second_run_computes_nothing_and_writes_no_run(lab):
     lab.run()
     store = lab.results / "store"
     before = {file: file.stat().st_mtime_ns for file in store.rglob("*") if file.is_file()}
-    told = lab.run()
-    assert lab.states(told) == {"a": "fresh", "b": "fresh", "c": "fresh"}
+    record = lab.run()
+    assert lab.states(record) == {"a": "fresh", "b": "fresh", "c": "fresh"}
     assert lab.toys.executions() == []
     assert {f: f.stat().st_mtime_ns for f in store.rglob("*") if f.is_file() and f.name != "files.json"} == {
         f: when for f, when in before.items() if f.name != "files.json"
@@ -60,8 +60,8 @@ def test_what_helps_a_run_is_beside_a_whole_night_and_not_beside_one_with_nothin
 def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):
     lab.run()
     lab.take("b", 30, 40, 500)
-    told = lab.run()
-    assert lab.states(told) == {"a": "fresh", "b": "ran", "c": "fresh"}
+    record = lab.run()
+    assert lab.states(record) == {"a": "fresh", "b": "ran", "c": "fresh"}
     ran = lab.toys.executions()
     assert sum(line.startswith("figure-") for line in ran) == 1
     assert sum(line.startswith("summed-") for line in ran) == 1
@@ -72,28 +72,28 @@ def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):
 def test_a_removed_sequence_leaves_the_summary_and_nothing_else_runs(lab):
     lab.run()
     shutil.rmtree(lab.takes / "a")
-    told = lab.run()
+    record = lab.run()
     assert list(lab.summary()) == ["b", "c"]
-    assert lab.states(told) == {"b": "fresh", "c": "fresh"}
+    assert lab.states(record) == {"b": "fresh", "c": "fresh"}
     assert lab.toys.executions() == ["summed-2"]
 
 
 def test_a_new_sequence_runs_alone(lab):
     lab.run()
     lab.take("d", 80, 90)
-    told = lab.run()
-    assert lab.states(told) == {"a": "fresh", "b": "fresh", "c": "fresh", "d": "ran"}
+    record = lab.run()
+    assert lab.states(record) == {"a": "fresh", "b": "fresh", "c": "fresh", "d": "ran"}
     assert set(lab.summary()) == set("abcd")
 
 
 def test_what_is_wrong_with_one_leaves_the_others_alone(lab):
     lab.toys.flag("fail-points-30")
     (lab.takes / "empty").mkdir()
-    told = lab.run()
-    assert told["status"] == "failed"
-    assert lab.states(told) == {"a": "ran", "b": "failed", "c": "ran", "empty": "failed"}
-    assert told["sequences"]["b"]["failures"][0]["message"] == "points-30 was told to fail"
-    assert "no frames in" in told["sequences"]["empty"]["failures"][0]["message"]
+    record = lab.run()
+    assert record["status"] == "failed"
+    assert lab.states(record) == {"a": "ran", "b": "failed", "c": "ran", "empty": "failed"}
+    assert record["sequences"]["b"]["failures"][0]["message"] == "points-30 was told to fail"
+    assert "no frames in" in record["sequences"]["empty"]["failures"][0]["message"]
     assert lab.summary()["b"] is None
     assert lab.summary()["a"] is not None
 
@@ -103,8 +103,8 @@ def test_only_what_failed_is_tried_again_where_that_is_asked_for(lab):
     lab.run()
     flag.unlink()
     assert lab.dataset().plan()["b"].state == "failed"
-    told = lab.run(failed=True)
-    assert lab.states(told) == {"b": "ran"}
+    record = lab.run(failed=True)
+    assert lab.states(record) == {"b": "ran"}
     assert lab.summary()["b"] is not None
     assert lab.run(failed=True)["sequences"] == {}
 
@@ -138,9 +138,9 @@ def test_status_and_table_read_what_runs_left(lab):
 
 def test_overrides_reach_the_sequences_they_name(lab):
     lab.write(points={"scale": 2.0}, overrides={"b": {"points": {"scale": 3.0}}, "[ab]": {"smooth": {"grain": 5.0}}})
-    found = lab.dataset()
-    scales = {name: found[name].config.params["points"].scale for name in found}
-    grains = {name: found[name].config.params["smooth"].grain for name in found}
+    dataset = lab.dataset()
+    scales = {name: dataset[name].config.params["points"].scale for name in dataset}
+    grains = {name: dataset[name].config.params["smooth"].grain for name in dataset}
     assert scales == {"a": 2.0, "b": 3.0, "c": 2.0}
     assert grains == {"a": 5.0, "b": 5.0, "c": 10.0}
 
@@ -156,8 +156,8 @@ def test_a_file_that_somebody_deleted_or_altered_is_back_after_a_run(lab):
 
 
 def test_the_time_that_is_given_ends_a_run_and_the_next_goes_on(lab):
-    told = lab.run(max_hours=0)
-    assert lab.states(told) == {"a": "left", "b": "left", "c": "left"}
+    record = lab.run(max_hours=0)
+    assert lab.states(record) == {"a": "left", "b": "left", "c": "left"}
     assert lab.toys.executions() == ["summed-0"]
     assert lab.states(lab.run()) == {"a": "ran", "b": "ran", "c": "ran"}
 
@@ -194,8 +194,8 @@ def test_what_no_run_needs_goes_where_that_is_asked_for(lab):
     lab.run()
     before = len(list((lab.results / "store" / "artifacts").rglob("*.zip")))
     lab.take("b", 300, 400, 500)
-    told = lab.run()
-    assert told["deleted"]["artifacts"] > 0
+    record = lab.run()
+    assert record["deleted"]["artifacts"] > 0
     assert len(list((lab.results / "store" / "artifacts").rglob("*.zip"))) <= before
     assert lab.states(lab.run()) == {"a": "fresh", "b": "fresh", "c": "fresh"}
 
@@ -203,8 +203,8 @@ def test_what_no_run_needs_goes_where_that_is_asked_for(lab):
 def test_a_store_that_somebody_removed_is_filled_again(lab):
     lab.run()
     shutil.rmtree(lab.results / "store")
-    told = lab.run()
-    assert lab.states(told) == {"a": "ran", "b": "ran", "c": "ran"}
+    record = lab.run()
+    assert lab.states(record) == {"a": "ran", "b": "ran", "c": "ran"}
     assert all(value is not None for value in lab.summary().values())
 
 
@@ -215,9 +215,9 @@ def test_other_parameters_or_code_make_a_sequence_stale(lab, change):
         lab.write(overrides={"b": {"points": {"scale": 7.0}}})
     else:
         lab.toys.edit("return Report(value=value)", "return Report(value=2 * value)")
-    told = lab.run()
-    assert told["sequences"]["b"]["state"] == "ran"
-    assert told["sequences"]["a"]["state"] == ("fresh" if change == "parameter" else "ran")
+    record = lab.run()
+    assert record["sequences"]["b"]["state"] == "ran"
+    assert record["sequences"]["a"]["state"] == ("fresh" if change == "parameter" else "ran")
 
 
 def test_an_edit_that_changes_no_result_leaves_all_alone(lab):

@@ -15,14 +15,14 @@ def load(toys, tmp_path):
     """Makes the data set of some keys; every take named beside them has one frame."""
     home = tmp_path / "lab"
 
-    def made(*takes, sets=(), text=None, **keys):
+    def dataset_of(*takes, sets=(), text=None, **keys):
         for take in takes:
             (home / take).mkdir(parents=True)
             (home / take / "00000.txt").write_text("10")
-        told = {"sequences": "takes/*", "output": "results/{name}", **keys}
+        blocks = {"sequences": "takes/*", "output": "results/{name}", **keys}
         home.mkdir(exist_ok=True)
         (home / "lab.yaml").write_text(
-            text if text is not None else json.dumps({k: v for k, v in told.items() if v is not None})
+            text if text is not None else json.dumps({k: v for k, v in blocks.items() if v is not None})
         )
         application = Application(
             "toy",
@@ -32,8 +32,8 @@ def load(toys, tmp_path):
         )
         return Dataset.of(home / "lab.yaml", sets=sets, application=application)
 
-    made.home = home
-    return made
+    dataset_of.home = home
+    return dataset_of
 
 
 def inputs(dataset):
@@ -41,22 +41,22 @@ def inputs(dataset):
 
 
 def test_every_match_of_a_pattern_is_a_sequence_named_by_its_last_part(load):
-    found = load("takes/b.2", "takes/a")
-    assert inputs(found) == {name: str(load.home / "takes" / name) for name in ("a", "b.2")}
-    assert found["a"].config.output == load.home / "results" / "a"
-    assert found["a"].config.store == load.home / "results" / "store"
-    assert found["a"].config.params["source"].input == str(load.home / "takes" / "a")
+    dataset = load("takes/b.2", "takes/a")
+    assert inputs(dataset) == {name: str(load.home / "takes" / name) for name in ("a", "b.2")}
+    assert dataset["a"].config.output == load.home / "results" / "a"
+    assert dataset["a"].config.store == load.home / "results" / "store"
+    assert dataset["a"].config.params["source"].input == str(load.home / "takes" / "a")
 
 
 def test_the_name_may_be_made_of_the_folders_above(load):
-    found = load("mon/walk", "tue/walk", sequences=["mon/*", "tue/*"], name="{parent}-{stem}")
-    assert list(found) == ["mon-walk", "tue-walk"]
+    dataset = load("mon/walk", "tue/walk", sequences=["mon/*", "tue/*"], name="{parent}-{stem}")
+    assert list(dataset) == ["mon-walk", "tue-walk"]
 
 
 def test_sequences_may_be_listed_and_named(load):
     assert list(load("takes/a", "takes/b", sequences=["takes/b"])) == ["b"]
-    found = load(sequences={"first": "takes/a", "frames": "takes/b/0*.txt"})
-    assert inputs(found) == {"first": str(load.home / "takes/a"), "frames": str(load.home / "takes/b/0*.txt")}
+    dataset = load(sequences={"first": "takes/a", "frames": "takes/b/0*.txt"})
+    assert inputs(dataset) == {"first": str(load.home / "takes/a"), "frames": str(load.home / "takes/b/0*.txt")}
 
 
 def test_a_pattern_that_ends_with_a_slash_takes_folders_alone(load):
@@ -67,9 +67,9 @@ def test_a_pattern_that_ends_with_a_slash_takes_folders_alone(load):
 
 
 def test_a_listed_sequence_that_is_gone_is_still_one_and_an_empty_pattern_is_noted(load):
-    found = load("takes/a", sequences=["takes/a", "takes/gone", "late/*"])
-    assert list(found) == ["a", "gone"]
-    assert found.config.notes == (f"sequences: nothing matches {load.home}/late/*",)
+    dataset = load("takes/a", sequences=["takes/a", "takes/gone", "late/*"])
+    assert list(dataset) == ["a", "gone"]
+    assert dataset.config.notes == (f"sequences: nothing matches {load.home}/late/*",)
 
 
 def test_files_of_one_folder_none_of_which_can_be_read_may_be_frames_of_one_sequence(load):
@@ -86,13 +86,13 @@ def test_files_of_one_folder_none_of_which_can_be_read_may_be_frames_of_one_sequ
 
 
 def test_an_option_reaches_all_sequences(load):
-    found = load("takes/a", "takes/b", sets=["points.scale=7"], overrides={"b": {"points": {"scale": 8}}})
-    assert [found[name].config.params["points"].scale for name in found] == [7.0, 8.0]
+    dataset = load("takes/a", "takes/b", sets=["points.scale=7"], overrides={"b": {"points": {"scale": 8}}})
+    assert [dataset[name].config.params["points"].scale for name in dataset] == [7.0, 8.0]
 
 
 def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
-    found = load("takes/walk", overrides={"wolk": {"points": {"scale": 2}}})
-    assert found.config.notes == ("overrides.wolk: no sequence has this name; did you mean 'walk'?",)
+    dataset = load("takes/walk", overrides={"wolk": {"points": {"scale": 2}}})
+    assert dataset.config.notes == ("overrides.wolk: no sequence has this name; did you mean 'walk'?",)
 
 
 @pytest.mark.parametrize(

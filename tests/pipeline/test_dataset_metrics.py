@@ -25,15 +25,15 @@ def rows(lab):
 
 
 def test_a_run_tells_what_it_did(lab):
-    told = lab.run()
-    found = rows(lab)
-    assert told["metrics"] == str(lab.file.parent / "metrics" / "lab.prom")
-    assert found["toy_dataset_success",] == 1
-    assert found["toy_dataset_sequences", "ran"] == 3
-    assert found["toy_dataset_nodes", "ran", "points"] == 7
-    assert found["toy_dataset_node_seconds", "points"] > 0
-    assert found["toy_dataset_duration_seconds",] == told["seconds"]
-    assert not [row for row in found if row[0] == "toy_dataset_sequence_failed"]
+    record = lab.run()
+    metrics = rows(lab)
+    assert record["metrics"] == str(lab.file.parent / "metrics" / "lab.prom")
+    assert metrics["toy_dataset_success",] == 1
+    assert metrics["toy_dataset_sequences", "ran"] == 3
+    assert metrics["toy_dataset_nodes", "ran", "points"] == 7
+    assert metrics["toy_dataset_node_seconds", "points"] > 0
+    assert metrics["toy_dataset_duration_seconds",] == record["seconds"]
+    assert not [row for row in metrics if row[0] == "toy_dataset_sequence_failed"]
 
 
 def test_a_second_run_replaces_them(lab):
@@ -41,11 +41,11 @@ def test_a_second_run_replaces_them(lab):
     lab.toys.flag("fail-points-500")
     lab.take("b", 30, 40, 500)
     lab.run()
-    found = rows(lab)
-    assert found["toy_dataset_success",] == 0
-    assert found["toy_dataset_sequence_failed", "b"] == 1
-    assert (found["toy_dataset_sequences", "fresh"], found["toy_dataset_sequences", "failed"]) == (2, 1)
-    assert sum(value for row, value in found.items() if row[0] == "toy_dataset_nodes" and row[1] == "failed") == 1
+    metrics = rows(lab)
+    assert metrics["toy_dataset_success",] == 0
+    assert metrics["toy_dataset_sequence_failed", "b"] == 1
+    assert (metrics["toy_dataset_sequences", "fresh"], metrics["toy_dataset_sequences", "failed"]) == (2, 1)
+    assert sum(value for row, value in metrics.items() if row[0] == "toy_dataset_nodes" and row[1] == "failed") == 1
 
 
 def test_a_run_that_stops_leaves_them_too(lab, monkeypatch):
@@ -63,10 +63,10 @@ def _interrupted(*_):
 
 def test_a_place_that_cannot_be_written_is_told_and_costs_no_result(lab):
     (lab.file.parent / "metrics").write_text("a file")
-    told = lab.run()
-    assert told["status"] == "done"
-    assert "lab.prom: cannot be written: File exists" in told["metrics_error"]
-    assert json.loads((lab.results / "dataset.json").read_text())["metrics_error"] == told["metrics_error"]
+    record = lab.run()
+    assert record["status"] == "done"
+    assert "lab.prom: cannot be written: File exists" in record["metrics_error"]
+    assert json.loads((lab.results / "dataset.json").read_text())["metrics_error"] == record["metrics_error"]
 
 
 def test_without_the_package_the_run_is_refused_before_anything_is_computed(lab, monkeypatch):

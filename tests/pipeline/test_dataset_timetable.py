@@ -42,9 +42,9 @@ def test_two_runs_at_once_share_the_sequences(lab):
     lab.toys.until((lab.toys.flags / "waiting-points-10").exists, "the first run is at a", first)
     code, out, _ = ended(start(lab, "--json"))
     assert code == 0
-    told = json.loads(out)
-    assert lab.states(told)["a"] == "elsewhere"
-    assert re.fullmatch(rf"process {first.pid} on .* is at it", told["sequences"]["a"]["why"])
+    record = json.loads(out)
+    assert lab.states(record)["a"] == "elsewhere"
+    assert re.fullmatch(rf"process {first.pid} on .* is at it", record["sequences"]["a"]["why"])
     assert lab.summary()["a"] is None
     flag.unlink()
     code, out, _ = ended(first)
@@ -64,8 +64,8 @@ def test_a_killed_run_is_taken_over_at_once_and_nothing_finished_is_computed_aga
     flag.unlink()
     plan = lab.dataset().plan()
     assert plan["c"].state in ("new", "unfinished")
-    told = lab.run()
-    assert told["status"] == "done"
+    record = lab.run()
+    assert record["status"] == "done"
     assert "points-60" in lab.toys.executions()
     assert not {"points-10", "points-20"} & set(lab.toys.executions())
     assert all(value is not None for value in lab.summary().values())
@@ -150,16 +150,16 @@ def test_json_is_printed_also_where_the_run_was_stopped(lab, monkeypatch, capsys
 def test_a_folder_that_cannot_be_written_is_one_sequences_failure(lab):
     lab.results.mkdir(parents=True)
     (lab.results / "b").write_text("a file where a folder should be")
-    told = lab.run()
-    assert lab.states(told) == {"a": "ran", "b": "failed", "c": "ran"}
-    assert "cannot be written" in told["sequences"]["b"]["failures"][0]["message"]
+    record = lab.run()
+    assert lab.states(record) == {"a": "ran", "b": "failed", "c": "ran"}
+    assert "cannot be written" in record["sequences"]["b"]["failures"][0]["message"]
 
 
 def test_somebody_elses_file_is_not_replaced(lab):
     (lab.results / "b").mkdir(parents=True)
     (lab.results / "b" / "run.json").write_text("mine")
-    told = lab.run()
-    assert lab.states(told) == {"a": "ran", "b": "failed", "c": "ran"}
+    record = lab.run()
+    assert lab.states(record) == {"a": "ran", "b": "failed", "c": "ran"}
     assert (lab.results / "b" / "run.json").read_text() == "mine"
 
 
@@ -182,11 +182,11 @@ def test_a_damaged_artifact_of_a_sequence_fails_the_summary_once_and_is_made_aga
     data = path.read_bytes()
     path.write_bytes(data[:-30] + bytes(30))
     lab.toys.edit("return Figure(value=report.value)", "return Figure(value=report.value + 0.0)", "toy_datasets.py")
-    told = lab.run()
-    assert told["status"] == "failed"
-    assert told["summary"]["failures"]
-    told = lab.run()
-    assert told["status"] == "done"
+    record = lab.run()
+    assert record["status"] == "failed"
+    assert record["summary"]["failures"]
+    record = lab.run()
+    assert record["status"] == "done"
     assert lab.summary()["a"] is not None
 
 
@@ -220,11 +220,11 @@ def test_the_file_of_the_page_is_a_data_set():
     from kinetree.pipeline.settings.yaml_text import parsed
     from kinetree.tasks.application import APPLICATION
 
-    told = parsed(code_block("yaml", "# Many")[0], "page")
-    found = Dataset.of(
-        {**told, "sequences": {"walk_07": "/takes/walk_07", "dance_1": "/takes/dance_1"}}, application=APPLICATION
+    blocks = parsed(code_block("yaml", "# Many")[0], "page")
+    dataset = Dataset.of(
+        {**blocks, "sequences": {"walk_07": "/takes/walk_07", "dance_1": "/takes/dance_1"}}, application=APPLICATION
     )
-    assert found["dance_1"].config.params["sequence"].fps == 60
-    assert found["walk_07"].config.params["source"].frames == "10:80"
-    assert found.config.retention.keep_last == 2
-    assert found.config.notes == ("{input}/truth.json: there is none for dance_1, walk_07",)
+    assert dataset["dance_1"].config.params["sequence"].fps == 60
+    assert dataset["walk_07"].config.params["source"].frames == "10:80"
+    assert dataset.config.retention.keep_last == 2
+    assert dataset.config.notes == ("{input}/truth.json: there is none for dance_1, walk_07",)

@@ -547,9 +547,9 @@ def written(definitions, numbers):
     texts = {f"g.{module}": ["from g.c import compiled"] for module in sorted({d["module"] for d in definitions})}
     for k, d in enumerate(definitions):
         eager = d["kind"] in ("constant", "computed", "twice")
-        told = [reference(definitions, k, other, "n" if eager and form == "l" else form) for other, form in d["refers"]]
-        value = ", ".join([str(numbers[k]), *(expression for _, _, expression in told)])
-        inner = "; ".join([*(within for _, within, _ in told if within), f"return {value},"])
+        references = [reference(definitions, k, other, "n" if eager and form == "l" else form) for other, form in d["refers"]]
+        value = ", ".join([str(numbers[k]), *(expression for _, _, expression in references)])
+        inner = "; ".join([*(within for _, within, _ in references if within), f"return {value},"])
         body = {
             "function": f"def d{k}(): {inner}",
             "class": f"class d{k}:\n    def use(self): {inner}",
@@ -559,19 +559,19 @@ def written(definitions, numbers):
             "computed": f"d{k} = [str(x) for x in ({value},)]",
             "twice": f"d{k} = 0\nd{k} = ({value}, d{k})",
         }[d["kind"]]
-        texts[f"g.{d['module']}"] += [*(top for top, _, _ in told if top), body]
+        texts[f"g.{d['module']}"] += [*(top for top, _, _ in references if top), body]
     return {"g.__init__": "", "g.c": "def compiled(f): return f", **{name: "\n".join(lines) for name, lines in texts.items()}}
 
 
 def reachable(definitions, start):
     """The definitions that one reaches, by the generator's own graph."""
-    found, waiting = set(), [start]
+    reached, waiting = set(), [start]
     while waiting:
         one = waiting.pop()
-        if one not in found:
-            found.add(one)
+        if one not in reached:
+            reached.add(one)
             waiting += [other for other, _ in definitions[one]["refers"]]
-    return found
+    return reached
 
 
 @settings(max_examples=300, deadline=None)

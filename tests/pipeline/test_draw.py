@@ -36,10 +36,10 @@ def test_dot_has_every_task_and_edge_and_bold_ones_for_gathers(tasks):
 
 
 def test_json_is_the_graph(tasks):
-    told = json.loads(draw(tasks, "json"))
-    assert [n["name"] for n in told["nodes"]] == list(tasks.nodes)
-    assert {(e["from"], e["to"]) for e in told["edges"]} == set(tasks.edges)
-    mesh = next(n for n in told["nodes"] if n["name"] == "mesh")
+    drawn = json.loads(draw(tasks, "json"))
+    assert [n["name"] for n in drawn["nodes"]] == list(tasks.nodes)
+    assert {(e["from"], e["to"]) for e in drawn["edges"]} == set(tasks.edges)
+    mesh = next(n for n in drawn["nodes"] if n["name"] == "mesh")
     assert (mesh["over"], mesh["artifact"], mesh["params"]) == ("frame", "Mesh", "MeshParams")
 
 
@@ -56,9 +56,9 @@ def test_states_are_grouped_by_task_and_told_one_by_one_when_expanded(tmp_path):
     grouped, expanded = pipeline.graph(), pipeline.graph(expanded=True)
     assert "mesh ×3: 3 stale" in draw(grouped, "mermaid")
     assert '[label="mesh ×3: 3 stale"]' in draw(grouped, "dot")
-    told = {n["name"]: n for n in json.loads(draw(grouped, "json"))["nodes"]}
-    assert told["mesh"]["states"] == {"stale": 3}
+    drawn = {n["name"]: n for n in json.loads(draw(grouped, "json"))["nodes"]}
+    assert drawn["mesh"]["states"] == {"stale": 3}
     assert "mesh[frame=1]: stale" in draw(expanded, "mermaid")
-    told = {n["name"]: n for n in json.loads(draw(expanded, "json"))["nodes"]}
-    assert told["mesh[frame=1]"]["state"] == "stale"
-    assert told["connectivity"]["state"] == "waits"
+    drawn = {n["name"]: n for n in json.loads(draw(expanded, "json"))["nodes"]}
+    assert drawn["mesh[frame=1]"]["state"] == "stale"
+    assert drawn["connectivity"]["state"] == "waits"

@@ -46,14 +46,14 @@ def flip(data):
 
 def terminal(events):
     """The last word on every node: what was damaged is told again."""
-    told = {}
+    ends = {}
     for event in events:
         if event["event"] in TERMINAL:
-            assert event["node"] not in told, f"{event['node']} ended twice"
-            told[event["node"]] = event["event"]
+            assert event["node"] not in ends, f"{event['node']} ended twice"
+            ends[event["node"]] = event["event"]
         elif event["event"] == "damaged":
-            del told[event["node"]]
-    return told
+            del ends[event["node"]]
+    return ends
 
 
 def test_a_failing_node_fails_what_reads_it_and_nothing_else(toys, calm):
@@ -87,18 +87,18 @@ def test_all_failures_are_told_and_run_json_has_the_documented_shape(toys):
     assert "points[frame=1]: ValueError: points-20 was told to fail" in done.stderr
     assert "points[frame=4]: ValueError: points-50 was told to fail" in done.stderr
     assert "Traceback" not in done.stderr
-    told = json.loads((toys.output / "run.json").read_text())
-    assert set(told) == {"status", "nodes", "tasks", "failures", "seconds", "versions", "files"}
-    assert told["status"] == "failed"
+    account = json.loads((toys.output / "run.json").read_text())
+    assert set(account) == {"status", "nodes", "tasks", "failures", "seconds", "versions", "files"}
+    assert account["status"] == "failed"
     # four frames are read and smoothed; all else gathers over six
-    assert told["nodes"] == {"ran": 8, "fresh": 0, "failed": 2, "skipped": 18}
-    assert set(told["tasks"]["points"]) == {"ran", "fresh", "failed", "seconds"}
-    assert (told["tasks"]["points"]["ran"], told["tasks"]["points"]["failed"]) == (4, 2)
-    assert sorted(told["failures"], key=lambda f: f["node"]) == [
+    assert account["nodes"] == {"ran": 8, "fresh": 0, "failed": 2, "skipped": 18}
+    assert set(account["tasks"]["points"]) == {"ran", "fresh", "failed", "seconds"}
+    assert (account["tasks"]["points"]["ran"], account["tasks"]["points"]["failed"]) == (4, 2)
+    assert sorted(account["failures"], key=lambda f: f["node"]) == [
         {"node": f"points[frame={n}]", "error": "ValueError", "message": f"points-{10 * n + 10} was told to fail"}
         for n in (1, 4)
     ]
-    assert told["versions"]["python"].startswith("3.")
+    assert account["versions"]["python"].startswith("3.")
     log = [json.loads(line) for line in (toys.folder / "log.json").read_text().splitlines()]
     assert (log[0]["event"], log[-1]["event"], log[-1]["status"]) == ("run", "end", "failed")
     ends = terminal(log)
@@ -199,16 +199,16 @@ def test_altered_bytes_are_noticed_on_reading_and_mended(toys, damage, executor,
     toys.run()
     damage(toys)
     toys.clear()
-    told = {"smooth": {"grain": 20.0}}
-    run = toys.run(**told, compute={"executor": executor, "workers": 2})
+    blocks = {"smooth": {"grain": 20.0}}
+    run = toys.run(**blocks, compute={"executor": executor, "workers": 2})
     assert run.told["status"] == "done"
     assert "points[frame=2]" in run.ran
     assert toys.executions().count("points-30") == 1
     ends = terminal(run.heard.events)
     counted = {kind: sum(e == kind for e in ends.values()) for kind in ("finish", "fresh")}
     assert run.told["nodes"] == {"ran": counted["finish"], "fresh": counted["fresh"], "failed": 0, "skipped": 0}
-    toys.run(**told, store=str(tmp_path / "other"))
-    assert toys.artifacts(**told) == toys.artifacts(**told, store=str(tmp_path / "other"))
+    toys.run(**blocks, store=str(tmp_path / "other"))
+    assert toys.artifacts(**blocks) == toys.artifacts(**blocks, store=str(tmp_path / "other"))
     assert toys.pipeline().artifact("points", frame=2).x.tolist() == [30.0, 60.0, 90.0]
 
 
@@ -237,13 +237,13 @@ def test_a_damaged_traversal_is_noticed_when_planning_and_mended(toys, calm):
 @pytest.mark.parametrize("executor", ["sync", "threads"])
 def test_an_artifact_that_many_nodes_made_is_mended_once(toys, executor):
     """All frames are smoothed to nothing: one artifact, six keys, and several tasks that read it at the same time."""
-    told = {"smooth": {"grain": 100.0}, "compute": {"executor": executor, "workers": 4}}
-    toys.run(**told)
-    alter(place_of(toys, toys.artifacts(**told)["smooth[frame=0]"]), "zarr.json", lambda data: data.replace(b"0.0", b"0.5"))
-    run = toys.run(**told, force=("total", "intervals"))
+    blocks = {"smooth": {"grain": 100.0}, "compute": {"executor": executor, "workers": 4}}
+    toys.run(**blocks)
+    alter(place_of(toys, toys.artifacts(**blocks)["smooth[frame=0]"]), "zarr.json", lambda data: data.replace(b"0.0", b"0.5"))
+    run = toys.run(**blocks, force=("total", "intervals"))
     assert run.told["status"] == "done"
     assert run.counts == {"smooth": 6, "total": 1, "intervals": 1}
-    assert toys.run(**told).ran == set()
+    assert toys.run(**blocks).ran == set()
 
 
 def test_a_truncated_record_is_as_good_as_none(toys, calm):
@@ -312,10 +312,10 @@ def test_store_removed_in_mid_run_is_a_store_again_and_every_command_accepts_it(
     (toys.flags / "wait-total-210").unlink()
     _, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
-    told = json.loads((toys.output / "run.json").read_text())
+    account = json.loads((toys.output / "run.json").read_text())
     plan = toys.pipeline().plan()
-    assert (told["status"], plan.counts) == ("done", {"fresh": 49}), "what is called done is there"
-    assert sum(told["nodes"].values()) == 43
+    assert (account["status"], plan.counts) == ("done", {"fresh": 49}), "what is called done is there"
+    assert sum(account["nodes"].values()) == 43
     assert toys.command("plan", str(toys.output)).returncode == 0
     assert toys.command("run", str(toys.yaml()), "--quiet").returncode == 0
     assert toys.artifacts() == calm
@@ -334,17 +334,17 @@ def test_a_store_removed_while_the_workers_end_is_filled_again(toys, calm, monke
             shutil.rmtree(toys.output / "store")
 
     monkeypatch.setattr(launch, "launcher", launcher)
-    told = toys.pipeline(compute={"executor": "threads"}).run()
-    assert (told["status"], len(begun)) == ("done", 2)
+    account = toys.pipeline(compute={"executor": "threads"}).run()
+    assert (account["status"], len(begun)) == ("done", 2)
     assert toys.artifacts() == calm
 
 
 def test_a_store_that_loses_everything_again_and_again_is_never_done(toys, monkeypatch):
     """What is written is seen once and gone when the run is over."""
-    seen = sight.sees
+    sees = sight.sees
 
     def once(store, key, artifact):
-        there = seen(store, key, artifact)
+        there = sees(store, key, artifact)
         shutil.rmtree(toys.output / "store" / "records")
         return there
 

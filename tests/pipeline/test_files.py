@@ -16,9 +16,9 @@ LONG_AGO = 1_000_000_000
 
 @pytest.fixture
 def store(tmp_path):
-    made = Store.at(tmp_path / "store")
-    made.create()
-    return made
+    created = Store.at(tmp_path / "store")
+    created.create()
+    return created
 
 
 @pytest.fixture
@@ -53,9 +53,9 @@ def settled(tmp_path, monkeypatch):
 
 def digests(store, *paths):
     files = Files.of(store)
-    found = files.digests(paths)
+    computed = files.digests(paths)
     files.save()
-    return found
+    return computed
 
 
 def test_digests_come_in_the_order_of_the_files(store, settled):
@@ -99,9 +99,9 @@ def test_file_that_changes_while_it_is_read_is_not_remembered(store, settled, mo
     path = settled("a.ply")
 
     def racing(path):
-        found = file_digest(path)
+        content = file_digest(path)
         path.write_bytes(b"more")
-        return found
+        return content
 
     monkeypatch.setattr(remembering, "file_digest", racing)
     first = digests(store, path)
@@ -181,6 +181,6 @@ def test_planning_without_a_store_makes_none(tmp_path, settled):
 def test_memory_holds_digests_and_no_bytes(store, settled):
     path = settled("a.ply", b"secret of the file")
     digests(store, path)
-    told = unsealed(store.place.get(MEMORY))
-    assert list(told) == [f"bytes:{path}"]
-    assert "secret" not in json.dumps(list(told.values()))
+    memory = unsealed(store.place.get(MEMORY))
+    assert list(memory) == [f"bytes:{path}"]
+    assert "secret" not in json.dumps(list(memory.values()))

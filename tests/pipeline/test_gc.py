@@ -57,16 +57,16 @@ def test_a_dry_collection_frees_nothing_and_says_what_a_real_one_then_frees(toys
     toys.run()
     toys.run(points={"scale": 1.3})
     before = toys.stored()
-    told = collect(store(toys), dry=True)
+    collected = collect(store(toys), dry=True)
     assert toys.stored() == before
-    assert collect(store(toys)) == told
+    assert collect(store(toys)) == collected
     after = toys.stored()
     artifacts = {path for path in before if path.startswith("artifacts/")} - set(after)
-    assert {path.split("/")[2].removesuffix(".zip") for path in artifacts} == set(told.artifacts)
+    assert {path.split("/")[2].removesuffix(".zip") for path in artifacts} == set(collected.artifacts)
     lists = {path for path in before if path.startswith("nodes/")} - set(after)
-    assert sum(len(before[path]) for path in {*artifacts, *lists}) == told.bytes
-    assert lists == set(told.leftovers)
-    assert not {record.key for record in store(toys).records.all()} & set(told.records)
+    assert sum(len(before[path]) for path in {*artifacts, *lists}) == collected.bytes
+    assert lists == set(collected.leftovers)
+    assert not {record.key for record in store(toys).records.all()} & set(collected.records)
     assert set(after) <= set(before)
     assert collect(store(toys), dry=True).artifacts == ()
 
@@ -75,7 +75,7 @@ def test_records_that_nobody_needs_are_not_read(toys, monkeypatch):
     toys.run()
     toys.run(points={"scale": 2.0})
     read, plain = [], Records.get
-    monkeypatch.setattr(Records, "get", lambda self, key, **told: read.append(key) or plain(self, key, **told))
+    monkeypatch.setattr(Records, "get", lambda self, key, **named: read.append(key) or plain(self, key, **named))
     freed = collect(toys.pipeline().store, dry=True)
     assert len(freed.records) > 16, "they lie in a pack"
     assert read
@@ -135,7 +135,7 @@ def test_what_a_run_under_way_found_fresh_is_safe(toys):
     (toys.flags / "wait-cones-60").unlink()
     _, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
-    assert not [told for told in toys.executions() if told.startswith(("points", "smooth", "centred"))]
+    assert not [call for call in toys.executions() if call.startswith(("points", "smooth", "centred"))]
     assert toys.run().counts["intervals"] == 1
 
 

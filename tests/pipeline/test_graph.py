@@ -158,8 +158,8 @@ def test_two_tasks_of_one_name_are_refused_naming_both():
 
 
 def test_missing_writer_is_refused_naming_the_reader_and_the_class():
-    told = refusal(MissingWriterError, leaf)
-    assert told == f"leaf ({leaf.where}): argument seed is Seed ({__name__}), which no task writes"
+    message = refusal(MissingWriterError, leaf)
+    assert message == f"leaf ({leaf.where}): argument seed is Seed ({__name__}), which no task writes"
 
 
 def test_traversal_that_no_task_writes_is_refused():
@@ -168,8 +168,8 @@ def test_traversal_that_no_task_writes_is_refused():
         """Climbs."""
         return Fruit()
 
-    told = refusal(MissingWriterError, seed, vine)
-    assert told == f"vine ({vine.where}): the traversal it goes along is Order ({__name__}), which no task writes"
+    message = refusal(MissingWriterError, seed, vine)
+    assert message == f"vine ({vine.where}): the traversal it goes along is Order ({__name__}), which no task writes"
 
 
 def test_a_block_that_no_task_with_these_params_has_is_refused():
@@ -178,8 +178,8 @@ def test_a_block_that_no_task_with_these_params_has_is_refused():
         """Grows."""
         return Fruit()
 
-    told = refusal(GraphError, seed, sown)
-    assert told == f"sown ({sown.where}): is set by the block seeds, but there is no task of that name with SeedParams"
+    message = refusal(GraphError, seed, sown)
+    assert message == f"sown ({sown.where}): is set by the block seeds, but there is no task of that name with SeedParams"
     with pytest.raises(GraphError, match="is set by the block seed, but takes no params"):
         task(over="day", block="seed")(leaf.function)
 
@@ -195,11 +195,11 @@ def test_cycle_is_refused_naming_every_place():
         """First."""
         return Harvest()
 
-    told = refusal(CycleError, egg, hen)
-    assert told.startswith("tasks wait for each other: ")
-    assert f"egg ({egg.where})" in told
-    assert f"hen ({hen.where})" in told
-    assert told.count("→") == 2
+    message = refusal(CycleError, egg, hen)
+    assert message.startswith("tasks wait for each other: ")
+    assert f"egg ({egg.where})" in message
+    assert f"hen ({hen.where})" in message
+    assert message.count("→") == 2
 
 
 def test_ring_that_goes_through_the_previous_member_is_no_cycle():
@@ -217,10 +217,10 @@ def test_ring_that_the_previous_member_does_not_cut_is_refused():
         """Waits for the saplings of its own year."""
         return Season()
 
-    told = refusal(CycleError, seed, year, season, sapling)
-    assert told.startswith("tasks wait for each other: ")
-    assert f"season ({season.where})" in told
-    assert f"sapling ({sapling.where})" in told
+    message = refusal(CycleError, seed, year, season, sapling)
+    assert message.startswith("tasks wait for each other: ")
+    assert f"season ({season.where})" in message
+    assert f"sapling ({sapling.where})" in message
 
 
 def test_previous_of_what_has_no_such_dimension_is_refused():
@@ -263,10 +263,10 @@ def test_task_that_waits_for_itself_is_refused(form):
         return Harvest()
 
     snake.__annotations__["tail"] = form
-    made = task()(snake)
-    told = refusal(CycleError, made)
-    assert told.startswith(f"snake ({made.where}) waits for itself: argument tail is Harvest, which it writes; ")
-    assert "write Harvest | None and say along" in told
+    snake_task = task()(snake)
+    message = refusal(CycleError, snake_task)
+    assert message.startswith(f"snake ({snake_task.where}) waits for itself: argument tail is Harvest, which it writes; ")
+    assert "write Harvest | None and say along" in message
 
 
 def test_traversal_ordered_by_what_is_traversed_is_refused():
@@ -310,9 +310,9 @@ def test_gather_where_there_is_one_is_refused(form):
         return Fruit()
 
     pick.__annotations__["leaf"] = form
-    made = task(over="day")(pick)
-    told = refusal(GraphError, seed, leaf, made)
-    assert told == f"pick ({made.where}): argument leaf gathers Leaf, of which there is one at its index"
+    pick_task = task(over="day")(pick)
+    message = refusal(GraphError, seed, leaf, pick_task)
+    assert message == f"pick ({pick_task.where}): argument leaf gathers Leaf, of which there is one at its index"
 
 
 def test_mapping_over_two_dimensions_at_once_is_refused():
@@ -326,8 +326,8 @@ def test_mapping_over_two_dimensions_at_once_is_refused():
         """By which number?"""
         return Harvest()
 
-    told = refusal(GraphError, seed, leaf, branches, bud, bouquet)
-    assert told.endswith("argument bud maps from one number, but gathers over branch/day; use a tuple")
+    message = refusal(GraphError, seed, leaf, branches, bud, bouquet)
+    assert message.endswith("argument bud maps from one number, but gathers over branch/day; use a tuple")
 
 
 @pytest.mark.parametrize("over", ["night", "branch", "day/hour", "day/", "/day", "day/day"])
@@ -337,8 +337,8 @@ def test_space_that_no_task_opens_is_refused(over):
         """Where?"""
         return Fruit()
 
-    told = refusal(MissingWriterError, seed, owl)
-    assert told.startswith(f"owl ({owl.where}) runs over {over}, but no task opens ")
+    message = refusal(MissingWriterError, seed, owl)
+    assert message.startswith(f"owl ({owl.where}) runs over {over}, but no task opens ")
 
 
 def test_space_that_two_tasks_open_is_refused_naming_both():
@@ -352,8 +352,8 @@ def test_space_that_two_tasks_open_is_refused_naming_both():
         """Opens branches too."""
         return Twigs()
 
-    told = refusal(TwoWritersError, seed, leaf, branches, twigs)
-    assert told == f"two tasks open branch: {branches.where} and {twigs.where}"
+    message = refusal(TwoWritersError, seed, leaf, branches, twigs)
+    assert message == f"two tasks open branch: {branches.where} and {twigs.where}"
 
 
 def test_task_that_opens_a_space_beside_its_own_is_refused():
@@ -362,8 +362,8 @@ def test_task_that_opens_a_space_beside_its_own_is_refused():
         """Every day opens the same branches."""
         return Branches()
 
-    told = refusal(GraphError, seed, grafts)
-    assert told == f"grafts ({grafts.where}) runs over day and cannot open branch"
+    message = refusal(GraphError, seed, grafts)
+    assert message == f"grafts ({grafts.where}) runs over day and cannot open branch"
 
 
 def test_until_keeps_what_a_task_needs_and_no_more():

@@ -85,7 +85,7 @@ def test_a_damaged_file_is_none(home):
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("name", "value", "words"),
     [
         ("module", "os", "kept graphs name os, which is none of kinetree.tasks, kinetree.schemas"),
         ("returns", "subprocess:Popen", "kept graphs name subprocess, which is none of"),
@@ -93,14 +93,14 @@ def test_a_damaged_file_is_none(home):
         ("params", "kinetree.schemas.array:Floats", "which is no Params; delete the folder kinetree/graphs"),
     ],
 )
-def test_kept_graphs_may_name_nothing_but_tasks_and_schemas(home, name, value, told):
+def test_kept_graphs_may_name_nothing_but_tasks_and_schemas(home, name, value, words):
     kept_graphs(REFERENCE)
     (file,) = home.glob("*.json")
     rows = kept.read(file)
     rows["reeb"][3][name] = value
     kept.write(file, rows)
     graph_cache._graphs.cache_clear()
-    with pytest.raises(GraphError, match=told):
+    with pytest.raises(GraphError, match=words):
         kept_graphs(REFERENCE)["reeb"]
 
 

@@ -24,10 +24,10 @@ def test_named_arrays_and_attributes_of_any_group_are_read(tmp_path):
     group = zarr.create_group(tmp_path / "g", attributes={"fps": 25, "unit": "mm", "more": {"a": 1}})
     group.create_array("vertices", data=np.arange(6.0).reshape(2, 3))
     group.create_array("colours", data=np.arange(6.0))
-    held = user_arrays(tmp_path / "g", NAMES)
-    np.testing.assert_array_equal(held["vertices"], np.arange(6.0).reshape(2, 3))
-    assert (held["fps"].item(), held["unit"].item()) == (25, "mm")
-    assert set(held) == set(NAMES)
+    arrays = user_arrays(tmp_path / "g", NAMES)
+    np.testing.assert_array_equal(arrays["vertices"], np.arange(6.0).reshape(2, 3))
+    assert (arrays["fps"].item(), arrays["unit"].item()) == (25, "mm")
+    assert set(arrays) == set(NAMES)
 
 
 @pytest.mark.parametrize("compressors", [None, ZstdCodec(level=3), GzipCodec(), BloscCodec(), [ZstdCodec(), Crc32cCodec()]])
@@ -69,8 +69,8 @@ def test_nothing_in_a_users_zarr_is_unpickled(tmp_path, outer, codecs):
         (group / ".zgroup").write_text('{"zarr_format": 2}')
     else:
         (group / "zarr.json").write_text('{"zarr_format": 3, "node_type": "group"}')
-    told = {"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "compressor": None, "filters": None, "order": "C"}
-    (group / "vertices" / ".zarray").write_text(json.dumps({**told, "fill_value": None, **codecs}))
+    metadata = {"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "compressor": None, "filters": None, "order": "C"}
+    (group / "vertices" / ".zarray").write_text(json.dumps({**metadata, "fill_value": None, **codecs}))
     (group / "vertices" / "0").write_bytes(pickle.dumps(Bomb(tmp_path / "exploded")))
     with pytest.raises(StoreError, match="not a readable zarr group"):
         user_arrays(group, NAMES)
@@ -89,7 +89,7 @@ BYTES = {"name": "bytes", "configuration": {"endian": "little"}}
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "words"),
     [
         ({"codecs": [BYTES, {"name": "numcodecs.pickle", "configuration": {}}]}, "codecs bytes, numcodecs.pickle"),
         ({"codecs": [{"name": "vlen-utf8"}], "data_type": "string"}, "data type 'string'"),
@@ -104,10 +104,10 @@ BYTES = {"name": "bytes", "configuration": {"endian": "little"}}
         ({"zarr_format": 4}, "format 4"),
     ],
 )
-def test_what_is_not_on_the_list_is_refused_by_its_name(tmp_path, changes, told):
+def test_what_is_not_on_the_list_is_refused_by_its_name(tmp_path, changes, words):
     with pytest.raises(StoreError) as refused:
         user_arrays(altered(tmp_path, **changes), NAMES)
-    assert told in str(refused.value)
+    assert words in str(refused.value)
 
 
 def test_shards_are_refused(tmp_path):
@@ -137,8 +137,9 @@ def test_chunk_that_says_it_is_larger_than_its_array_is_refused(tmp_path, chunk)
     (None, bytes(10**4)),
 ])  # fmt: skip
 def test_chunk_that_unpacks_to_more_than_its_array_is_refused(tmp_path, codec, chunk):
-    told = {"gzip": {"level": 5}, "blosc": {"cname": "lz4", "clevel": 5, "shuffle": "shuffle", "typesize": 8, "blocksize": 0}}
-    group = altered(tmp_path, codecs=[BYTES, *([{"name": codec, "configuration": told[codec]}] if codec else [])])
+    blosc = {"cname": "lz4", "clevel": 5, "shuffle": "shuffle", "typesize": 8, "blocksize": 0}
+    options = {"gzip": {"level": 5}, "blosc": blosc}
+    group = altered(tmp_path, codecs=[BYTES, *([{"name": codec, "configuration": options[codec]}] if codec else [])])
     (group / "vertices" / "c" / "0" / "0").write_bytes(chunk)
     with pytest.raises(StoreError, match="a chunk would unpack to"):
         user_arrays(group, NAMES)
@@ -165,8 +166,8 @@ print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
 def reading(path):
     """What a process of its own says of an input, and how many MiB it took at its peak."""
     done = subprocess.run([sys.executable, "-c", READ, str(path)], capture_output=True, text=True, check=True)
-    told, mebibytes = done.stdout.strip().splitlines()
-    return told, int(mebibytes)
+    words, mebibytes = done.stdout.strip().splitlines()
+    return words, int(mebibytes)
 
 
 def write_sequence(path):
@@ -181,8 +182,8 @@ def write_sequence(path):
 def test_array_that_nobody_asked_for_takes_no_memory(tmp_path):
     group = write_sequence(tmp_path / "a.zarr")
     group.create_array("colours", shape=(3 * 10**9,), dtype="float64", chunks=(10**6,))
-    told, mebibytes = reading(tmp_path / "a.zarr")
-    assert told == "2 frames"
+    words, mebibytes = reading(tmp_path / "a.zarr")
+    assert words == "2 frames"
     assert mebibytes < 100
 
 
@@ -190,16 +191,16 @@ def test_array_of_much_memory_of_which_little_is_stored_is_refused_before_it_is_
     group = write_sequence(tmp_path / "a.zarr")
     del group["vertices"]
     group.create_array("vertices", shape=(10**9, 3), dtype="float64", chunks=(10**6, 3))
-    told, mebibytes = reading(tmp_path / "a.zarr")
-    assert "vertices: not a readable zarr array: 0 bytes would unpack to 24000000000" in told
+    words, mebibytes = reading(tmp_path / "a.zarr")
+    assert "vertices: not a readable zarr array: 0 bytes would unpack to 24000000000" in words
     assert mebibytes < 100
 
 
 def test_archive_that_unpacks_to_much_more_is_refused_before_memory_is_taken(tmp_path):
     np.savez_compressed(tmp_path / "a.npz", vertices=np.zeros((2 * 10**7, 3)), faces=np.zeros((4, 3), dtype="int32"))
-    told, mebibytes = reading(tmp_path / "a.npz")
-    assert "vertices: " in told
-    assert "bytes would unpack to 480000128; expected at most 100 times as many" in told
+    message, mebibytes = reading(tmp_path / "a.npz")
+    assert "vertices: " in message
+    assert "bytes would unpack to 480000128; expected at most 100 times as many" in message
     assert mebibytes < 100
 
 
@@ -254,11 +255,11 @@ def test_big_endian_chunk_is_read_as_what_it_is():
     np.testing.assert_array_equal(decoded(files, Numbers(array)), array.astype("<f8").view(">f8"))
 
 
-@pytest.mark.parametrize("held", [5, 7])
-def test_chunk_of_another_size_than_its_array_is_refused(held):
+@pytest.mark.parametrize("length", [5, 7])
+def test_chunk_of_another_size_than_its_array_is_refused(length):
     files = own_files(np.arange(6.0))
-    files["c/0"] = own_files(np.arange(float(held)))["c/0"]
-    with pytest.raises(ForeignArrayError, match=f"a chunk holds {8 * held} bytes, expected 48"):
+    files["c/0"] = own_files(np.arange(float(length)))["c/0"]
+    with pytest.raises(ForeignArrayError, match=f"a chunk holds {8 * length} bytes, expected 48"):
         decoded(files, None)
 
 

@@ -15,9 +15,9 @@ from kinetree.pipeline.storage.store import Store
 
 @pytest.fixture
 def store(tmp_path):
-    made = Store.at(tmp_path / "store")
-    made.create()
-    return made
+    created = Store.at(tmp_path / "store")
+    created.create()
+    return created
 
 
 def run(**changes):

@@ -131,47 +131,47 @@ def difference(toys):
 def test_a_run_does_not_differ_from_its_repetition(toys):
     toys.run()
     toys.run()
-    told = difference(toys)
-    assert (told["only_a"], told["only_b"], told["changed"], told["begins"]) == ([], [], [], {})
+    changes = difference(toys)
+    assert (changes["only_a"], changes["only_b"], changes["changed"], changes["begins"]) == ([], [], [], {})
 
 
 def test_a_difference_begins_at_the_parameter_that_differs(toys):
     toys.run()
     toys.run(intervals={"length": 3})
-    told = difference(toys)
-    assert told["begins"] == {"intervals": ["params: length 2 → 3"]}
+    changes = difference(toys)
+    assert changes["begins"] == {"intervals": ["params: length 2 → 3"]}
     gone = {"cones[interval=2]", "piece[interval=0,cone=1]", "piece[interval=2,cone=0]", "piece[interval=2,cone=1]"}
-    assert set(told["only_a"]) == gone | {f"local[interval={n // 2},frame={n}]" for n in (2, 4, 5)}
-    assert {"intervals", "cones[interval=0]", "report"} <= set(told["changed"])
-    assert not any(n.startswith(("points", "smooth", "track")) for n in told["changed"])
+    assert set(changes["only_a"]) == gone | {f"local[interval={n // 2},frame={n}]" for n in (2, 4, 5)}
+    assert {"intervals", "cones[interval=0]", "report"} <= set(changes["changed"])
+    assert not any(n.startswith(("points", "smooth", "track")) for n in changes["changed"])
 
 
 def test_a_difference_begins_at_the_frame_that_was_replaced(toys):
     toys.run()
     toys.write(88, start=2)
     toys.run()
-    told = difference(toys)
-    assert list(told["begins"]) == ["source[frame=2]"]
-    assert told["begins"]["source[frame=2]"][0].startswith("input: ")
-    assert "report" in told["changed"]
+    changes = difference(toys)
+    assert list(changes["begins"]) == ["source[frame=2]"]
+    assert changes["begins"]["source[frame=2]"][0].startswith("input: ")
+    assert "report" in changes["changed"]
 
 
 def test_a_difference_begins_at_the_code_that_was_edited(toys):
     toys.run()
     toys.edit("return Centred(value=smooth.value -", "return Centred(value=2.0 * smooth.value -")
     toys.run()
-    told = difference(toys)
-    assert told["begins"]["centred[frame=0]"] == [f"code: {toys.name}.toys:centred"]
-    assert {"centred[frame=0]", "track[frame=0]", "report"} <= set(told["changed"])
-    assert "total" not in told["changed"]
+    changes = difference(toys)
+    assert changes["begins"]["centred[frame=0]"] == [f"code: {toys.name}.toys:centred"]
+    assert {"centred[frame=0]", "track[frame=0]", "report"} <= set(changes["changed"])
+    assert "total" not in changes["changed"]
 
 
 def test_other_parameters_with_equal_results_are_told_though_nothing_changed(toys):
     toys.run()
     toys.run(smooth={"grain": 5.0})
-    told = difference(toys)
-    assert told["changed"] == []
-    assert told["begins"] == {f"smooth[frame={n}]": ["params: grain 10.0 → 5.0"] for n in range(6)}
+    changes = difference(toys)
+    assert changes["changed"] == []
+    assert changes["begins"] == {f"smooth[frame={n}]": ["params: grain 10.0 → 5.0"] for n in range(6)}
 
 
 def test_a_run_nobody_knows_is_refused(toys):
@@ -187,6 +187,6 @@ def test_what_is_told_reads_well_and_is_still_plain(toys):
     runs = toys.pipeline().runs()
     assert repr(runs).splitlines()[1].startswith(first["run"])
     assert runs._repr_html_().count("<tr>") == 1 + len(runs)
-    told = toys.pipeline().diff(first["run"], second["run"])
-    assert "starts at smooth[frame=0]: params: grain 10.0 → 20.0" in repr(told)
+    changes = toys.pipeline().diff(first["run"], second["run"])
+    assert "starts at smooth[frame=0]: params: grain 10.0 → 20.0" in repr(changes)
     assert "<script>" not in RunList([{"name": "<script>"}])._repr_html_()

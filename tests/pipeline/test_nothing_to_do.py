@@ -25,9 +25,9 @@ def asked(monkeypatch):
     def counted(place, name):
         plain = getattr(place, name)
 
-        def count(*given, **named):
+        def count(*arguments, **named):
             counts[name] += 1
-            return plain(*given, **named)
+            return plain(*arguments, **named)
 
         monkeypatch.setattr(place, name, count)
 
@@ -39,7 +39,7 @@ def asked(monkeypatch):
 
 def test_reads_and_writes_do_not_grow_with_the_frames_and_a_node_is_asked_for_once(toys, asked, tmp_path):
     assert freshness.node_key is not key.node_key, "it is counted"
-    told = []
+    costs = []
     for frames in (20, 60):
         toys.write(*(10.0 * (n + 1) for n in range(frames)))
         blocks = {**ALONE, "output": str(tmp_path / f"{frames}")}
@@ -47,8 +47,8 @@ def test_reads_and_writes_do_not_grow_with_the_frames_and_a_node_is_asked_for_on
         asked.clear()
         nothing = toys.run(**blocks)
         assert not nothing.ran
-        told.append((asked.copy(), nothing.told["nodes"]["fresh"]))
-    (few, _), (many, nodes) = told
+        costs.append((asked.copy(), nothing.told["nodes"]["fresh"]))
+    (few, _), (many, nodes) = costs
     per_node = {"size", "node_key"}
     assert {name: n for name, n in few.items() if name not in per_node} == {
         name: n for name, n in many.items() if name not in per_node
@@ -61,9 +61,9 @@ def test_libraries_that_compute_and_store_are_not_imported(toys):
     config = str(toys.yaml())
     assert toys.command("run", config, "--quiet").returncode == 0
     process = toys.start("run", config, "--quiet", env={**os.environ, "PYTHONPROFILEIMPORTTIME": "1"})
-    _, told = process.communicate(timeout=120)
+    _, import_times = process.communicate(timeout=120)
     assert process.returncode == 0
-    imported = {line.rpartition("|")[2].strip() for line in told.splitlines() if line.startswith("import time:")}
+    imported = {line.rpartition("|")[2].strip() for line in import_times.splitlines() if line.startswith("import time:")}
     assert "numpy" in imported
     assert not imported & {"dask", "distributed", "zarr", "obstore", "scipy", "numba", "matplotlib"}
     assert json.loads((toys.output / "run.json").read_text())["nodes"]["ran"] == 0

@@ -69,9 +69,9 @@ def test_name_that_nobody_has_may_be_known_later(url, monkeypatch):
 def untrusted(tmp_path):
     """The address of a server on this machine whose certificate nobody signed but itself."""
     key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
-    made = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=localhost"]
-    made += ["-addext", "subjectAltName=IP:127.0.0.1", "-keyout", str(key), "-out", str(certificate)]
-    subprocess.run(made, check=True, capture_output=True)
+    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=localhost"]
+    command += ["-addext", "subjectAltName=IP:127.0.0.1", "-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(command, check=True, capture_output=True)
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.load_cert_chain(certificate, key)
     server = ThreadingHTTPServer(("127.0.0.1", 0), QuietHandler)
@@ -141,6 +141,6 @@ def test_exit_code_says_whether_trying_again_may_help(toys, url, service, monkey
     service.refuse_every, service.status = 1, status
     with pytest.raises(SystemExit) as end:
         cli.main(toy)
-    told = capsys.readouterr().err
-    assert (end.value.code, told.startswith(f"toy: store {url}: cannot ")) == (code, True)
-    assert "Traceback" not in told
+    message = capsys.readouterr().err
+    assert (end.value.code, message.startswith(f"toy: store {url}: cannot ")) == (code, True)
+    assert "Traceback" not in message

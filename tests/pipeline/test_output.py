@@ -30,10 +30,10 @@ def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
 
 
 def test_account_is_left_as_json(config):
-    told = {"status": "failed", "failures": [{"message": "a\nb\x1b[31m µ"}]}
-    write_run_json(config, told)
+    account = {"status": "failed", "failures": [{"message": "a\nb\x1b[31m µ"}]}
+    write_run_json(config, account)
     text = (config.output / "run.json").read_text()
-    assert json.loads(text) == told
+    assert json.loads(text) == account
     assert text.endswith("}\n")
 
 
@@ -48,8 +48,8 @@ def test_run_json_says_what_results_have_to_say_in_short_also_where_nothing_ran(
     views.summary_of(toys.module.Total)(lambda total: {"frames": list(total.frames)})
     again = toys.run(until=("total",))
     assert again.ran == set()
-    told = {"total": {"frames": list(range(len(list(toys.frames.iterdir()))))}}
-    assert json.loads((toys.output / "run.json").read_text())["results"] == again.told["results"] == told
+    results = {"total": {"frames": list(range(len(list(toys.frames.iterdir()))))}}
+    assert json.loads((toys.output / "run.json").read_text())["results"] == again.told["results"] == results
 
 
 def test_nothing_else_is_left_in_the_folder(config):

@@ -88,9 +88,9 @@ def test_store_that_cannot_be_written_serves_a_run_that_has_nothing_to_compute(t
     monkeypatch.setattr(Folder, "put", refuse)
     toys.output = tmp_path / "another"
     before = sorted((tmp_path / "store").rglob("*"))
-    told = toys.run(store=str(tmp_path / "store")).told
-    assert told["status"] == "done"
-    assert told["notes"] == [UNRECORDED]
+    account = toys.run(store=str(tmp_path / "store")).told
+    assert account["status"] == "done"
+    assert account["notes"] == [UNRECORDED]
     assert (toys.output / RUN_JSON).is_file()
     assert sorted((tmp_path / "store").rglob("*")) == before
     toys.write(3, start=2)

@@ -26,23 +26,23 @@ def refits(*passes, frames=FRAMES):
 def by_hand(module, count):
     """Poses and stiffnesses by a loop over the plain functions."""
     smooth = {n: module.Smooth(value=number) for n, number in enumerate(NUMBERS)}
-    made, learned = [], []
+    refitted, learned = [], []
     for _ in range(count):
-        before = made[-1] if made else {}
+        before = refitted[-1] if refitted else {}
         learned.append(module.stiffness(tuple(smooth.values()), before))
-        made.append({n: module.refit(smooth[n], learned[-1], before.get(n)) for n in smooth})
-    poses = {n: module.pose(smooth[n], {p: row[n] for p, row in enumerate(made)}) for n in smooth}
-    return learned, made, poses
+        refitted.append({n: module.refit(smooth[n], learned[-1], before.get(n)) for n in smooth})
+    poses = {n: module.pose(smooth[n], {p: row[n] for p, row in enumerate(refitted)}) for n in smooth}
+    return learned, refitted, poses
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_passes_equal_a_loop_written_by_hand(passing, count):
     block = {"passes": {"count": count}}
     run = passing.run(**block)
-    learned, made, poses = by_hand(passing.module, count)
+    learned, refitted, poses = by_hand(passing.module, count)
     pipeline = passing.pipeline(**block)
     assert [pipeline.artifact("stiffness", **{"pass": p}) for p in range(count)] == learned
-    assert [{n: pipeline.artifact("refit", **{"pass": p, "frame": n}) for n in FRAMES} for p in range(count)] == made
+    assert [{n: pipeline.artifact("refit", **{"pass": p, "frame": n}) for n in FRAMES} for p in range(count)] == refitted
     assert {n: pipeline.artifact("pose", frame=n) for n in FRAMES} == poses
     assert poses[5].value == (60.0 if count == 0 else pytest.approx(60 * 1.1**count))
     assert run.counts.get("refit", 0) == 6 * count
@@ -169,14 +169,14 @@ def test_an_interrupted_pass_goes_on_where_it_stopped(passing, tmp_path):
 
 
 def test_passes_are_the_same_bytes_wherever_they_are_computed(passing, tmp_path):
-    def made(name, **compute):
+    def artifacts_of(name, **compute):
         passing.run(store=str(tmp_path / name), compute={"executor": "sync", **compute})
         return passing.artifacts(store=str(tmp_path / name))
 
-    expected = made("sync")
+    expected = artifacts_of("sync")
     assert len(expected) == 6 * 6 + 1 + 3 + 2 * 18
-    assert made("threads", executor="threads", workers=2) == expected
-    assert made("processes", executor="processes", workers=2) == expected
+    assert artifacts_of("threads", executor="threads", workers=2) == expected
+    assert artifacts_of("processes", executor="processes", workers=2) == expected
 
 
 def test_passes_survive_the_collection_of_garbage_and_are_told_apart(passing):
@@ -184,9 +184,9 @@ def test_passes_survive_the_collection_of_garbage_and_are_told_apart(passing):
     passing.write(80, start=5)
     second = passing.run().told["run"]
     pipeline = passing.pipeline()
-    told = pipeline.diff(first, second)
-    assert set(told["begins"]) == {"source[frame=5]"}
-    assert {"stiffness[pass=0]", *refits(0, 1, 2)} <= set(told["changed"])
+    changes = pipeline.diff(first, second)
+    assert set(changes["begins"]) == {"source[frame=5]"}
+    assert {"stiffness[pass=0]", *refits(0, 1, 2)} <= set(changes["changed"])
     freed = collect(pipeline.store)
     assert len(freed.runs) == 1
     assert len(freed.records) > 18

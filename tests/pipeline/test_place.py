@@ -162,9 +162,9 @@ def tiny(tmp_path):
     """A disk of 64 KiB."""
     folder = tmp_path / "tiny"
     folder.mkdir()
-    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(folder)], capture_output=True, text=True)
-    if made.returncode:
-        pytest.skip(f"a small disk cannot be mounted here: {made.stderr.strip()}")
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(folder)], capture_output=True, text=True)
+    if mounted.returncode:
+        pytest.skip(f"a small disk cannot be mounted here: {mounted.stderr.strip()}")
     yield folder
     subprocess.run(["umount", str(folder)], check=True)
 
@@ -190,12 +190,12 @@ def test_listing_a_tree_that_shrinks_meanwhile_tells_what_is_left(place, monkeyp
     @contextlib.contextmanager
     def shrinking(path):
         with scan(path) as entries:
-            found = list(entries)
+            listed = list(entries)
         for name in ("b", "c/d"):
             (place.root / "t" / name).unlink(missing_ok=True)
         if (place.root / "t" / "c").exists():
             (place.root / "t" / "c").rmdir()
-        yield found
+        yield listed
 
     monkeypatch.setattr(os, "scandir", shrinking)
     assert sizes(place, "t") == {"a": 1}
@@ -204,6 +204,6 @@ def test_listing_a_tree_that_shrinks_meanwhile_tells_what_is_left(place, monkeyp
 def test_listing_tells_size_and_time_of_everything_below(place):
     place.put_all("t", {"b": b"22", "a/c/d": b"3"})
     os.utime(place.root / "t" / "b", (1, 7))
-    found = place.listed("t")
-    assert list(found) == ["a/c/d", "b"]
-    assert (found["b"].size, found["b"].modified) == (2, 7.0)
+    listed = place.listed("t")
+    assert list(listed) == ["a/c/d", "b"]
+    assert (listed["b"].size, listed["b"].modified) == (2, 7.0)

@@ -19,11 +19,11 @@ def events(*told):
             yield {"event": kind, "task": task, "node": f"{task}[frame=0]", "message": "", **(more[0] if more else {})}
 
 
-def rows(*told, workers=1):
-    made = Rows(workers)
-    for event in events(*told):
-        made.hear(event)
-    return made
+def rows(*what, workers=1):
+    counted = Rows(workers)
+    for event in events(*what):
+        counted.hear(event)
+    return counted
 
 
 def console(**options):
@@ -37,13 +37,13 @@ def plain(monkeypatch):
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     out = console()
 
-    def hear(*told, seconds=0.0):
+    def hear(*what, seconds=0.0):
         now[0] += seconds
-        for event in events(*told):
-            shown.hear(event)
+        for event in events(*what):
+            printer.hear(event)
         return out.file.getvalue()
 
-    shown = PlainProgress(out, 2)
+    printer = PlainProgress(out, 2)
     return hear
 
 
@@ -66,23 +66,23 @@ def test_node_that_turns_out_fresh_after_it_was_sent_is_not_running():
 
 
 def test_time_left_is_what_is_left_by_the_mean_over_the_workers():
-    made = rows(("layout", {"mesh": 5}), *[("start", "mesh"), ("finish", "mesh", {"seconds": 2.0})] * 2, workers=3)
-    assert made.seconds_left(made.rows["mesh"]) == pytest.approx(3 * 2.0 / 3)
+    counted = rows(("layout", {"mesh": 5}), *[("start", "mesh"), ("finish", "mesh", {"seconds": 2.0})] * 2, workers=3)
+    assert counted.seconds_left(counted.rows["mesh"]) == pytest.approx(3 * 2.0 / 3)
 
 
 def test_time_left_is_unknown_before_anything_ran_and_none_at_the_end():
-    made = rows(("layout", {"mesh": 2}), ("fresh", "mesh"))
-    assert made.seconds_left(made.rows["mesh"]) is None
-    made.hear({"event": "fresh", "task": "mesh"})
-    assert made.seconds_left(made.rows["mesh"]) == 0
+    counted = rows(("layout", {"mesh": 2}), ("fresh", "mesh"))
+    assert counted.seconds_left(counted.rows["mesh"]) is None
+    counted.hear({"event": "fresh", "task": "mesh"})
+    assert counted.seconds_left(counted.rows["mesh"]) == 0
 
 
 def test_events_of_no_task_change_nothing():
     assert rows(("layout", {})).rows == {}
-    made = rows()
-    made.hear({"event": "run"})
-    made.hear({"event": "end"})
-    assert made.rows == {}
+    counted = rows()
+    counted.hear({"event": "run"})
+    counted.hear({"event": "end"})
+    assert counted.rows == {}
 
 
 def test_plain_progress_has_one_line_a_task_when_it_is_through(plain):
@@ -105,16 +105,16 @@ def test_plain_progress_tells_a_failure_at_once_and_safely(plain):
 
 def test_live_progress_shows_rows_and_leaves_the_terminal_whole():
     out = console(force_terminal=True)
-    with LiveProgress(out, 2) as shown:
+    with LiveProgress(out, 2) as progress:
         for event in events(
             ("layout", {"mesh": 3, "sequence": 1}), ("fresh", "sequence"), ("failed", "mesh"), ("skipped", "mesh")
         ):
-            shown.hear(event)
-    told = out.file.getvalue()
-    assert "mesh" in told
-    assert "2/3" in told
-    assert "1/1" in told
-    assert told.count("\x1b[?25l") == told.count("\x1b[?25h") == 1  # the cursor was hidden and is back
+            progress.hear(event)
+    output = out.file.getvalue()
+    assert "mesh" in output
+    assert "2/3" in output
+    assert "1/1" in output
+    assert output.count("\x1b[?25l") == output.count("\x1b[?25h") == 1  # the cursor was hidden and is back
 
 
 def test_live_progress_leaves_the_terminal_whole_when_interrupted():

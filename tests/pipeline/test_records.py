@@ -26,10 +26,10 @@ def place(tmp_path):
 
 @pytest.fixture
 def records(place):
-    made = Records(place)
+    filled = Records(place)
     for key in KEYS:
-        made.put(record(key))
-    return made
+        filled.put(record(key))
+    return filled
 
 
 def test_records_are_found_alone_and_packed(place, records):
@@ -102,14 +102,14 @@ def test_altered_pack_is_noticed_and_discarded(place, records):
     data = place.get("packs/run.zip")
     for at in range(0, len(data), 97):
         place.put("packs/run.zip", data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
-        found = Records(place)
-        sound = {r.key for r in found.all()}
-        assert all(r == record(r.key) for r in found.all())
-        assert found.damaged() or sound == set(KEYS)
+        reopened = Records(place)
+        sound = {r.key for r in reopened.all()}
+        assert all(r == record(r.key) for r in reopened.all())
+        assert reopened.damaged() or sound == set(KEYS)
     place.put("packs/run.zip", b"PK")
-    found = Records(place)
-    assert found.damaged() == ["packs/run.zip"]
-    found.discard_damaged()
+    reopened = Records(place)
+    assert reopened.damaged() == ["packs/run.zip"]
+    reopened.discard_damaged()
     assert place.names("packs") == []
 
 

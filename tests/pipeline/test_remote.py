@@ -81,9 +81,9 @@ def test_task_reads_copies_of_what_it_reads_one_of(bucket):
 
 
 def test_what_is_wrong_with_a_copy_is_said_of_the_object(bucket):
-    with pytest.raises(ValueError, match="^(.*)$") as told, copied(f"{bucket.url}/in/a_1.txt") as path:
+    with pytest.raises(ValueError, match="^(.*)$") as refused, copied(f"{bucket.url}/in/a_1.txt") as path:
         raise ValueError(f"{path}: damaged")
-    assert str(told.value) == f"{bucket.url}/in/a_1.txt: damaged"
+    assert str(refused.value) == f"{bucket.url}/in/a_1.txt: damaged"
 
 
 def test_object_that_is_gone_is_named(bucket):
@@ -95,9 +95,9 @@ def test_unchanged_objects_are_listed_and_not_read_again(bucket, service, tmp_pa
     def digests():
         service.asked.clear()
         files = Files.of(store)
-        told = files.parts_of_each(files.addresses(f"{bucket.url}/in/"), "upper", lambda path: [path.read_text().upper()])
+        uppercase = files.parts_of_each(files.addresses(f"{bucket.url}/in/"), "upper", lambda path: [path.read_text().upper()])
         files.save()
-        return [parts[0] for parts in told], {kind: n for kind, n in service.asked.items() if n}
+        return [parts[0] for parts in uppercase], {kind: n for kind, n in service.asked.items() if n}
 
     store = Store.at(tmp_path / "store")
     store.create()
@@ -110,6 +110,6 @@ def test_unchanged_objects_are_listed_and_not_read_again(bucket, service, tmp_pa
 @pytest.mark.parametrize("address", ["s3://key:word@bucket/in", "s3:///in", "s3://"])
 def test_address_that_is_none_is_refused_and_not_repeated(address):
     for question in (lambda: listed_files(address), lambda: Store.at(address)):
-        with pytest.raises(InputError, match="credentials in the environment") as told:
+        with pytest.raises(InputError, match="credentials in the environment") as refused:
             question()
-        assert "word" not in str(told.value)
+        assert "word" not in str(refused.value)

@@ -17,14 +17,14 @@ HOME = Path(str(module.__file__))
 
 def changed(path: Path) -> set[str]:
     """Attributes of something other than `self` that a file assigns, or to whose items it assigns."""
-    found: set[str] = set()
+    names: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text())):
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
         each = [t for target in targets for t in (target.elts if isinstance(target, ast.Tuple) else [target])]
         owned = [t.value if isinstance(t, ast.Subscript) else t for t in each]
         attributes = [t for t in owned if isinstance(t, ast.Attribute)]
-        found |= {t.attr for t in attributes if not (isinstance(t.value, ast.Name) and t.value.id == "self")}
-    return found
+        names |= {t.attr for t in attributes if not (isinstance(t.value, ast.Name) and t.value.id == "self")}
+    return names
 
 
 def test_nobody_else_changes_the_entries_of_a_schedule():

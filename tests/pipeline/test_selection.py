@@ -105,11 +105,11 @@ def choosing(toys):
 
 def test_a_task_gathers_the_selected_members_alone(choosing):
     choosing.run(chosen={"below": 4})
-    found = choosing.pipeline(chosen={"below": 4})
-    assert [found.artifact("mean", **{"pass": p}).frames for p in (0, 1)] == [(0, 1, 2, 3)] * 2
-    assert found.artifact("mean", **{"pass": 0}).value == 25.0
-    assert [found.artifact("apart", **{"pass": 1, "frame": n}).value for n in range(6)] == [-15, -5, 5, 15, 25, 35]
-    assert set(found.lineage("mean[0]").predecessors("mean[pass=0]")) == {f"smooth[frame={n}]" for n in range(4)}
+    pipeline = choosing.pipeline(chosen={"below": 4})
+    assert [pipeline.artifact("mean", **{"pass": p}).frames for p in (0, 1)] == [(0, 1, 2, 3)] * 2
+    assert pipeline.artifact("mean", **{"pass": 0}).value == 25.0
+    assert [pipeline.artifact("apart", **{"pass": 1, "frame": n}).value for n in range(6)] == [-15, -5, 5, 15, 25, 35]
+    assert set(pipeline.lineage("mean[0]").predecessors("mean[pass=0]")) == {f"smooth[frame={n}]" for n in range(4)}
 
 
 def test_an_appended_frame_outside_the_selection_computes_itself_and_no_gather_among_it(choosing):

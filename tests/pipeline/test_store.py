@@ -45,7 +45,7 @@ class Field(Artifact):
 
 def field(vertices=4, frames=2, **changes):
     rng = np.random.default_rng(7)
-    held = {
+    values = {
         "positions": rng.normal(size=(frames, vertices, 3)),
         "holes": np.where(np.arange(vertices) % 2, np.nan, -np.inf),
         "label": np.arange(vertices, dtype=np.int32) - 1,
@@ -54,7 +54,7 @@ def field(vertices=4, frames=2, **changes):
         "words": ("a\nb", "[red]", "μ", ""),
         "rate": None,
     }
-    return Field(**{**held, **changes})
+    return Field(**{**values, **changes})
 
 
 def record(key, digest, size):
@@ -73,9 +73,9 @@ def everything(folder):
 
 @pytest.fixture
 def store(tmp_path):
-    made = Store.at(tmp_path / "store")
-    made.create()
-    return made
+    created = Store.at(tmp_path / "store")
+    created.create()
+    return created
 
 
 # ── publishing and reading ──────────────────────────────────────────────────────────────────────────────────────────
@@ -83,20 +83,20 @@ def store(tmp_path):
 
 @pytest.mark.parametrize(("vertices", "frames"), [(4, 2), (0, 0), (0, 3), (1, 1), (1000, 1)])
 def test_what_was_published_is_read_back_bit_for_bit(store, vertices, frames):
-    made = field(vertices, frames)
-    digest, _ = store.publish(made)
+    artifact = field(vertices, frames)
+    digest, _ = store.publish(artifact)
     back = store.read(Field, digest)
-    assert back == made
-    assert artifact_digest(back) == digest == artifact_digest(made)
-    assert [(a.dtype, a.shape) for a in back.arrays().values()] == [(a.dtype, a.shape) for a in made.arrays().values()]
+    assert back == artifact
+    assert artifact_digest(back) == digest == artifact_digest(artifact)
+    assert [(a.dtype, a.shape) for a in back.arrays().values()] == [(a.dtype, a.shape) for a in artifact.arrays().values()]
 
 
 def test_large_arrays_lie_in_several_chunks_and_come_back(store, monkeypatch):
     monkeypatch.setattr(groups, "CHUNK_BYTES", 1024)
-    made = field(vertices=100, frames=7)
-    digest, _ = store.publish(made)
+    artifact = field(vertices=100, frames=7)
+    digest, _ = store.publish(artifact)
     assert len([name for name in files_of(store, digest) if name.startswith("positions/c/")]) == 7
-    assert store.read(Field, digest) == made
+    assert store.read(Field, digest) == artifact
 
 
 def test_arrays_of_zeros_are_written_too_so_that_a_lost_chunk_is_told_from_an_empty_one(store):
@@ -154,9 +154,9 @@ def test_reading_one_array_reads_no_other(store, monkeypatch):
 
     def watched(method):
         def call(self, *asked):
-            found = method(self, *asked)
-            read.append(len(found[0] if isinstance(found, tuple) else found))
-            return found
+            content = method(self, *asked)
+            read.append(len(content[0] if isinstance(content, tuple) else content))
+            return content
 
         return call
 
@@ -167,29 +167,29 @@ def test_reading_one_array_reads_no_other(store, monkeypatch):
 
 
 def test_no_reader_meets_half_an_artifact(store, monkeypatch):
-    made = field()
-    digest, _ = store.publish(made)
+    artifact = field()
+    digest, _ = store.publish(artifact)
     store.discard(digest)
-    seen = []
+    visible = []
     replace = Path.replace
 
     def watched(path, target):
-        seen.append((Path(store.url) / artifact_path(digest)).exists())
+        visible.append((Path(store.url) / artifact_path(digest)).exists())
         return replace(path, target)
 
     monkeypatch.setattr(Path, "replace", watched)
-    store.publish(made)
-    assert seen == [False]
-    assert store.read(Field, digest) == made
+    store.publish(artifact)
+    assert visible == [False]
+    assert store.read(Field, digest) == artifact
 
 
 def test_record_is_written_and_read_back(store):
     digest, size = store.publish(field())
-    made = record("ab" * 20, digest, size)
-    store.write(made)
-    assert store.record("ab" * 20) == made
-    assert list(store.records.all()) == [made]
-    assert store.holds(made)
+    own = record("ab" * 20, digest, size)
+    store.write(own)
+    assert store.record("ab" * 20) == own
+    assert list(store.records.all()) == [own]
+    assert store.holds(own)
     assert size == (Path(store.url) / artifact_path(digest)).stat().st_size
     assert store.record("cd" * 20) is None
 
@@ -254,15 +254,15 @@ def test_altered_unit_dimension_dtype_or_shape_is_noticed(store, old, new):
 
 
 def test_every_byte_of_the_zip_is_checked_or_harmless(store):
-    made = field(vertices=2, frames=1)
-    digest, _ = store.publish(made)
+    artifact = field(vertices=2, frames=1)
+    digest, _ = store.publish(artifact)
     path = Path(store.url) / artifact_path(digest)
     data = path.read_bytes()
     noticed = 0
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 0x21]) + data[place + 1 :])
         try:
-            assert store.read(Field, digest) == made
+            assert store.read(Field, digest) == artifact
         except DamagedArtifactError:
             noticed += 1
     assert noticed > len(data) / 7 / 2
@@ -307,11 +307,11 @@ def test_forged_record_is_not_believed(store, change):
 
 
 def test_published_again_mends_what_was_lost(store):
-    made = field()
+    artifact = field()
     digest, size = damaged(store, "positions/c/0/0/0", lost)
-    store.publish(made)
+    store.publish(artifact)
     assert store.holds(record("ab" * 20, digest, size))
-    assert store.read(Field, digest) == made
+    assert store.read(Field, digest) == artifact
 
 
 def test_published_again_mends_what_was_altered_at_equal_size(store):

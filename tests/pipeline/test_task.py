@@ -97,13 +97,13 @@ def test_what_others_made_at_the_previous_member():
     def grown(one: Stone | None, some: Previous[tuple[Stone, ...]], many: Previous[Mapping[int, Stone]]) -> House:
         return build(one, *some, *many.values())
 
-    made = task(over="street/house", along=Row)(grown)
-    assert made.arguments == (
+    house_task = task(over="street/house", along=Row)(grown)
+    assert house_task.arguments == (
         Argument("one", Stone, "one", previous=True),
         Argument("some", Stone, "tuple", previous=True),
         Argument("many", Stone, "mapping", previous=True),
     )
-    assert made(None, (), {}) == House(weight=1)
+    assert house_task(None, (), {}) == House(weight=1)
 
 
 def test_traversal_goes_over_the_last_dimension_or_the_one_that_its_artifact_orders():
@@ -210,10 +210,10 @@ def test_previous_without_a_traversal_and_a_traversal_without_previous_are_refus
     def gathered(before: Previous[tuple[House, ...]]) -> House:
         return build(*before)
 
-    told = "a task reads at the previous member exactly if it says along which traversal"
-    assert refusal(grown, over="house") == told
-    assert refusal(gathered, over="house") == told
-    assert refusal(alone, over="house", along=Row) == told
+    message = "a task reads at the previous member exactly if it says along which traversal"
+    assert refusal(grown, over="house") == message
+    assert refusal(gathered, over="house") == message
+    assert refusal(alone, over="house", along=Row) == message
 
 
 def test_traversal_of_a_dimension_that_the_task_lacks_is_refused():

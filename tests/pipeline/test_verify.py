@@ -31,10 +31,10 @@ def values(toys):
 
 def test_sound_store_is_sound(toys):
     toys.run()
-    found = verify(store(toys), [toys.module.GRAPH])
-    assert found.is_sound
-    assert found.lines() == []
-    assert found.artifacts == len(set(toys.artifacts().values())) - 6
+    report = verify(store(toys), [toys.module.GRAPH])
+    assert report.is_sound
+    assert report.lines() == []
+    assert report.artifacts == len(set(toys.artifacts().values())) - 6
 
 
 def test_every_altered_byte_is_noticed_or_harmless(toys):
@@ -63,10 +63,10 @@ def test_repair_computes_again_what_was_damaged_and_nothing_else(toys):
     toys.clear()
     for node, damage in (("points[frame=2]", flip), ("total", Path.unlink)):
         damage(store(toys).place.root / "artifacts" / calm[node][0][:2] / f"{calm[node][0]}.zip")
-    found = verify(store(toys), [toys.module.GRAPH])
-    assert sorted(label for nodes in found.nodes.values() for label in nodes) == ["points[frame=2]", "total"]
-    assert any("(total): it is missing" in line for line in found.lines())
-    discard_damage(store(toys), found)
+    report = verify(store(toys), [toys.module.GRAPH])
+    assert sorted(label for nodes in report.nodes.values() for label in nodes) == ["points[frame=2]", "total"]
+    assert any("(total): it is missing" in line for line in report.lines())
+    discard_damage(store(toys), report)
     assert toys.run().ran == {"points[frame=2]", "total"}
     assert verify(store(toys), [toys.module.GRAPH]).is_sound
     assert values(toys) == calm
@@ -84,9 +84,9 @@ def test_damaged_records_and_runs_are_named_and_repaired(toys, where):
     toys.run(until=("total",), force=("total",))  # which leaves a record of its own
     for path in files(toys.output / "store" / where):
         path.write_bytes(path.read_bytes()[:-1])
-    told = toys.command("verify", str(toys.output))
-    assert told.returncode == 1
-    assert "cannot be read" in told.stdout
+    process = toys.command("verify", str(toys.output))
+    assert process.returncode == 1
+    assert "cannot be read" in process.stdout
     repaired = toys.command("verify", str(toys.output), "--repair")
     assert repaired.returncode == 0, repaired.stderr
     assert toys.command("verify", str(toys.output)).stdout.endswith("artifacts read; nothing is damaged\n")

@@ -173,24 +173,24 @@ class Report(Artifact):
 
 def executed(name: str, number: float) -> None:
     """Notes an execution, then does what the flags ask of it."""
-    told = f"{name}-{number:g}"
+    call = f"{name}-{number:g}"
     with Path(os.environ["TOYS_LOG"]).open("a") as log:
-        log.write(f"{told}\n")
+        log.write(f"{call}\n")
     flags = Path(os.environ["TOYS_FLAGS"])
-    if (flags / f"fail-{told}").exists():
-        raise ValueError(f"{told} was told to fail")
-    if (flags / f"die-{told}").exists():
-        (flags / f"die-{told}").unlink()
+    if (flags / f"fail-{call}").exists():
+        raise ValueError(f"{call} was told to fail")
+    if (flags / f"die-{call}").exists():
+        (flags / f"die-{call}").unlink()
         os.kill(os.getpid(), signal.SIGKILL)
-    if (flags / f"slay-{told}").exists():
+    if (flags / f"slay-{call}").exists():
         os.kill(os.getpid(), signal.SIGKILL)
-    if (flags / f"stall-{told}").exists():
-        (flags / f"stall-{told}").rename(flags / f"stalled-{told}")
-        while (flags / f"stalled-{told}").exists():
+    if (flags / f"stall-{call}").exists():
+        (flags / f"stall-{call}").rename(flags / f"stalled-{call}")
+        while (flags / f"stalled-{call}").exists():
             threading.Event().wait(0.01)
-    if (flags / f"wait-{told}").exists():
-        (flags / f"waiting-{told}").write_text(str(os.getpid()))
-        while (flags / f"wait-{told}").exists():
+    if (flags / f"wait-{call}").exists():
+        (flags / f"waiting-{call}").write_text(str(os.getpid()))
+        while (flags / f"wait-{call}").exists():
             threading.Event().wait(0.01)
 
 
@@ -200,9 +200,9 @@ def source(params: SourceParams, files: Files) -> Mapping[int, Source]:
     paths = files.complete(sorted(Path(params.input).glob("*.txt")))
     if not paths:
         raise SourceError(f"no frames in {params.input}")
-    found = [Source(content=c, path=str(p)) for c, p in zip(files.digests(paths), paths, strict=True)]
-    chosen = range(len(found))[slice(*(int(p) if p else None for p in params.frames.split(":")))]
-    return {frame: found[frame] for frame in chosen}
+    sources = [Source(content=c, path=str(p)) for c, p in zip(files.digests(paths), paths, strict=True)]
+    chosen = range(len(sources))[slice(*(int(p) if p else None for p in params.frames.split(":")))]
+    return {frame: sources[frame] for frame in chosen}
 
 
 @task(over="frame")

@@ -47,8 +47,8 @@ def figures_of(summary=None):
 
 
 def table():
-    told = Outcomes(sequences=(DANCE, TORN, WALK))
+    outcomes = Outcomes(sequences=(DANCE, TORN, WALK))
     scores = Summary(scored=5, found=4, spurious=1, error=0.25, percent=1.5)
     return sequence_table(
-        told, {member: figures_of(scores if member == 2 else None) for member in told.members("sequence", ())}
+        outcomes, {member: figures_of(scores if member == 2 else None) for member in outcomes.members("sequence", ())}
     )

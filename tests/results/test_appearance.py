@@ -43,23 +43,23 @@ def write(folder, **changes):
     return Source(content=file_digest(folder / "frame.obj"), path=str(folder / "frame.obj"))
 
 
-def shown(source):
+def look_and_body(source):
     """The appearance of a frame, and the skeleton whose reference mesh it is."""
     surface = mesh(source, MeshParams())
     body = spider(vertices=surface.vertices, faces=surface.faces)
     return appearance(body, {3: source}, {3: surface}), body
 
 
-def exported(found, body, **params):
-    files = views.files(glb(body, plain(body), UP, GlbParams(scale=1.0, **params), found), ())
+def exported(look, body, **params):
+    files = views.files(glb(body, plain(body), UP, GlbParams(scale=1.0, **params), look), ())
     return files["skeleton.glb"]
 
 
 def test_textured_obj_with_seams_is_welded_for_the_skeleton_and_textured_in_the_file(tmp_path):
-    found, body = shown(write(tmp_path))
-    assert (found.frame, found.missing) == (3, ())
+    look, body = look_and_body(write(tmp_path))
+    assert (look.frame, look.missing) == (3, ())
     assert len(body.vertices) == len(spider().vertices)  # the copies at seams are welded
-    file = Read(exported(found, body))
+    file = Read(exported(look, body))
     uv = corner_uv(body.vertices, body.faces) * (1, -1) + (0, 1)
     np.testing.assert_allclose(file.attribute("TEXCOORD_0")[file.faces], uv, atol=1e-6)
     np.testing.assert_allclose(file.attribute("POSITION")[file.faces], body.vertices[body.faces], rtol=1e-6)
@@ -76,8 +76,8 @@ def test_textured_obj_with_seams_is_welded_for_the_skeleton_and_textured_in_the_
 
 
 def test_parts_are_coloured_where_they_are_asked_for_or_there_is_nothing_else(tmp_path):
-    found, body = shown(write(tmp_path))
-    assert exported(found, body, surface="parts") == exported(Appearance.none(), body)
+    look, body = look_and_body(write(tmp_path))
+    assert exported(look, body, surface="parts") == exported(Appearance.none(), body)
     assert "images" not in Read(exported(Appearance.none(), body)).json
 
 
@@ -87,19 +87,19 @@ def test_zip_of_textured_frames_has_its_texture(tmp_path):
         for name in FILES:
             archive.write(tmp_path / "walk" / name, f"walk/{name}")
     digest = mesh_digest(*packed_frames(tmp_path / "walk.zip", "animated").mesh(0))
-    found, _ = shown(Source(content=digest, path=str(tmp_path / "walk.zip"), part=0, kind="animated"))
-    assert found.content.tobytes() == png()
-    assert found.has_uv
+    look, _ = look_and_body(Source(content=digest, path=str(tmp_path / "walk.zip"), part=0, kind="animated"))
+    assert look.content.tobytes() == png()
+    assert look.has_uv
 
 
 @pytest.mark.parametrize("named", ["../secret.png", "/etc/hostname", "..\\secret.png"])
 def test_no_file_outside_the_folder_is_opened(tmp_path, named):
     (tmp_path / "secret.png").write_bytes(png((1, 2, 3)))
-    found, body = shown(write(tmp_path / "walk", skin=f"newmtl skin\nmap_Kd {named}\n".encode()))
-    assert found.media == ()
-    assert [text.endswith(f"{named} is not there") for text in found.missing] == [True]
-    made = glb(body, plain(body), UP, GlbParams(scale=1.0), found)
-    assert views.remarks(made) == found.missing
+    look, body = look_and_body(write(tmp_path / "walk", skin=f"newmtl skin\nmap_Kd {named}\n".encode()))
+    assert look.media == ()
+    assert [text.endswith(f"{named} is not there") for text in look.missing] == [True]
+    exported_glb = glb(body, plain(body), UP, GlbParams(scale=1.0), look)
+    assert views.remarks(exported_glb) == look.missing
 
 
 def test_link_out_of_the_folder_is_not_followed(tmp_path):
@@ -107,15 +107,15 @@ def test_link_out_of_the_folder_is_not_followed(tmp_path):
     (tmp_path / "walk" / "skin.png").unlink()
     (tmp_path / "secret.png").write_bytes(png())
     (tmp_path / "walk" / "skin.png").symlink_to(tmp_path / "secret.png")
-    assert shown(source)[0].media == ()
+    assert look_and_body(source)[0].media == ()
 
 
 def test_damaged_picture_is_said_and_the_rest_is_kept(tmp_path):
     source = write(tmp_path)
     (tmp_path / "skin.png").write_bytes(png()[:30])
-    found, body = shown(source)
-    assert "skin.png: cannot be read as a picture" in found.missing[0]
-    assert "TEXCOORD_0" in Read(exported(found, body)).json["meshes"][0]["primitives"][0]["attributes"]
+    look, body = look_and_body(source)
+    assert "skin.png: cannot be read as a picture" in look.missing[0]
+    assert "TEXCOORD_0" in Read(exported(look, body)).json["meshes"][0]["primitives"][0]["attributes"]
 
 
 def test_reference_that_is_no_frame_has_no_appearance(tmp_path):
@@ -127,36 +127,36 @@ def test_reference_that_is_no_frame_has_no_appearance(tmp_path):
 def test_frames_in_a_bucket_have_none_and_nothing_is_said_to_be_wrong(tmp_path):
     surface = mesh(write(tmp_path), MeshParams())
     body = spider(vertices=surface.vertices, faces=surface.faces)
-    found = appearance(body, {3: Source(content="", path="s3://bucket/frame.obj")}, {3: surface})
-    assert (found.frame, found.missing) == (None, ())
+    look = appearance(body, {3: Source(content="", path="s3://bucket/frame.obj")}, {3: surface})
+    assert (look.frame, look.missing) == (None, ())
 
 
 def test_validator_finds_nothing_to_say(tmp_path):
-    found, body = shown(write(tmp_path))
-    (tmp_path / "skeleton.glb").write_bytes(exported(found, body))
+    look, body = look_and_body(write(tmp_path))
+    (tmp_path / "skeleton.glb").write_bytes(exported(look, body))
     told = issues(tmp_path / "skeleton.glb")
     assert told["messages"] == [], json.dumps(told)[:2000]
 
 
 def test_blender_has_the_texture_and_its_coordinates(tmp_path: Path):
-    found, body = shown(write(tmp_path))
-    (tmp_path / "skeleton.glb").write_bytes(exported(found, body))
-    told = opened(tmp_path / "skeleton.glb", 10.0, [0])
-    (image,) = told["images"]
+    look, body = look_and_body(write(tmp_path))
+    (tmp_path / "skeleton.glb").write_bytes(exported(look, body))
+    imported = opened(tmp_path / "skeleton.glb", 10.0, [0])
+    (image,) = imported["images"]
     assert image[1] == [4, 4]
-    assert told["materials"] == [[image[0]]]
-    place = np.array(told["skin"][0])[told["corners"]].reshape(-1, 3, 3) @ [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+    assert imported["materials"] == [[image[0]]]
+    place = np.array(imported["skin"][0])[imported["corners"]].reshape(-1, 3, 3) @ [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
     truth = skinned(body)[0][body.faces]
     np.testing.assert_allclose(place, truth, atol=1e-4 * np.ptp(truth))
-    uv = np.array(told["uv"][0]).reshape(-1, 3, 2)
+    uv = np.array(imported["uv"][0]).reshape(-1, 3, 2)
     np.testing.assert_allclose(uv, corner_uv(body.vertices, body.faces), atol=1e-5)
 
 
 def test_page_has_the_colour_of_the_texture_at_every_vertex(tmp_path: Path):
-    found, body = shown(write(tmp_path))
-    colours = surface_colours(found, len(body.vertices))
+    look, body = look_and_body(write(tmp_path))
+    colours = surface_colours(look, len(body.vertices))
     assert colours is not None
     assert colours.shape == (len(body.vertices), 3)
-    tinted = srgb(linear(np.array([200, 30, 30], np.uint8)) * np.array(found.materials[0].colour[:3]))
+    tinted = srgb(linear(np.array([200, 30, 30], np.uint8)) * np.array(look.materials[0].colour[:3]))
     assert np.abs(colours.astype(int) - tinted).max() <= 1
     assert surface_colours(Appearance.none(), 5) is None

@@ -55,31 +55,31 @@ def true():
 
 
 @pytest.fixture(scope="module")
-def found(true):
+def body(true):
     """The same without that knee, as a run finds it."""
     skeleton = without_joint(true, "knee_l")
     return CompleteSkeleton(**{name: getattr(skeleton, name) for name in Skeleton.model_fields}, interpolated=())
 
 
 @pytest.fixture(scope="module")
-def names(found):
-    return joint_names(found, Z_UP, JointNamesParams())
+def names(body):
+    return joint_names(body, Z_UP, JointNamesParams())
 
 
 @pytest.fixture(scope="module")
-def knee(found, names):
-    return assumed_joints(found, names, ADD)
+def knee(body, names):
+    return assumed_joints(body, names, ADD)
 
 
 @pytest.fixture(scope="module")
-def rig(found, names, knee):
-    return with_assumed(found, names, knee)
+def rig(body, names, knee):
+    return with_assumed(body, names, knee)
 
 
-def test_nothing_is_assumed_unless_it_is_asked_for(found, names, knee):
-    assert assumed_joints(found, names, AssumedJointsParams()).joints == ()
+def test_nothing_is_assumed_unless_it_is_asked_for(body, names, knee):
+    assert assumed_joints(body, names, AssumedJointsParams()).joints == ()
     assert [(joint.name, joint.anatomy, joint.source) for joint in knee.joints] == [("knee_l", "knee_l", "mirror")]
-    assert found.parents[knee.joints[0].child] == names.anatomy.index("hip_l")
+    assert body.parents[knee.joints[0].child] == names.anatomy.index("hip_l")
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,9 @@ def test_nothing_is_assumed_unless_it_is_asked_for(found, names, knee):
         ({"rename": {"knee_l": "pelvis"}}, "pelvis_2"),
     ],
 )
-def test_its_name_is_spelled_as_the_others_are_and_is_none_of_theirs(found, params, name):
-    told = assumed_joints(found, joint_names(found, Z_UP, JointNamesParams(**params)), ADD)
-    assert [joint.name for joint in told.joints] == [name]
+def test_its_name_is_spelled_as_the_others_are_and_is_none_of_theirs(body, params, name):
+    offered = assumed_joints(body, joint_names(body, Z_UP, JointNamesParams(**params)), ADD)
+    assert [joint.name for joint in offered.joints] == [name]
 
 
 def test_it_is_near_the_true_knee_in_every_frame_and_says_that_nothing_is_known(true, rig):
@@ -103,18 +103,18 @@ def test_it_is_near_the_true_knee_in_every_frame_and_says_that_nothing_is_known(
     assert rig.skeleton.confidence[:, at].max() == rig.skeleton.degrees[at] == rig.skeleton.support[at] == 0
 
 
-def test_the_motion_and_the_surface_stay_as_they_were_found(found, rig):
+def test_the_motion_and_the_surface_stay_as_they_were_found(body, rig):
     s, t = rig.skeleton, len(rig.skeleton.names)
-    assert t == len(found.names) + 1
+    assert t == len(body.names) + 1
     stay = [j for j in range(t) if j not in rig.assumed]
-    np.testing.assert_array_equal(s.positions[:, stay], found.positions)
-    np.testing.assert_array_equal(s.rotation[:, stay], found.rotation)
+    np.testing.assert_array_equal(s.positions[:, stay], body.positions)
+    np.testing.assert_array_equal(s.rotation[:, stay], body.rotation)
     for j, p in enumerate(s.parents):
         assert p < j
         if p >= 0:
             expected = s.positions[:, p] + s.rotation[:, p] @ (s.rest[j] - s.rest[p])
             np.testing.assert_allclose(s.positions[:, j], expected, atol=1e-6)
-    np.testing.assert_allclose(skinned(s), skinned(found), atol=1e-9)
+    np.testing.assert_allclose(skinned(s), skinned(body), atol=1e-9)
     np.testing.assert_allclose(s.weight.sum(axis=1), 1.0)
     assert (np.diff(s.weight, axis=1) <= 0.0).all()
     assert not np.isin(s.label, list(rig.assumed)).any()
@@ -141,45 +141,45 @@ def test_it_lies_in_the_middle_of_a_limb_that_is_bent(bend):
     assert off < 0.03 * np.ptp(true.vertices[:, 2])
 
 
-def test_several_joints_of_one_bone_follow_each_other(found, names):
+def test_several_joints_of_one_bone_follow_each_other(body, names):
     child = names.anatomy.index("ankle_l")
     pair = [
         AssumedJoint(name=n, anatomy=n, child=child, share=s, place=(0, 0, 100 * s), source="mirror")
         for n, s in (("b", 0.75), ("a", 0.25))
     ]
-    rig = with_assumed(found, names, AssumedJoints(joints=tuple(pair)))
+    rig = with_assumed(body, names, AssumedJoints(joints=tuple(pair)))
     a, b = (rig.names.names.index(n) for n in "ab")
     ankle = rig.names.anatomy.index("ankle_l")
     assert (rig.skeleton.parents[ankle], rig.skeleton.parents[b], rig.assumed) == (b, a, {a, b})
     assert rig.names.names[rig.skeleton.parents[a]] == "hip_l"
 
 
-def test_skeleton_json_says_that_it_is_assumed(found, names, knee):
-    content = views.files(skeleton_json(found, names, Z_UP, bars_of(found), knee), ())["skeleton.json"]
-    told = Document.model_validate_json(content).joints
-    assert [joint.name for joint in told if joint.kind == "assumed"] == ["knee_l"]
-    (ankle,) = [joint for joint in told if joint.anatomy == "ankle_l"]
-    assert told[ankle.parent].kind == "assumed"
-    kinds = [joint.kind for joint in told if joint.kind != "assumed"]
-    assert kinds == list(found.kinds)
+def test_skeleton_json_says_that_it_is_assumed(body, names, knee):
+    content = views.files(skeleton_json(body, names, Z_UP, bars_of(body), knee), ())["skeleton.json"]
+    joints = Document.model_validate_json(content).joints
+    assert [joint.name for joint in joints if joint.kind == "assumed"] == ["knee_l"]
+    (ankle,) = [joint for joint in joints if joint.anatomy == "ankle_l"]
+    assert joints[ankle.parent].kind == "assumed"
+    kinds = [joint.kind for joint in joints if joint.kind != "assumed"]
+    assert kinds == list(body.kinds)
     confidence = np.array(json.loads(content)["confidence"])
-    assert confidence[:, [joint.kind == "assumed" for joint in told]].max() == 0
-    assert [joint.error is None for joint in told] == [joint.kind != "joint" for joint in told]
+    assert confidence[:, [joint.kind == "assumed" for joint in joints]].max() == 0
+    assert [joint.error is None for joint in joints] == [joint.kind != "joint" for joint in joints]
 
 
-def test_without_it_the_files_are_the_same_to_the_byte(found, names):
-    nothing = assumed_joints(found, names, AssumedJointsParams())
-    bars = bars_of(found)
-    told = (skeleton_json(found, names, Z_UP, bars, nothing), skeleton_json(found, names, Z_UP, bars))
-    assert told[0].content.tobytes() == told[1].content.tobytes()
-    given = (glb(found, names, Z_UP, GlbParams(), assumed_joints=nothing), glb(found, names, Z_UP, GlbParams()))
-    assert given[0].content.tobytes() == given[1].content.tobytes()
+def test_without_it_the_files_are_the_same_to_the_byte(body, names):
+    nothing = assumed_joints(body, names, AssumedJointsParams())
+    bars = bars_of(body)
+    documents = (skeleton_json(body, names, Z_UP, bars, nothing), skeleton_json(body, names, Z_UP, bars))
+    assert documents[0].content.tobytes() == documents[1].content.tobytes()
+    glbs = (glb(body, names, Z_UP, GlbParams(), assumed_joints=nothing), glb(body, names, Z_UP, GlbParams()))
+    assert glbs[0].content.tobytes() == glbs[1].content.tobytes()
 
 
 @pytest.mark.parametrize("rest", ["reference", "t"])
-def test_glb_has_a_joint_to_bend_and_moves_as_before(found, names, knee, rest):
-    made = [glb(found, names, Z_UP, GlbParams(rest=rest), assumed_joints=each) for each in (AssumedJoints(), knee)]
-    before, after = (Read(views.files(each, ())["skeleton.glb"]) for each in made)
+def test_glb_has_a_joint_to_bend_and_moves_as_before(body, names, knee, rest):
+    glbs = [glb(body, names, Z_UP, GlbParams(rest=rest), assumed_joints=each) for each in (AssumedJoints(), knee)]
+    before, after = (Read(views.files(each, ())["skeleton.glb"]) for each in glbs)
     assert set(after.names) - set(before.names) == {"knee_l"}
     ankle, knee_node = (after.joints[after.names.index(n)] for n in ("ankle_l", "knee_l"))
     assert after.parent[ankle] == knee_node
@@ -188,21 +188,21 @@ def test_glb_has_a_joint_to_bend_and_moves_as_before(found, names, knee, rest):
         np.testing.assert_allclose(a[:, 3], b[:, 3], atol=1e-5)
 
 
-def test_bvh_has_it_between_hip_and_ankle(found, names, knee):
-    lines = views.files(bvh(found, names, Z_UP, BvhParams(), knee), ())["skeleton.bvh"].decode().split("MOTION")[0].split("\n")
+def test_bvh_has_it_between_hip_and_ankle(body, names, knee):
+    lines = views.files(bvh(body, names, Z_UP, BvhParams(), knee), ())["skeleton.bvh"].decode().split("MOTION")[0].split("\n")
     order = [line.split()[1] for line in lines if line.strip().startswith(("ROOT", "JOINT"))]
     assert order.index("ankle_l") == order.index("knee_l") + 1 == order.index("hip_l") + 2
 
 
-def test_usd_has_it_between_hip_and_ankle(found, names, knee):
+def test_usd_has_it_between_hip_and_ankle(body, names, knee):
     pytest.importorskip("pxr", reason="pip install 'kinetree[usd]' brings Pixar's library")
-    text = views.files(usd(found, names, Z_UP, UsdParams(), knee), ())["skeleton.usda"].decode()
+    text = views.files(usd(body, names, Z_UP, UsdParams(), knee), ())["skeleton.usda"].decode()
     assert "hip_l/knee_l/ankle_l" in text
 
 
-def test_shown_skeleton_marks_it_and_the_run_names_it(found, names, knee):
+def test_shown_skeleton_marks_it_and_the_run_names_it(body, names, knee):
     others = {JointNames: names, AssumedJoints: knee}
-    before, lines = views.text(found, {JointNames: names}.get), views.text(found, others.get)
+    before, lines = views.text(body, {JointNames: names}.get), views.text(body, others.get)
     assert lines[:-1] == before
     assert lines[-1].startswith("assumed, not found: left knee, at ")
     assert lines[-1].endswith("from left hip (hip_l) to left ankle (ankle_l), as on the other side")

@@ -60,28 +60,28 @@ def test_blender_has_joints_bones_and_skin_where_they_are_in_metres_and_upright(
             pytest.skip("pip install 'kinetree[usd]' brings Pixar's library")
         written = views.files(usd(body, plain(body), Z_UP, UsdParams()), ())[name]
         (folder / name).write_bytes(written)
-    told = opened(folder / name, 10.0, FRAMES)
-    np.testing.assert_allclose(list(told["matrices"].values()), np.tile(np.eye(4), (2, 1, 1)), atol=1e-5)
+    imported = opened(folder / name, 10.0, FRAMES)
+    np.testing.assert_allclose(list(imported["matrices"].values()), np.tile(np.eye(4), (2, 1, 1)), atol=1e-5)
     truth = skinned(body) / 1000
     size = np.ptp(truth[0], axis=0).max()
-    for t, heads, skin in zip(FRAMES, told["heads"], told["skin"], strict=True):
+    for t, heads, skin in zip(FRAMES, imported["heads"], imported["skin"], strict=True):
         expected = body.positions[t] / 1000
         np.testing.assert_allclose([heads[n] for n in body.names], expected, atol=2e-4 * size)
         np.testing.assert_allclose(skin, truth[t], atol=2e-4 * size)
-    assert told["frames"] == [0.0, 11.0]
-    arm = np.linalg.norm(np.subtract(told["rest"]["hand"], told["rest"]["arm"]))
+    assert imported["frames"] == [0.0, 11.0]
+    arm = np.linalg.norm(np.subtract(imported["rest"]["hand"], imported["rest"]["arm"]))
     assert arm == pytest.approx(body.lengths[body.names.index("hand")] / 1000, rel=1e-4)
     if name == "skeleton.glb":  # FBX knows joints and no bones
-        assert told["lengths"]["arm"] == pytest.approx(arm, rel=1e-4)
+        assert imported["lengths"]["arm"] == pytest.approx(arm, rel=1e-4)
 
 
 def test_blender_has_the_joints_of_the_bvh_where_they_are_in_metres_and_upright(body, tmp_path):
     (tmp_path / "skeleton.bvh").write_bytes(views.files(bvh(body, plain(body), Z_UP, BvhParams()), ())["skeleton.bvh"])
-    told = opened(tmp_path / "skeleton.bvh", 10.0, [t + 1 for t in FRAMES])  # Blender begins with frame 1
-    np.testing.assert_allclose(told["matrices"]["skeleton"], np.eye(4), atol=1e-5)
-    assert told["frames"] == [1.0, 12.0]
-    assert {"trunk", "arm", "knee"} <= set(told["rest"])
-    for t, heads in zip(FRAMES, told["heads"], strict=True):
+    imported = opened(tmp_path / "skeleton.bvh", 10.0, [t + 1 for t in FRAMES])  # Blender begins with frame 1
+    np.testing.assert_allclose(imported["matrices"]["skeleton"], np.eye(4), atol=1e-5)
+    assert imported["frames"] == [1.0, 12.0]
+    assert {"trunk", "arm", "knee"} <= set(imported["rest"])
+    for t, heads in zip(FRAMES, imported["heads"], strict=True):
         expected = {name: body.positions[t, j] / 1000 for j, name in enumerate(body.names)}
         size = np.ptp(body.vertices, axis=0).max() / 1000
         np.testing.assert_allclose(list(heads.values()), [expected[name] for name in heads], atol=2e-4 * size)

@@ -25,8 +25,8 @@ UP = UpDirection(up="y", confidence=0.9)
 
 
 def text(skeleton, up_direction=UP, **params):
-    made = bvh(skeleton, plain(skeleton), up_direction, BvhParams(**{"scale": 1.0, **params}))
-    return views.files(made, ())["skeleton.bvh"].decode()
+    exported = bvh(skeleton, plain(skeleton), up_direction, BvhParams(**{"scale": 1.0, **params}))
+    return views.files(exported, ())["skeleton.bvh"].decode()
 
 
 def read(skeleton, folder, up_direction=UP, **params):
@@ -57,9 +57,9 @@ def test_file_is_upright_and_in_centimetres(body, tmp_path, wanted, columns, sig
 
 
 def test_unknown_unit_is_guessed_from_the_size_and_said(body):
-    made = bvh(spider(unit=None), plain(spider(unit=None)), UP, BvhParams())
-    assert "unit not known" in views.remarks(made)[0]
-    assert "bvh.scale" in views.remarks(made)[0]
+    exported = bvh(spider(unit=None), plain(spider(unit=None)), UP, BvhParams())
+    assert "unit not known" in views.remarks(exported)[0]
+    assert "bvh.scale" in views.remarks(exported)[0]
     assert views.remarks(bvh(spider(unit=None), plain(spider(unit=None)), UP, BvhParams(scale=1.0))) == ()
 
 

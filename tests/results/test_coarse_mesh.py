@@ -18,16 +18,16 @@ def of(frame: int, previous: CoarseMesh | None = None) -> CoarseMesh:
 
 
 def test_vertices_are_some_of_the_mesh() -> None:
-    made, mesh = of(0), CONTENT["mesh"][0]
-    np.testing.assert_array_equal(made.vertices, mesh.vertices[made.kept])
-    assert len(made.kept) <= 1.3 * COUNT < made.size == len(mesh.vertices)
-    assert made.faces.max() == len(made.kept) - 1
+    coarse, mesh = of(0), CONTENT["mesh"][0]
+    np.testing.assert_array_equal(coarse.vertices, mesh.vertices[coarse.kept])
+    assert len(coarse.kept) <= 1.3 * COUNT < coarse.size == len(mesh.vertices)
+    assert coarse.faces.max() == len(coarse.kept) - 1
 
 
 def test_every_vertex_knows_the_point_of_the_reference_that_it_is() -> None:
-    made, body = of(0), spider()
+    coarse, body = of(0), spider()
     order = np.random.default_rng(0).permutation(len(body.vertices))
-    np.testing.assert_array_equal(body.faces[made.reference_face, made.reference_corner], order[made.kept])
+    np.testing.assert_array_equal(body.faces[coarse.reference_face, coarse.reference_corner], order[coarse.kept])
 
 
 def test_frame_with_the_same_faces_has_the_same_vertices_and_holds_no_faces() -> None:
@@ -38,10 +38,10 @@ def test_frame_with_the_same_faces_has_the_same_vertices_and_holds_no_faces() ->
 
 
 def test_many_at_once_are_those_made_one_by_one() -> None:
-    shown = {frame: CONTENT["mesh"][frame] for frame in (0, 4)}
-    made = coarse_meshes(shown, CONTENT["projection"], COUNT)
-    assert made[0] == of(0)
-    assert made[4] == of(4, of(0))
+    meshes = {frame: CONTENT["mesh"][frame] for frame in (0, 4)}
+    coarse_of = coarse_meshes(meshes, CONTENT["projection"], COUNT)
+    assert coarse_of[0] == of(0)
+    assert coarse_of[4] == of(4, of(0))
 
 
 def test_equal_faces_count_only_without_others_between() -> None:

@@ -103,21 +103,21 @@ def test_body_in_mm_is_life_size_and_what_is_said_goes_before_the_unit(body):
 @pytest.mark.parametrize(("size", "unit", "metres"), [(0.1, "m", 1.0), (10, "cm", 0.01), (100, "mm", 0.001)])
 def test_unknown_unit_is_guessed_from_the_size_of_the_body_and_said(body, size, unit, metres):
     unknown = placed(body, np.eye(3), size).model_copy(update={"unit": "ell"})
-    made = glb(unknown, plain(unknown), Y_UP, GlbParams())
-    assert (made.metres, made.metres_from) == (metres, "size")
-    assert views.remarks(made) == (
+    exported = glb(unknown, plain(unknown), Y_UP, GlbParams())
+    assert (exported.metres, exported.metres_from) == (metres, "size")
+    assert views.remarks(exported) == (
         f"unit not known: by the size of the body, one unit is taken for 1 {unit}; set sequence.unit or glb.scale",
     )
 
 
 def test_up_is_what_the_run_found_and_glb_up_goes_before_it(body):
-    found = UpDirection(up="z", confidence=0.1)
-    np.testing.assert_allclose(read(body, found).pose(3)[:, 1, 3], body.positions[3][:, 2], atol=2e-5)
-    assert views.remarks(glb(body, plain(body), found, GlbParams())) == (
+    estimate = UpDirection(up="z", confidence=0.1)
+    np.testing.assert_allclose(read(body, estimate).pose(3)[:, 1, 3], body.positions[3][:, 2], atol=2e-5)
+    assert views.remarks(glb(body, plain(body), estimate, GlbParams())) == (
         "up direction not certain: z of the input is taken to point up; set up_direction.up",
     )
-    np.testing.assert_allclose(read(body, found, up="x").pose(3)[:, 1, 3], body.positions[3][:, 0], atol=2e-5)
-    assert views.remarks(glb(body, plain(body), found, GlbParams(up="x"))) == ()
+    np.testing.assert_allclose(read(body, estimate, up="x").pose(3)[:, 1, 3], body.positions[3][:, 0], atol=2e-5)
+    assert views.remarks(glb(body, plain(body), estimate, GlbParams(up="x"))) == ()
 
 
 def test_nothing_above_the_joints_rotates_or_scales_them(body):
@@ -165,9 +165,9 @@ def test_parts_are_coloured_and_what_blends_is_white(body):
     file = read(body)
     colour = file.attribute("COLOR_0")
     assert (colour[body.label == -1] == 255).all()
-    seen = [colour[body.label == part] for part in set(body.label.tolist()) - {-1}]
-    assert all(len(np.unique(rows, axis=0)) == 1 for rows in seen)
-    assert len(np.unique([rows[0] for rows in seen], axis=0)) == len(seen)
+    of_part = [colour[body.label == part] for part in set(body.label.tolist()) - {-1}]
+    assert all(len(np.unique(rows, axis=0)) == 1 for rows in of_part)
+    assert len(np.unique([rows[0] for rows in of_part], axis=0)) == len(of_part)
 
 
 def test_body_without_joints_is_written_too(body):

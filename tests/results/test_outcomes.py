@@ -7,6 +7,6 @@ from kinetree.tasks.results.outcomes import outcomes
 
 
 def test_sequences_with_a_result_are_the_members():
-    told = outcomes(params=OutcomesParams(sequences=(DANCE, TORN, WALK)), files=None)
-    assert told.sequences == (DANCE, TORN, WALK)
-    assert told.members("sequence", ()) == (0, 2)
+    listed = outcomes(params=OutcomesParams(sequences=(DANCE, TORN, WALK)), files=None)
+    assert listed.sequences == (DANCE, TORN, WALK)
+    assert listed.members("sequence", ()) == (0, 2)

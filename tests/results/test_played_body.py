@@ -10,14 +10,14 @@ from kinetree.tasks.results.played_body import played_scene
 
 
 def test_page_reads_what_was_packed() -> None:
-    made = page_artifacts(ExcerptParams(frames=4, views=1))["played_body"]
-    scene = played_scene(made)
+    packed = page_artifacts(ExcerptParams(frames=4, views=1))["played_body"]
+    scene = played_scene(packed)
     assert scene.description["frames"] == [0, 4, 7, 11]
     arrays = scene.description["arrays"]
     raw = zlib.decompress(scene.block)
     last = max(arrays.values(), key=lambda array: array["offset"])
     assert len(raw) > last["offset"]
-    assert scene.omitted == made.omitted
+    assert scene.omitted == packed.omitted
 
 
 def test_it_waits_for_no_picture() -> None:

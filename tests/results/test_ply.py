@@ -43,9 +43,9 @@ def test_file_is_the_frame_as_it_was_given_with_a_part_for_every_vertex(source):
     np.testing.assert_array_equal(mesh.faces, body.faces)
     np.testing.assert_array_equal(mesh.metadata["_ply_raw"]["vertex"]["data"]["part"], body.label)
     header = files["parts/frame_0007.ply"].partition(b"end_header")[0].decode("ascii").splitlines()
-    told = [line for line in header if line.startswith("comment part ")]
+    comments = [line for line in header if line.startswith("comment part ")]
     parts = sorted(set(body.label.tolist()) - {-1})
-    assert told == [f"comment part {j} " + ("Knie ? 1" if j == 1 else f"bone_{j}") for j in parts]
+    assert comments == [f"comment part {j} " + ("Knie ? 1" if j == 1 else f"bone_{j}") for j in parts]
     assert 1 in parts
 
 

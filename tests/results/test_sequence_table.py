@@ -11,12 +11,12 @@ from kinetree.pipeline import views
 
 
 def test_every_sequence_has_a_row_and_those_with_a_result_have_figures():
-    found = table()
-    assert [row.outcome.name for row in found.rows] == ["=dance", "torn", "walk & <b>"]
-    assert [row.picture for row in found.rows] == [0, None, 1]
-    assert [row.joints for row in found.rows] == [2, None, 2]
-    assert [row.found for row in found.rows] == [None, None, 4]
-    assert len(found.pictures) == 2
+    result = table()
+    assert [row.outcome.name for row in result.rows] == ["=dance", "torn", "walk & <b>"]
+    assert [row.picture for row in result.rows] == [0, None, 1]
+    assert [row.joints for row in result.rows] == [2, None, 2]
+    assert [row.found for row in result.rows] == [None, None, 4]
+    assert len(result.pictures) == 2
 
 
 def test_csv_and_json_have_the_same_figures():

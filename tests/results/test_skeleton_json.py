@@ -56,10 +56,10 @@ def test_rotations_and_rest_pose_carry_every_joint_to_its_position(body):
     rest = [joint["rest"] for joint in content["joints"]]
     for t, quaternions in [(None, [r["rotation"] for r in rest]), *enumerate(content["rotations"])]:
         X, G = [], []
-        for joint, held, q in zip(content["joints"], rest, quaternions, strict=True):
+        for joint, pose, q in zip(content["joints"], rest, quaternions, strict=True):
             p, local = joint["parent"], Rotation.from_quat(q).as_matrix()
-            root = held["position"] if t is None else content["positions"][t][0]
-            X.append(np.array(root) if p is None else X[p] + G[p] @ held["offset"])
+            root = pose["position"] if t is None else content["positions"][t][0]
+            X.append(np.array(root) if p is None else X[p] + G[p] @ pose["offset"])
             G.append(local if p is None else G[p] @ local)
         expected = body.rest if t is None else body.positions[t]
         np.testing.assert_allclose(X, expected, atol=1e-6)

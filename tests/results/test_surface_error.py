@@ -11,8 +11,8 @@ from kinetree.tasks.results.surface_error import surface_error
 def test_every_frame_is_compared_with_its_own_pose():
     meshes = artifacts()["mesh"]
     for frame in (0, 7):
-        found = surface_error(skeleton=spider(), mesh=meshes[frame], index=(frame,))
-        assert found.distance.dtype == np.float32
-        assert found.distance.max() == pytest.approx(0.0, abs=1e-5)
+        error = surface_error(skeleton=spider(), mesh=meshes[frame], index=(frame,))
+        assert error.distance.dtype == np.float32
+        assert error.distance.max() == pytest.approx(0.0, abs=1e-5)
     other = surface_error(skeleton=spider(), mesh=meshes[0], index=(7,))
     assert other.skin.max() > 0.5

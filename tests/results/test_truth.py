@@ -87,18 +87,18 @@ def test_weights_of_bones_are_named_by_the_numbers_of_both_joints(file: Path, tm
     child = next(j for j, p in enumerate(true.parents) if p == 1)
     npz = tmp_path / "body.npz"
     V = np.concatenate([generated.frame(t)[0] for t in range(3)])
-    held = {"vertices": V.astype(np.float32), "weights": np.ones((len(V) // 3, 1))}
-    np.savez(npz, **held, weight_names=[f"bone_1_{child}"])
+    arrays = {"vertices": V.astype(np.float32), "weights": np.ones((len(V) // 3, 1))}
+    np.savez(npz, **arrays, weight_names=[f"bone_1_{child}"])
     read_back = read(file=str(file), body=str(npz))
     assert set(read_back.carrier.tolist()) == {1}
     assert set(read_back.bone_end.tolist()) == {child}
-    np.savez(npz, **held, weight_names=[f"bone_0_{child}"])
+    np.savez(npz, **arrays, weight_names=[f"bone_0_{child}"])
     with pytest.raises(InputError, match="are none of them"):
         read(file=str(file), body=str(npz))
 
 
 @pytest.mark.parametrize(
-    ("held", "message"),
+    ("arrays", "message"),
     [
         ({"vertices": np.zeros((4, 3))}, "not a body: .*weights.*; expected an npz"),
         ({"vertices": np.zeros((4, 3)), "weights": np.ones((4, 1)), "weight_names": ["hip"]}, r"\['hip'\] are none of them"),
@@ -108,11 +108,11 @@ def test_weights_of_bones_are_named_by_the_numbers_of_both_joints(file: Path, tm
         ({"vertices": np.array(["a"]), "weights": np.ones((4, 1)), "weight_names": None}, "not a body: could not convert"),
     ],
 )
-def test_body_that_does_not_fit_is_refused(file: Path, tmp_path: Path, held: dict[str, object], message: str) -> None:
-    if held.get("weight_names", ()) is None:
-        held = {**held, "weight_names": [synthetic(RECIPE).names[0]]}
+def test_body_that_does_not_fit_is_refused(file: Path, tmp_path: Path, arrays: dict[str, object], message: str) -> None:
+    if arrays.get("weight_names", ()) is None:
+        arrays = {**arrays, "weight_names": [synthetic(RECIPE).names[0]]}
     npz = tmp_path / "body.npz"
-    np.savez(npz, **held)
+    np.savez(npz, **arrays)
     with pytest.raises(InputError, match=message):
         read(file=str(file), body=str(npz))
 

@@ -84,9 +84,9 @@ def held_against(
 ) -> tuple[KnownTruth, dict[int, FrameTruth]]:
     """What an evaluation reads of a truth."""
     known = known_truth(true, source, Sequence(frames=tuple(source), fps=skeleton.fps, unit=skeleton.unit))
-    of_frames = (({t: given[t]} if t in given else {} for given in (source, mesh, projection)) for t in known.compared)
+    of_frames = (({t: own[t]} if t in own else {} for own in (source, mesh, projection)) for t in known.compared)
     frames = zip(known.compared, of_frames, strict=True)
-    return known, {t: frame_truth(skeleton, known, *given, index=(t,)) for t, given in frames}
+    return known, {t: frame_truth(skeleton, known, *artifacts, index=(t,)) for t, artifacts in frames}
 
 
 def written_truth(written: str) -> str:

@@ -33,11 +33,11 @@ class Patch(Artifact):
 
 
 def patch(**changes):
-    held = {
+    values = {
         "vertices": V, "faces": np.array([[0, 1, 2]], dtype=np.int32), "kept": np.ones(4, dtype=bool),
         "free": np.array([0, np.nan, np.inf, -np.inf]),
     }  # fmt: skip
-    return Patch(**{**held, **changes})
+    return Patch(**{**values, **changes})
 
 
 def refusal(**changes):
@@ -54,19 +54,19 @@ def test_what_fits_is_taken_without_copying():
 
 
 def test_arrays_leave_read_only():
-    made = patch()
-    for array in made.arrays().values():
+    stored = patch()
+    for array in stored.arrays().values():
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 0
     assert V.flags.writeable  # the caller's own array stays the caller's
 
 
 def test_fields_cannot_be_set_added_or_forgotten():
-    made = patch()
+    created = patch()
     with pytest.raises(ValidationError, match="frozen"):
-        made.vertices = V
+        created.vertices = V
     with pytest.raises(ValidationError, match="frozen"):
-        made.name = "other"
+        created.name = "other"
     with pytest.raises(ValidationError, match="Extra inputs are not permitted"):
         patch(surplus=1)
     with pytest.raises(ValidationError, match="Field required"):
@@ -75,18 +75,18 @@ def test_fields_cannot_be_set_added_or_forgotten():
 
 @given(hnp.arrays(st.sampled_from(["f2", "f4", "f8", ">f8", "i1", "i4", "u2", "i8"]), (3, 3), elements=st.integers(0, 100)))
 def test_numbers_that_fit_are_stored_in_the_declared_dtype(array):
-    made = Array("float64", VERTEX, XYZ).check(array)
-    assert made.dtype == np.float64
-    assert made.flags.c_contiguous
-    np.testing.assert_array_equal(made, array.astype(float))
+    stored = Array("float64", VERTEX, XYZ).check(array)
+    assert stored.dtype == np.float64
+    assert stored.flags.c_contiguous
+    np.testing.assert_array_equal(stored, array.astype(float))
 
 
 @given(hnp.arrays(np.float64, hnp.array_shapes(min_dims=2, max_dims=2, min_side=0, max_side=4)), st.booleans())
 def test_layout_in_memory_is_made_one(array, turned):
     given_ = np.asfortranarray(array) if turned else array
-    made = Array("float64", VERTEX, FACE, finite=False).check(given_)
-    assert made.flags.c_contiguous
-    np.testing.assert_array_equal(made, array)
+    stored = Array("float64", VERTEX, FACE, finite=False).check(given_)
+    assert stored.flags.c_contiguous
+    np.testing.assert_array_equal(stored, array)
 
 
 def test_nothing_dimensional_and_empty_arrays_keep_their_shape():
@@ -158,12 +158,12 @@ def test_lazy_artifact_is_the_same_artifact():
 
 def test_lazy_array_is_read_when_asked_for_once_and_only_it():
     asked = []
-    made = lazy(vertices=lambda: asked.append(1) or V, faces=lambda: pytest.fail("nobody asked"))
+    created = lazy(vertices=lambda: asked.append(1) or V, faces=lambda: pytest.fail("nobody asked"))
     assert asked == []
-    assert made.vertices is made.vertices
+    assert created.vertices is created.vertices
     assert asked == [1]
     with pytest.raises(ValueError, match="read-only"):
-        made.vertices[0] = 0
+        created.vertices[0] = 0
 
 
 def test_lazy_array_that_breaks_its_declaration_is_refused_when_read():
@@ -175,10 +175,10 @@ def test_error_of_a_lazy_array_is_told_each_time_it_is_asked_for():
     def broken():
         raise OSError("gone")
 
-    made = lazy(vertices=broken)
+    created = lazy(vertices=broken)
     for _ in range(2):
         with pytest.raises(OSError, match="gone"):
-            made.arrays()
+            created.arrays()
 
 
 def test_what_is_no_field_is_no_attribute():

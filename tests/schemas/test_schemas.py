@@ -43,16 +43,16 @@ def test_there_are_schemas():
 
 @pytest.mark.parametrize("model", MODELS, ids=named)
 def test_every_field_and_schema_has_a_sentence(model):
-    for name, told in [(model.__name__, model.__doc__), *((n, sentences(model).get(n)) for n in model.model_fields)]:
-        assert told, f"{model.__name__}.{name} has no docstring"
-        assert told.strip().endswith("."), f"{model.__name__}.{name}: {told!r} is no sentence"
+    for name, sentence in [(model.__name__, model.__doc__), *((n, sentences(model).get(n)) for n in model.model_fields)]:
+        assert sentence, f"{model.__name__}.{name} has no docstring"
+        assert sentence.strip().endswith("."), f"{model.__name__}.{name}: {sentence!r} is no sentence"
 
 
 @pytest.mark.parametrize("model", [t.params for t in TASKS.values() if t.params], ids=named)
 def test_every_parameter_of_a_task_has_a_default_that_is_valid(model):
-    made = model()
-    assert model.model_validate(made.model_dump(mode="json")) == made
-    json.dumps(made.model_dump(mode="json"), allow_nan=False)
+    params = model()
+    assert model.model_validate(params.model_dump(mode="json")) == params
+    json.dumps(params.model_dump(mode="json"), allow_nan=False)
 
 
 @pytest.mark.parametrize("model", SETTINGS, ids=named)

@@ -15,11 +15,11 @@ def peaked(at: int, normalisation: str = "sequence") -> MuHistogram:
 
 @pytest.mark.parametrize("normalisation", ["sequence", "frame"])
 def test_equal_frames_correlate_fully_and_others_less(normalisation: str) -> None:
-    told = correlation(dict(enumerate(peaked(at, normalisation) for at in (500, 500, 1500))), CorrelationParams())
-    assert told.correlation[0] == 1
-    assert told.correlation[1] < 0.1
-    assert told.histograms.shape == (3, 100)
-    assert told.histograms.sum(axis=1) == pytest.approx(np.ones(3))
+    series = correlation(dict(enumerate(peaked(at, normalisation) for at in (500, 500, 1500))), CorrelationParams())
+    assert series.correlation[0] == 1
+    assert series.correlation[1] < 0.1
+    assert series.histograms.shape == (3, 100)
+    assert series.histograms.sum(axis=1) == pytest.approx(np.ones(3))
 
 
 def test_spheres_whose_mu_is_constant_correlate_fully() -> None:
@@ -28,5 +28,5 @@ def test_spheres_whose_mu_is_constant_correlate_fully() -> None:
 
 
 def test_frames_of_two_takes_are_no_transition() -> None:
-    told = correlation({t: peaked(500, "sequence") for t in (3, 4, TAKE, TAKE + 1)}, CorrelationParams())
-    assert told.correlation.tolist() == [1.0, 0.0, 1.0]
+    series = correlation({t: peaked(500, "sequence") for t in (3, 4, TAKE, TAKE + 1)}, CorrelationParams())
+    assert series.correlation.tolist() == [1.0, 0.0, 1.0]

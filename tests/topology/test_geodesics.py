@@ -21,10 +21,10 @@ SMALL = trimesh.creation.icosphere(subdivisions=2, radius=0.3).apply_translation
 
 
 def test_mu_of_the_sphere_is_everywhere_two_pi_squared() -> None:
-    found = geodesics(mesh(BALL), GeodesicsParams())
-    assert found.mu == pytest.approx(np.full(len(BALL.vertices), 2 * np.pi**2), rel=0.01)
-    assert found.area.sum() == pytest.approx(BALL.area)
-    assert found.share == 1
+    measured = geodesics(mesh(BALL), GeodesicsParams())
+    assert measured.mu == pytest.approx(np.full(len(BALL.vertices), 2 * np.pi**2), rel=0.01)
+    assert measured.area.sum() == pytest.approx(BALL.area)
+    assert measured.share == 1
 
 
 def test_literal_sum_counts_every_vertex_once() -> None:
@@ -34,13 +34,13 @@ def test_literal_sum_counts_every_vertex_once() -> None:
 
 
 def test_what_floats_beside_the_body_has_no_mu_and_no_area() -> None:
-    found = geodesics(mesh(BALL, SMALL), GeodesicsParams())
+    measured = geodesics(mesh(BALL, SMALL), GeodesicsParams())
     aside = np.arange(len(BALL.vertices), len(BALL.vertices) + len(SMALL.vertices))
-    assert np.isnan(found.mu[aside]).all()
-    assert not np.isnan(found.mu[: aside[0]]).any()
-    assert found.area[aside].sum() == 0
-    assert found.share == pytest.approx(1 / 1.09, rel=0.01)
-    assert found.bases.max() < aside[0]
+    assert np.isnan(measured.mu[aside]).all()
+    assert not np.isnan(measured.mu[: aside[0]]).any()
+    assert measured.area[aside].sum() == 0
+    assert measured.share == pytest.approx(1 / 1.09, rel=0.01)
+    assert measured.bases.max() < aside[0]
 
 
 def test_body_in_equal_pieces_is_refused_with_the_share_that_was_found() -> None:

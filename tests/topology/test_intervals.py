@@ -27,30 +27,30 @@ def series(*states: int) -> Correlation:
 
 
 def test_still_sequence_is_one_interval_numbered_by_its_own_frames() -> None:
-    told = intervals(series(0, 0, 0, 0), {n: tip(1.0) for n in (10, 12, 14, 16)}, ANEW, IntervalsParams())
-    assert list(told.members("interval", ())) == [0]
-    assert list(told.members("interval/frame", (0,))) == [10, 12, 14, 16]
-    assert told.cues == ()
+    division = intervals(series(0, 0, 0, 0), {n: tip(1.0) for n in (10, 12, 14, 16)}, ANEW, IntervalsParams())
+    assert list(division.members("interval", ())) == [0]
+    assert list(division.members("interval/frame", (0,))) == [10, 12, 14, 16]
+    assert division.cues == ()
 
 
 def test_two_frames_are_one_interval() -> None:
-    told = intervals(series(0, 1), {0: tip(1.0), 1: tip(1.0)}, ANEW, IntervalsParams())
-    assert list(told.members("interval/frame", (0,))) == [0, 1]
+    division = intervals(series(0, 1), {0: tip(1.0), 1: tip(1.0)}, ANEW, IntervalsParams())
+    assert list(division.members("interval/frame", (0,))) == [0, 1]
 
 
 def test_drop_that_lasts_cuts_and_the_cue_is_named() -> None:
     states = [0] * 6 + [1] * 6
-    told = intervals(series(*states), {n: tip(1.0) for n in range(12)}, ANEW, IntervalsParams())
-    assert [list(told.members("interval/frame", (i,))) for i in told.members("interval", ())] == [
+    division = intervals(series(*states), {n: tip(1.0) for n in range(12)}, ANEW, IntervalsParams())
+    assert [list(division.members("interval/frame", (i,))) for i in division.members("interval", ())] == [
         list(range(6)), list(range(6, 12))
     ]  # fmt: skip
-    assert told.cues == (("correlation",),)
+    assert division.cues == (("correlation",),)
 
 
 def test_lost_leaf_cuts_where_the_correlation_is_blind_unless_it_may_not() -> None:
-    seen = {n: tip(1.0, 0.5, 0.4 if n < 6 else 0.05) for n in range(12)}
-    assert intervals(series(*[0] * 12), seen, ANEW, IntervalsParams()).cues == (("leaves",),)
-    silenced = intervals(series(*[0] * 12), seen, ANEW, IntervalsParams(cues=("correlation",)))
+    tips = {n: tip(1.0, 0.5, 0.4 if n < 6 else 0.05) for n in range(12)}
+    assert intervals(series(*[0] * 12), tips, ANEW, IntervalsParams()).cues == (("leaves",),)
+    silenced = intervals(series(*[0] * 12), tips, ANEW, IntervalsParams(cues=("correlation",)))
     assert silenced.cues == ()
     leaves = silenced.strengths[silenced.cue_names.index("leaves")]
     assert np.flatnonzero(leaves >= 1).tolist() == [5], "a cue that may not cut still tells how near it came"
@@ -58,16 +58,16 @@ def test_lost_leaf_cuts_where_the_correlation_is_blind_unless_it_may_not() -> No
 
 def test_fixed_rule_cuts_at_the_threshold_and_nowhere_else() -> None:
     params = IntervalsParams(rule="fixed", threshold=0.5, minimum=1)
-    told = intervals(series(0, 0, 1, 1, 1), {n: tip(1.0) for n in range(5)}, ANEW, params)
-    assert told.end.tolist() == [1, 4]
-    assert told.threshold == 0.5
+    division = intervals(series(0, 0, 1, 1, 1), {n: tip(1.0) for n in range(5)}, ANEW, params)
+    assert division.end.tolist() == [1, 4]
+    assert division.threshold == 0.5
 
 
 def test_sequence_of_fixed_connectivity_is_one_interval_if_the_paper_is_followed() -> None:
-    states, seen = series(*[0] * 6, *[1] * 6), {n: tip(1.0) for n in range(20, 32)}
+    states, tips = series(*[0] * 6, *[1] * 6), {n: tip(1.0) for n in range(20, 32)}
     whole = IntervalsParams(tracked="whole")
-    assert len(intervals(states, seen, TRACKED, IntervalsParams()).begin) == 2
-    assert len(intervals(states, seen, ANEW, whole).begin) == 2
-    told = intervals(states, seen, TRACKED, whole)
-    assert list(told.members("interval/frame", (0,))) == list(range(20, 32))
-    assert (told.cues, told.z.shape) == ((), (11,))
+    assert len(intervals(states, tips, TRACKED, IntervalsParams()).begin) == 2
+    assert len(intervals(states, tips, ANEW, whole).begin) == 2
+    division = intervals(states, tips, TRACKED, whole)
+    assert list(division.members("interval/frame", (0,))) == list(range(20, 32))
+    assert (division.cues, division.z.shape) == ((), (11,))

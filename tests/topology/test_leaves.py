@@ -11,7 +11,7 @@ from kinetree.tasks.topology.leaves import leaves
 FRAMES = 12
 
 
-def seen(*points: tuple[float, float, float]) -> Extrema:
+def tips_at(*points: tuple[float, float, float]) -> Extrema:
     X = np.array(points, float).reshape(-1, 3)
     stems = np.linspace(0.2, 1.0, 5)[None, :, None] * X[:, None, :]
     up = np.tile([0.0, 0.0, 1.0], (len(X), 1))
@@ -33,39 +33,39 @@ LEFT, RIGHT = (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
 
 
 def test_leaf_lost_at_a_contact_comes_back_as_itself_and_counts_where_it_was_seen() -> None:
-    tips = {n: seen(LEFT, RIGHT) if not 4 <= n <= 7 else seen(RIGHT) for n in range(FRAMES)}
-    told = leaves(tips, cut(3, 7, 11), LeavesParams())
-    assert told.rows.shape == (2, FRAMES)
-    assert told.kept.tolist() == [[True, True], [False, True], [True, True]]
-    assert (told.lost.tolist(), told.lost_begin.tolist(), told.lost_end.tolist()) == ([0], [4], [7])
-    assert np.isnan(told.positions[0, 4:8]).all()
+    tips = {n: tips_at(LEFT, RIGHT) if not 4 <= n <= 7 else tips_at(RIGHT) for n in range(FRAMES)}
+    followed = leaves(tips, cut(3, 7, 11), LeavesParams())
+    assert followed.rows.shape == (2, FRAMES)
+    assert followed.kept.tolist() == [[True, True], [False, True], [True, True]]
+    assert (followed.lost.tolist(), followed.lost_begin.tolist(), followed.lost_end.tolist()) == ([0], [4], [7])
+    assert np.isnan(followed.positions[0, 4:8]).all()
 
 
 def test_short_gap_is_bridged_on_a_straight_line() -> None:
-    tips = {n: seen((n / 20, 0.5, 0.0), RIGHT) if n != 5 else seen(RIGHT) for n in range(FRAMES)}
-    told = leaves(tips, cut(11), LeavesParams())
-    assert told.positions[0, 5] == pytest.approx([0.25, 0.5, 0.0])
-    assert told.rows[0, 5] == -1
+    tips = {n: tips_at((n / 20, 0.5, 0.0), RIGHT) if n != 5 else tips_at(RIGHT) for n in range(FRAMES)}
+    followed = leaves(tips, cut(11), LeavesParams())
+    assert followed.positions[0, 5] == pytest.approx([0.25, 0.5, 0.0])
+    assert followed.rows[0, 5] == -1
 
 
 def test_paper_follows_each_interval_by_itself_from_its_first_frame() -> None:
-    tips = {n: seen(LEFT, RIGHT) if n != 2 else seen(LEFT) for n in range(FRAMES)}
-    told = leaves(tips, cut(5, 11), LeavesParams(method="nearest", share=1.0, bridge=0))
-    assert told.rows.shape == (4, FRAMES)
-    assert told.kept.tolist() == [[True, False, False, False], [False, False, True, True]]
+    tips = {n: tips_at(LEFT, RIGHT) if n != 2 else tips_at(LEFT) for n in range(FRAMES)}
+    followed = leaves(tips, cut(5, 11), LeavesParams(method="nearest", share=1.0, bridge=0))
+    assert followed.rows.shape == (4, FRAMES)
+    assert followed.kept.tolist() == [[True, False, False, False], [False, False, True, True]]
 
 
 def test_body_without_tips_has_no_leaves() -> None:
-    told: Leaves = leaves({n: seen() for n in range(FRAMES)}, cut(11), LeavesParams())
-    assert told.rows.shape == (0, FRAMES)
-    assert told.kept.shape == (1, 0)
-    literal = leaves({n: seen() for n in range(FRAMES)}, cut(11), LeavesParams(method="nearest"))
+    followed: Leaves = leaves({n: tips_at() for n in range(FRAMES)}, cut(11), LeavesParams())
+    assert followed.rows.shape == (0, FRAMES)
+    assert followed.kept.shape == (1, 0)
+    literal = leaves({n: tips_at() for n in range(FRAMES)}, cut(11), LeavesParams(method="nearest"))
     assert literal.rows.shape == (0, FRAMES)
 
 
 def test_in_a_frame_in_which_none_were_followed_no_leaf_is_known() -> None:
-    told = leaves({t: seen((0, 0, 1), (0, 1, 0)) for t in (3, 4, 5)}, cut(2), LeavesParams())
-    assert (told.at(4) == told.positions[:, 1]).all()
-    assert told.is_seen(4).tolist() == [True, True]
-    assert np.isnan(told.at(6)).all()
-    assert told.is_seen(6).tolist() == [False, False]
+    followed = leaves({t: tips_at((0, 0, 1), (0, 1, 0)) for t in (3, 4, 5)}, cut(2), LeavesParams())
+    assert (followed.at(4) == followed.positions[:, 1]).all()
+    assert followed.is_seen(4).tolist() == [True, True]
+    assert np.isnan(followed.at(6)).all()
+    assert followed.is_seen(6).tolist() == [False, False]

@@ -10,13 +10,13 @@ from kinetree.tasks.topology.up_direction import up_direction
 
 
 def test_what_the_user_says_is_so() -> None:
-    told = up_direction(followed(spider()), UpDirectionParams(up="-z"))
-    assert (told.up, told.axis, told.confidence, views.remarks(told)) == ("-z", ~2, 1.0, ())
+    estimate = up_direction(followed(spider()), UpDirectionParams(up="-z"))
+    assert (estimate.up, estimate.axis, estimate.confidence, views.remarks(estimate)) == ("-z", ~2, 1.0, ())
 
 
 def test_nothing_to_tell_by_is_said_to_be_a_guess() -> None:
     whole = followed(spider())
-    told = up_direction(whole.model_copy(update={"positions": whole.positions[:0] * np.nan}), UpDirectionParams())
-    assert (told.up, told.axis, told.confidence) == ("y", 1, 0.0)
-    assert "up direction not certain" in views.remarks(told)[0]
-    assert "--set up_direction.up=" in views.remarks(told)[0]
+    estimate = up_direction(whole.model_copy(update={"positions": whole.positions[:0] * np.nan}), UpDirectionParams())
+    assert (estimate.up, estimate.axis, estimate.confidence) == ("y", 1, 0.0)
+    assert "up direction not certain" in views.remarks(estimate)[0]
+    assert "--set up_direction.up=" in views.remarks(estimate)[0]

@@ -32,11 +32,11 @@ def direction(skeleton, a, b):
 
 @pytest.mark.parametrize(("rest", "degrees"), [("t", 0.0), ("a", 45.0)])
 def test_limbs_have_the_directions_of_the_pose(human, rest, degrees):
-    body, given = posed(human, rest)
+    body, pose = posed(human, rest)
     front = named(human).front
     assert front @ [0, -1, 0] > 0.995
     arm = np.cos(np.radians(degrees)) * np.cross([0, 0, 1], front) - [0, 0, np.sin(np.radians(degrees))]
-    assert given == rest
+    assert pose == rest
     for a, b in (("shoulder_l", "elbow_l"), ("elbow_l", "wrist_l"), ("wrist_l", "hand_l")):
         np.testing.assert_allclose(direction(body, a, b), arm, atol=1e-6)
     np.testing.assert_allclose(direction(body, "hip_r", "knee_r"), [0, 0, -1], atol=1e-6)

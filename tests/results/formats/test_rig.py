@@ -80,6 +80,6 @@ def test_skin_follows_the_joints_and_time_the_frames():
 def test_a_place_is_carried_as_a_vertex_that_follows_its_joint_alone():
     body = spider()
     vertex = np.flatnonzero(body.weight[:, 0] == 1.0)[::5]
-    found = carried(body, body.influence[vertex, 0].tolist(), np.asarray(body.vertices)[vertex])
+    moved = carried(body, body.influence[vertex, 0].tolist(), np.asarray(body.vertices)[vertex])
     assert len(np.unique(body.influence[vertex, 0])) > 2
-    np.testing.assert_allclose(found, np.stack([skinned(body, t)[vertex] for t in range(len(body.frames))]), atol=1e-9)
+    np.testing.assert_allclose(moved, np.stack([skinned(body, t)[vertex] for t in range(len(body.frames))]), atol=1e-9)

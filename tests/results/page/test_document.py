@@ -158,7 +158,7 @@ def test_figure_is_drawn_once_and_has_the_bytes_that_savefig_gives_it(monkeypatc
         told = {"format": "svg", "dpi": PAGE_DOTS, "metadata": {"Date": None, "Creator": None}}
         verbatim(drawn()).savefig(twice, **told)
     draws, plain = [], Axes.draw
-    monkeypatch.setattr(Axes, "draw", lambda axes, *given: (draws.append(axes), plain(axes, *given)))
+    monkeypatch.setattr(Axes, "draw", lambda axes, *values: (draws.append(axes), plain(axes, *values)))
     figure = drawn()
     assert rendered(figure) == following_the_page(twice.getvalue())
     assert sorted(map(id, draws)) == sorted(map(id, figure.axes))

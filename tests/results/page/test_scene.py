@@ -25,10 +25,10 @@ def scene():
 
 
 def test_arrays_come_back_as_they_were_and_lie_where_a_browser_can_read_them():
-    given = {"a": np.arange(5, dtype=np.uint8), "b": np.arange(6, dtype=np.float32).reshape(2, 3), "c": np.zeros(0, np.uint16)}
-    layout, block = packed(given)
+    arrays = {"a": np.arange(5, dtype=np.uint8), "b": np.arange(6, dtype=np.float32).reshape(2, 3), "c": np.zeros(0, np.uint16)}
+    layout, block = packed(arrays)
     raw = zlib.decompress(block)
-    for name, array in given.items():
+    for name, array in arrays.items():
         assert layout[name]["offset"] % 4 == 0
         back = np.frombuffer(raw, layout[name]["dtype"], array.size, layout[name]["offset"]).reshape(layout[name]["shape"])
         np.testing.assert_array_equal(back, array)

@@ -158,11 +158,11 @@ def test_every_mode_and_every_colour_is_another_picture(opened: Any) -> None:
     ):
         there = {option.get_attribute("value") for option in opened.query_selector_all(f"#{name} option")}
         assert there >= set(pictures)
-        shown = set()
+        pictures_drawn = set()
         for value in pictures:
             opened.select_option(f"#{name}", value)
-            shown.add(drawn(opened))
-        assert len(shown) == len(pictures)
+            pictures_drawn.add(drawn(opened))
+        assert len(pictures_drawn) == len(pictures)
         opened.select_option("#mode", "rig")
         opened.select_option(f"#{name}", usual)
         opened.select_option("#colour", "parts")
@@ -179,9 +179,9 @@ def test_bodies_side_by_side_are_not_squeezed(opened: Any) -> None:
 def test_rig_is_where_the_skinned_mesh_is(opened: Any) -> None:
     body, t = spider(), 5
     opened.evaluate("kinetree.show(5)")
-    shown = np.array(opened.evaluate("Array.from(kinetree.rig.geometry.attributes.position.array)")).reshape(-1, 3)
+    drawn_rig = np.array(opened.evaluate("Array.from(kinetree.rig.geometry.attributes.position.array)")).reshape(-1, 3)
     true = skinned(body)[t] @ view(list(skinned(body)))
-    assert np.abs(np.sort(shown, axis=0)[[0, -1]] - np.sort(true, axis=0)[[0, -1]]).max() < 1e-3
+    assert np.abs(np.sort(drawn_rig, axis=0)[[0, -1]] - np.sort(true, axis=0)[[0, -1]]).max() < 1e-3
 
 
 def test_a_joint_is_selected_on_the_stage_and_in_the_table(opened: Any) -> None:
@@ -235,8 +235,8 @@ def test_stage_says_in_words_what_it_shows(opened: Any) -> None:
     def words() -> str:
         return str(opened.get_attribute("#stage", "aria-label"))
 
-    shown = "the rig as exported, a colour for every part, and its skeleton of 2 joints under "
-    assert re.match(rf"The body at frame 0\b.*, one of 12 frames: {shown}", words())
+    description = "the rig as exported, a colour for every part, and its skeleton of 2 joints under "
+    assert re.match(rf"The body at frame 0\b.*, one of 12 frames: {description}", words())
     opened.evaluate("kinetree.select(1)")
     opened.select_option("#colour", "error")
     assert "coloured by the distance to the input" in words()
@@ -286,7 +286,7 @@ def test_pictures_turn_dark_with_the_page(browser: Any, tmp_path: Path) -> None:
 
 
 def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_path: Path) -> None:
-    shown, words = [], []
+    pictures_drawn, words = [], []
     for assumed in ((), (("left elbow", 2, (8.6, 1.4, 0.0)),)):
         path = tmp_path / "report.html"
         report = Report(text=np.frombuffer(page(scene=trusted(assumed)).encode(), np.uint8))
@@ -296,7 +296,7 @@ def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_pa
         tab.on("pageerror", lambda e, all_of_it=complaints: all_of_it.append(str(e)))
         tab.goto(path.as_uri())
         tab.wait_for_selector("body[data-ready=yes]")
-        shown.append(drawn(tab))
+        pictures_drawn.append(drawn(tab))
         words.append(tab.get_attribute("#stage", "aria-label"))
         if assumed:
             at = tab.evaluate("kinetree.placeOf(kinetree.assumedPoint(0))")
@@ -307,7 +307,7 @@ def test_assumed_joints_are_hollow_on_dashed_bones_and_said(browser: Any, tmp_pa
             assert "left elbow (assumed)" in tab.inner_text("#names")
         tab.close()
         assert complaints == []
-    assert shown[0] != shown[1]
+    assert pictures_drawn[0] != pictures_drawn[1]
     assert "Assumed" not in words[0]
     assert "Assumed, not found: left elbow." in words[1]
 
