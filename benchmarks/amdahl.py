@@ -28,6 +28,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from kinetree.errors import UnknownNodeError
+from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import Node, parse, project
@@ -120,10 +121,7 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
     raises : ValueError where nothing is on record
     """
     graph = pipeline.tasks.until(names)
-    found = {}
-    for label, record in last_records(pipeline).items():
-        with contextlib.suppress(UnknownNodeError):  # of a task that is no more, or that ran over another dimension then
-            found[parse(label, graph)] = record
+    found = {node: record for label, record in last_records(pipeline).items() if (node := _node(label, graph))}
     if not found:
         raise ValueError(f"{pipeline.config.output} holds no record; run it first")
     urgent = urgency(graph)
@@ -132,9 +130,9 @@ def recorded(pipeline: Pipeline, names: Sequence[str]) -> Jobs:
         task = graph.by_name[node.task]
         tellers = {graph.openers[space].name for space in graph.needed_spaces(task)}
         tellers |= {graph.writers[task.along].name} if task.along else set()
-        read = {parse(label, graph) for argument in record.inputs for label in argument["nodes"]}
+        read = {_node(label, graph) for argument in record.inputs for label in argument["nodes"]}
         read |= {n for n in found if n.task in tellers and _agree(task.over, node, graph.by_name[n.task].over, n)}
-        before = frozenset(n for n in read if n in found and n != node)
+        before = frozenset(n for n in read if n and n in found and n != node)
         jobs[node] = Job(node, task.over, urgent[node.task], node.task in graph.aside, task.is_chain, record.seconds, before)
     return jobs
 
@@ -251,6 +249,13 @@ def _read_by_copy(jobs: Jobs, job: Job, times: int, copy: int) -> frozenset[Node
 def _copy(job: Job, times: int, number: int) -> Node:
     at = (n * times + number if dim == FRAME else n for dim, n in zip(job.space, job.node.at, strict=True))
     return Node(job.node.task, tuple(at))
+
+
+def _node(label: str, graph: Graph) -> Node | None:
+    """The node of a label; None of a task that is no more, or that ran over another dimension then."""
+    with contextlib.suppress(UnknownNodeError):
+        return parse(label, graph)
+    return None
 
 
 def _agree(space: Space, node: Node, other_space: Space, other: Node) -> bool:
