@@ -46,6 +46,8 @@ class JointError(_FileObject):
     """Root mean square distance of the joint over several cuts of the body from their mean; null where one cut alone has it."""
     residual: Length
     """Root mean square of what the motions of its two parts leave unexplained."""
+    surface_offset: Length | None = None
+    """Root mean square distance from where halves of the frames' surfaces alone have the joint; null where they do not say."""
     cuts: Annotated[int, Field(ge=1)]
     """Cuts of the body, each in another pose."""
     agreeing: Annotated[int, Field(ge=0)]

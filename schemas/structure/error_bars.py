@@ -30,6 +30,8 @@ class ErrorBars(Artifact):
     """Root mean square distance of several cuts' joints from their mean; NaN also where no other cut has the joint."""
     residual: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square of what the motions of the joint's two parts leave unexplained."""
+    surface_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance from where halves of the frames' surfaces alone have it; NaN also where they do not say."""
     agreeing: Annotated[Ints, Array("int32", JOINT)]
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]

@@ -69,7 +69,7 @@ class FirstTree(Artifact):
     dropped: tuple[Drop, ...]
     """Parts that were dropped, in that order, and why."""
     laid_frame: Annotated[Ints, Array("int32", OTHER_FRAME)]
-    """Frames on whose surfaces parts of limbs were laid by themselves, counted from 0."""
+    """Frames on whose surfaces parts were laid by themselves, counted from 0."""
     laid_joint: Annotated[Ints, Array("int32", LIMB)]
     """Joints of these parts."""
     laid_rotation: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, ROW, XYZ)]

@@ -91,6 +91,9 @@ class KinematicTree(ArticulatedBody):
     """Cuts that have each joint; 0 for root and leaves."""
     joint_residual: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Root mean square of what the motions of the joint's two parts leave unexplained; 0 for root and leaves."""
+    surface_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance of each joint from where halves of the frames' surfaces alone have it; NaN where connectivity
+    is fixed, where the surfaces do not say, and for root and leaves."""
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
 

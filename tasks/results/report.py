@@ -38,6 +38,7 @@ from kinetree.tasks.views.verdict import headline
 
 VARIATION = "length varies by, %"
 ERROR = "expected error"
+OFFSET = "surface offset"
 
 
 @task()
@@ -121,6 +122,7 @@ def _joint_table(
         "range, °": skeleton.degrees.tolist(),
         ERROR: [_error_words(bars, j) for j in range(len(parents))],
         "drift": skeleton.drift.tolist(),
+        OFFSET: [two_digits(v) if np.isfinite(v) else "–" for v in bars.surface_offset.tolist()],
         "frames": skeleton.support.tolist(),
         "intervals": [_confident_intervals(skeleton, intervals, j) for j in range(len(parents))],
         "confidence": skeleton.confidence.mean(axis=0).tolist(),
@@ -129,6 +131,8 @@ def _joint_table(
         del columns[VARIATION]
     if not bars.cuts:
         del columns[ERROR]
+    if not np.isfinite(bars.surface_offset).any():
+        del columns[OFFSET]
     return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]
 
 

@@ -31,6 +31,7 @@ def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
         drift=of_joints(features.drift),
         spread=of_joints(features.spread),
         residual=of_joints(features.residual),
+        surface_offset=of_joints(features.offset),
         agreeing=kinematic_tree.agreeing,
         support=np.where(turning, skeleton.support, 0),
     )
@@ -49,7 +50,7 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
     return ErrorBars(
         joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
         in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
-        agreeing=none, support=none,
+        surface_offset=unknown, agreeing=none, support=none,
     )  # fmt: skip
 
 
@@ -57,6 +58,6 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     """What is known of all joints, root and leaves among them."""
     tree = kinematic_tree
     size = float(np.sqrt(surface_areas(skeleton.vertices, skeleton.faces).sum()))
-    of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths)
-    drift, spread, residual, degrees, length = (np.array(a) for a in of_joints)
-    return numerics.JointFeatures(drift, spread, residual, degrees, length, np.array(skeleton.confidence), size)
+    of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
+    drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
+    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, np.array(skeleton.confidence), size)

@@ -48,7 +48,8 @@ def skeleton_text(
 ) -> tuple[str, ...]:
     """The tree, one line a joint: length of its bone, range of its angle, expected error, frames that support it.
 
-    The error is followed by the bound that nine of ten joints keep; where no error is known, the drift stands for it.
+    The error is followed by the bound that nine of ten joints keep, and how far off the frames' surfaces have the joint; where
+    no error is known, the drift stands for it.
 
     Above it the verdict; joints as people call them, with the skeleton's own name where that is another. Below it joints that
     are assumed.
@@ -100,6 +101,8 @@ def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
     off = f"±{skeleton.drift[joint]:.2g}{unit}"
     if bars is not None and bars.cuts:
         off = f"±{two_digits(bars.expected[joint])}{unit} (90 %: {two_digits(bars.bound[joint])})"
+        if np.isfinite(bars.surface_offset[joint]):
+            off += f", surface offset {two_digits(bars.surface_offset[joint])}{unit}"
     return f"{length}, turns {skeleton.degrees[joint]:.0f}°, {off}, {support}"
 
 
@@ -125,11 +128,12 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
     if not rows:
         return ("no errors are known",)
     wide = max(len(bars.joints[j]) for j in rows)
-    lengths = ("expected", "bound", "drift", "spread", "residual")
+    lengths = ("expected", "bound", "drift", "spread", "residual", "surface_offset")
     lines = []
     for j in rows:
-        expected, bound, drift, spread, residual = (two_digits(getattr(bars, name)[j]) for name in lengths)
+        expected, bound, drift, spread, residual, offset = (two_digits(getattr(bars, name)[j]) for name in lengths)
         evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
+        evidence += "" if np.isnan(bars.surface_offset[j]) else f", surface offset {offset}"
         support = f"seen in {bars.support[j]} frames"
         lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {support}")
     return tuple(lines)

@@ -122,5 +122,6 @@ def bars_of(skeleton: Skeleton) -> ErrorBars:
     count = np.where(turning, 3, 0)
     return ErrorBars(
         joints=skeleton.names, frames=skeleton.frames, cuts=4, expected=expected, bound=2.0 * expected, in_frame=in_frame,
-        drift=expected, spread=0.5 * expected, residual=0.2 * expected, agreeing=count, support=4 * count,
+        drift=expected, spread=0.5 * expected, residual=0.2 * expected, surface_offset=0.3 * expected,
+        agreeing=count, support=4 * count,
     )  # fmt: skip

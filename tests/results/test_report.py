@@ -183,4 +183,8 @@ def test_joints_have_their_expected_error_beside_them_where_it_is_known() -> Non
     text, j = page(), body.kinds.index("joint")
     assert "expected error" in text
     assert f"{bars.expected[j]:.2g} (90 %: {bars.bound[j]:.2g})" in text
-    assert "expected error" not in page(error_bars=unknown_error_bars(body))
+    assert "surface offset" in text
+    assert f"<td>{bars.surface_offset[j]:.2g}" in text
+    unknown = page(error_bars=unknown_error_bars(body))
+    assert "expected error" not in unknown
+    assert "surface offset" not in unknown

@@ -62,6 +62,7 @@ def test_text_says_error_bound_and_evidence_of_every_joint() -> None:
     assert [line.split()[0] for line in lines] == ["a", "b", "c"]
     assert f"±{found.expected[1]:.2g}, 90 % below {found.bound[1]:.2g}" in lines[0]
     assert "spread 0.05 over 3 of 4 cuts" in lines[0]
+    assert "surface offset" not in lines[0]
     assert type(found) is ErrorBars
 
 
@@ -75,5 +76,9 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
 
     assert f"±{bars.expected[1]:.2g} mm (90 %: {bars.bound[1]:.2g})" in beside(bars)[0]
     assert "±0.1 mm," in beside(unknown_error_bars(body))[0]
+    offset = bars.model_copy(update={"surface_offset": np.full(5, 0.02)})
+    assert "surface offset" not in beside(bars)[0]
+    assert "surface offset 0.02 mm, supported" in beside(offset)[0]
+    assert "residual 0.02, surface offset 0.02, seen" in views.text(offset)[0]
     large = bars.model_copy(update={"bound": np.full(5, 123.4)})
     assert "(90 %: 120)" in beside(large)[0]

@@ -131,8 +131,11 @@ def test_joints_within_limbs_are_moved_on_the_surfaces_where_connectivity_change
     assert asked.kinds == not_asked.kinds == ("root", "joint", "joint", "leaf")
     assert END - 0.1 < asked.rest[2, 2] < not_asked.rest[2, 2] - 0.2
     np.testing.assert_array_equal(asked.rest[[0, 1, 3]], not_asked.rest[[0, 1, 3]])
+    assert np.isfinite(asked.surface_offset).tolist() == [False, True, True, False]
+    assert np.isnan(not_asked.surface_offset).all()
     given = [told(body, surface_joints=flag) for flag in (True, False)]
     np.testing.assert_array_equal(*(found.rest for found in given))
+    assert np.isnan(given[0].surface_offset).all()
 
 
 def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:

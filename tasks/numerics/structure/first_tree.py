@@ -56,7 +56,7 @@ class FirstTree(NamedTuple):
     radius   : (part,) of the border at the joint, mesh unit; 0 for the root
     end_x    : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
     graph    : of all parts
-    laid     : parts of limbs on the frames' surfaces
+    laid     : parts on the frames' surfaces
     """
 
     parents: Ints

@@ -19,7 +19,7 @@ from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
-from kinetree.tasks.numerics.structure.surface_joints import surface_joints
+from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings
 
 
@@ -69,6 +69,8 @@ class Derivation(NamedTuple):
                      alone has the joint, and where it is none
     agreeing       : (joint,) cuts that have it; 0 for the root and ends of bones
     joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
+    surface_offset : (joint,) root mean square distance from where halves of the frames' surfaces alone have it, mesh unit; NaN
+                     where they were not asked or do not say, and where it is none
     end_joints     : joints that the frames' surfaces alone show, see `inserted_ends`
     """
 
@@ -83,6 +85,7 @@ class Derivation(NamedTuple):
     spread: Floats
     agreeing: Ints
     joint_residual: Floats
+    surface_offset: Floats
     end_joints: tuple[int, ...] = ()
 
 
@@ -109,7 +112,10 @@ def kinematic_tree(
         x[:, first.at_ends] = first.end_x
     agreed = _agreed(first, further, body.size)
     share = confident_share(label, area, confidence, len(x), len(tree))
-    rest = surface_joints(first, agreed.rest, share) if settings.surface_joints else agreed.rest
+    on_surface = SurfaceJoints(agreed.rest, np.full(len(tree), np.nan))
+    if settings.surface_joints:
+        on_surface = surface_joints(first, agreed.rest, share)
+    rest = on_surface.rest
     off = first.drift if rest is first.rest else first.drift_at(rest)
     poses = frame_poses(
         V, x, area, label, first.W, Motion(rest, first.R, first.t[:, 0].copy()), tree, confidence, takes=body.takes
@@ -120,7 +126,7 @@ def kinematic_tree(
     ends = end_effectors(V, body.F, label, tree, leaves)
     spans = score_spans(len(x), body.takes)
     made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans, settings)
-    return made, _derivation(first, agreed, made, order)
+    return made, _derivation(first, agreed, on_surface.offset, made, order)
 
 
 def _agreed(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
@@ -178,10 +184,11 @@ def _assembled(
     return body, order
 
 
-def _derivation(first: FirstTree, agreed: JointConsensus, body: KinematicTree, order: Ints) -> Derivation:
+def _derivation(first: FirstTree, agreed: JointConsensus, offset: Floats, body: KinematicTree, order: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    order : (joint,) part in the tree's order, or beyond them an end effector
+    offset : (part,) see `SurfaceJoints`
+    order  : (joint,) part in the tree's order, or beyond them an end effector
     """
     parts, joint = len(first.rest), np.argsort(order)
     length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), first.R, first.t)
@@ -194,5 +201,6 @@ def _derivation(first: FirstTree, agreed: JointConsensus, body: KinematicTree, o
         spread=np.where(is_part, agreed.spread[part], np.nan),
         agreeing=np.where(is_part, agreed.agreeing[part], 0),
         joint_residual=np.where(is_part, first.residual[part], 0.0),
+        surface_offset=np.where(is_part, offset[part], np.nan),
         end_joints=tuple(joint[parts - first.ends : parts].tolist()),
     )

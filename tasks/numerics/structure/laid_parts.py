@@ -57,14 +57,13 @@ NOTHING_LAID = LaidParts(
 def laid_parts(
     body: MovingSurface, found: TreeJoints, surface: Callable[[int], Target], settings: LaidPartsSettings | None = None
 ) -> LaidParts:
-    """The parts at joints within limbs, each by itself from where it is aligned; none where there are few frames.
+    """All parts with enough vertices, each by itself from where it is aligned; none where there are few frames.
 
     surface : gives a frame's surface, prepared, by its place among the frames
     """
-    chosen, parents = settings or LaidPartsSettings(), found.left.part_tree.tree.parents
+    chosen = settings or LaidPartsSettings()
     frames = np.unique(np.linspace(0, len(body.x) - 1, min(len(body.x), chosen.most_frames)).round().astype(np.int64))
-    joints = np.flatnonzero(within_limbs(parents))
-    pieces = _pieces(body, found, np.union1d(joints, parents[joints]), chosen) if len(frames) >= chosen.least_frames else {}
+    pieces = _pieces(body, found, chosen) if len(frames) >= chosen.least_frames else {}
     if not pieces:
         return NOTHING_LAID
     rows = []
@@ -86,10 +85,10 @@ def within_limbs(parents: Ints) -> Flags:
     return np.asarray((parents > 0) & (below[above] == 1))
 
 
-def _pieces(body: MovingSurface, found: TreeJoints, parts: Ints, chosen: LaidPartsSettings) -> dict[int, Piece]:
+def _pieces(body: MovingSurface, found: TreeJoints, chosen: LaidPartsSettings) -> dict[int, Piece]:
     """Points of the parts that have enough vertices."""
     pieces, N = {}, smoothed_normals(body.V, body.F)
-    for part in parts.tolist():
+    for part in range(found.W.shape[1]):
         own = np.flatnonzero((found.label == part) & (found.W[:, part] > chosen.rigid_weight))
         if len(own) >= chosen.least_vertices:
             mass = found.W[own, part] * np.sqrt(body.area[own] / body.area.sum())

@@ -82,7 +82,8 @@ def _joint_error(name: str, bars: ErrorBars | None) -> JointError | None:
         return None
     lengths = {field: float(getattr(bars, field)[j]) for field in ("expected", "bound", "drift", "residual")}
     counts = {field: int(getattr(bars, field)[j]) for field in ("agreeing", "support")}
-    return JointError(**lengths, **counts, spread=_rounded(float(bars.spread[j])), cuts=bars.cuts)
+    partial = {field: _rounded(float(getattr(bars, field)[j])) for field in ("spread", "surface_offset")}
+    return JointError(**lengths, **counts, **partial, cuts=bars.cuts)
 
 
 def _joints(skeleton: Skeleton, names: JointNames, B: Floats, assumed: Collection[int], bars: ErrorBars | None) -> list[Joint]:

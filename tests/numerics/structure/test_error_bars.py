@@ -6,14 +6,17 @@ import pytest
 from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
 
 SETTINGS = ErrorBarsSettings(
-    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 2.0), PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 3.0), 2.0
+    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 2.0),
+    PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.0, 2.5),
+    PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 3.0),
+    2.0,
 )
 
 
 def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
     told = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
-        "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0,
+        "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
         "degrees": np.full(3, 40.0), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
     return JointFeatures(**{n: value if n in ("degrees", "confidence") else scale * value for n, value in told.items()})
@@ -48,6 +51,16 @@ def test_a_joint_that_no_other_cut_has_is_worse_than_one_whose_cuts_are_apart() 
     assert np.isfinite(found).all()
 
 
+def test_a_joint_farther_from_its_place_on_the_surfaces_is_worse_and_one_without_such_a_place_goes_by_the_rest() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01)}
+    found = error_bars(features(offset=np.array([0.002, 0.008, np.nan]), **same), 4, SETTINGS)
+    assert found.expected[1] == pytest.approx(2.0 * found.expected[0])
+    assert found.bound / found.expected == pytest.approx([2.5, 2.5, 2.0])
+    assert found.expected[2] == pytest.approx(error_bars(features(**same), 4, SETTINGS).expected[2])
+    alone = [error_bars(features(offset=np.full(3, offset), **same), 1, SETTINGS).expected for offset in (0.002, 0.02)]
+    assert alone[0] == pytest.approx(alone[1]), "with one cut the law knows no offset"
+
+
 def test_the_error_is_larger_in_frames_without_confidence_and_its_mean_is_that_of_the_joint() -> None:
     confidence = np.ones((5, 3))
     confidence[1, 0] = 0.0
@@ -75,9 +88,11 @@ def test_no_error_is_below_the_least() -> None:
 
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
-    drift, spread, residual, length = np.exp(rng.normal(-5.0, 1.0, (4, 200)))
-    rows = JointFeatures(drift, spread, residual, rng.uniform(5, 120, 200), length, np.ones((1, 200)), 1.0).logarithms(True)
-    law = [0.5, 0.4, 0.5, 0.1, -0.6, -0.2]
+    drift, spread, residual, length, offset = np.exp(rng.normal(-5.0, 1.0, (5, 200)))
+    degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
+    rows = JointFeatures(drift, spread, residual, degrees, length, offset, sure, 1.0).logarithms(True)
+    law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
-    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, -0.3, -0.6, -0.2]))[3] == 0.0
-    assert fitted(rows, np.exp(rows @ [0.5, 0.4, 0.5, 0.1, 0.6, -0.2]))[4] == 0.0
+    for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3)):
+        other = [value if k == wrong else exponent for k, exponent in enumerate(law)]
+        assert fitted(rows, np.exp(rows @ other))[wrong] == 0.0

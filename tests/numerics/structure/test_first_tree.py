@@ -44,7 +44,7 @@ def test_vertices_beside_a_joint_that_frames_alone_show_are_where_the_frames_hav
 
 
 def test_parts_are_laid_on_the_tree_that_has_the_ends() -> None:
-    assert with_ends().laid.joint.tolist() == [1, 2]
+    assert with_ends().laid.joint.tolist() == [0, 1, 2]
 
 
 def test_hidden_bones_are_told_from_joints_at_ends() -> None:

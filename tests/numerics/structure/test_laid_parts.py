@@ -1,4 +1,4 @@
-"""Parts of limbs lie on the frames' own surfaces, from wherever they were aligned."""
+"""Parts lie on the frames' own surfaces, from wherever they were aligned."""
 
 import numpy as np
 from smeared import Frames, three_parts, turning
@@ -12,10 +12,10 @@ def test_parts_lie_where_the_frames_have_them_and_not_where_they_were_aligned() 
     off = found._replace(t=found.t + np.array([0.02, 0.0, 0.0]) * body.size)
     true = Frames(turning()).true
     laid = laid_parts(body, off, Frames(turning()).prepared(body.size))
-    assert laid.joint.tolist() == [1, 2]
+    assert laid.joint.tolist() == [0, 1, 2]
     middle = np.stack([body.V[found.label == part].mean(axis=0) for part in laid.joint])
     there = np.einsum("flxy,ly->flx", laid.rotation, middle) + laid.translation
-    want = np.einsum("flxy,ly->flx", true.R[:, 1:], middle) + true.t[:, 1:]
+    want = np.einsum("flxy,ly->flx", true.R, middle) + true.t
     away = np.linalg.norm(there - want, axis=2)
     # a tube is free to slide along itself
     assert np.median(away) < 0.02 * body.size / 2
@@ -25,12 +25,12 @@ def test_parts_lie_where_the_frames_have_them_and_not_where_they_were_aligned() 
 def test_stiffness_is_that_of_a_turn_and_a_shift() -> None:
     body, found = three_parts()
     laid = laid_parts(body, found, Frames(turning()).prepared(body.size))
-    assert laid.stiffness.shape == (24, 2, 6, 6)
+    assert laid.stiffness.shape == (24, 3, 6, 6)
     np.testing.assert_allclose(laid.stiffness, laid.stiffness.swapaxes(2, 3), atol=1e-9)
     assert (np.linalg.eigvalsh(laid.stiffness) > -1e-9).all()
 
 
-def test_only_parts_within_limbs_and_those_above_them_are_laid() -> None:
+def test_parts_within_limbs_are_those_without_a_branch_above_them() -> None:
     assert within_limbs(np.array([-1, 0, 1, 2, 0, 4, 4])).tolist() == [False, False, True, True, False, False, False]
 
 

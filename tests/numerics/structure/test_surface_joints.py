@@ -1,6 +1,7 @@
 """Joints within limbs go where the frames' surfaces have them, and stay where these do not agree."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,23 +12,29 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.laid_parts import laid_parts
-from kinetree.tasks.numerics.structure.surface_joints import SurfaceJointsSettings, surface_joints
+from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, SurfaceJointsSettings, surface_joints
 
 OFF = np.array([0.0, 0.0, 0.5])
 """How far off the joint is put, half a radius along the limb."""
 
 
-def moved(
+def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float = 1.0,
     shown: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
-) -> tuple[Floats, Floats]:  # fmt: skip
-    """The joints as they were put and as they come back; the last one is put off."""
+) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
+    """The joints as they were put, and what the surfaces say of them; the last one is put off."""
     surface, found = three_parts(frames, scale)
     rest = found.rest.copy()
     rest[1:, :2], rest[1, 2], rest[2] = 0.0, 0.0, scale * (np.array([0.0, 0.0, END]) + off)
     given, size = shown or Frames(turning(), 0.02, scale), surface.size
     tree = in_tree_order(found, 3, laid=laid_parts(surface, found, lambda f: Target.of(*given(f), size)))
     return rest, surface_joints(tree, rest, np.full((frames, 3), seen), settings)
+
+
+def moved(*args: Any, **kwargs: Any) -> tuple[Floats, Floats]:
+    """The joints as they were put and as they come back."""
+    before, found = on_surfaces(*args, **kwargs)
+    return before, found.rest
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -75,3 +82,27 @@ def test_few_frames_move_no_joint() -> None:
 def test_frames_that_do_not_show_the_parts_hardly_move_a_joint() -> None:
     before, after = moved(seen=0.0)
     assert np.linalg.norm(after[2] - before[2]) < 0.2 * OFF[2]
+
+
+@pytest.mark.parametrize("scale", [1.0, 40.0])
+def test_a_joint_that_stays_off_is_as_far_from_its_place_on_the_surfaces_and_one_that_lies_right_is_near(scale: float) -> None:
+    stay = SurfaceJointsSettings(agree=0.0)
+    (_, off), (_, right) = (on_surfaces(share * OFF, scale=scale, settings=stay) for share in (1.0, 0.0))
+    assert 0.6 * OFF[2] < off.offset[2] / scale < 1.2 * OFF[2]
+    assert right.offset[2] / scale < 0.1
+
+
+def test_a_joint_that_is_moved_has_the_offset_that_is_left() -> None:
+    before, found = on_surfaces()
+    assert found.offset[2] < 0.5 * OFF[2] < np.linalg.norm(before[2] - found.rest[2]) + found.offset[2]
+
+
+def test_joints_that_may_not_move_have_an_offset_too_and_the_root_has_none() -> None:
+    before, found = on_surfaces()
+    assert found.rest[1].tolist() == before[1].tolist()
+    assert 0.0 < found.offset[1] < 0.2
+    assert np.isnan(found.offset[0])
+
+
+def test_few_frames_give_no_offset() -> None:
+    assert np.isnan(on_surfaces(frames=7)[1].offset).all()
