@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping
-from multiprocessing import current_process, forkserver, resource_tracker
+from multiprocessing import current_process, forkserver, get_all_start_methods, resource_tracker
 from pathlib import Path
 from types import TracebackType
 from typing import Any, ClassVar
@@ -72,7 +72,7 @@ class WorkerParent:
         with self._lock:
             server: Any = getattr(forkserver, "_forkserver", None)
             is_known = all(hasattr(server, name) for name in ("_forkserver_pid", "_forkserver_alive_fd", "_preload_modules"))
-            is_wanted = sys.platform == "linux" and CHOSEN not in os.environ
+            is_wanted = sys.platform == "linux" and "forkserver" in get_all_start_methods() and CHOSEN not in os.environ
             if self._server is not None or not is_wanted or not is_known:
                 return
             if self._users or (server._forkserver_pid is None and self._is_started(server, environment)):

@@ -14,7 +14,7 @@ import pytest
 from distributed import Client
 
 from kinetree.errors import ClusterError
-from kinetree.pipeline.running import own_workers
+from kinetree.pipeline.running import own_workers, worker_parent
 from kinetree.pipeline.running.launch import ENVIRONMENT, METHOD, TRIM, environment, launcher
 from kinetree.pipeline.running.living_workers import LivingWorkers
 from kinetree.pipeline.running.own_workers import STARTS, Starts, unguarded_script
@@ -106,6 +106,41 @@ def test_runs_at_the_same_time_have_each_their_own_configuration_and_leave_none(
         assert other.submit(abs, -2).result(timeout=60) == 2
     assert {key: dask.config.get(key) for key in before} == before
     assert os.environ.get(TRIM) == trim
+
+
+@is_linux
+def test_forked_workers_speak_tls_where_it_is_asked_for():
+    with launcher(Compute(executor="processes", workers=1, security="temporary")):
+        client = Client.current()
+        assert client.scheduler.address.startswith("tls://127.0.0.1:")
+        assert client.submit(os.getppid).result(timeout=60) == forkserver._forkserver._forkserver_pid
+
+
+def test_where_python_cannot_fork_from_another_process_workers_start_as_dask_starts_them(monkeypatch):
+    monkeypatch.setattr(worker_parent, "get_all_start_methods", lambda: ["spawn"])
+    with WorkerParent() as parent, launcher(Compute(executor="processes", workers=1), None, parent):
+        assert not parent.is_there
+        assert Client.current().submit(os.getppid).result(timeout=60) == os.getpid()
+
+
+def test_following_over_edited_code_ends_and_runs_neither_code_for_the_other(toys):
+    processes = {"executor": "processes", "workers": 1}
+    process = toys.start("run", str(toys.yaml(compute=processes)), "--follow", "--quiet")
+    toys.until(lambda: (toys.output / "run.json").exists(), "the first run is over", process)
+    before = toys.artifacts()
+    code = toys.folder / toys.name / "toys.py"
+    code.write_text(code.read_text().replace("params.scale * number", "params.scale * number * 2"))
+    toys.clear()
+    toys.write(70, start=6)
+    _, error = process.communicate(timeout=100)
+    assert process.returncode == 3
+    assert "other code" in error
+    assert toys.executions() == []
+    toys.forget()
+    after = toys.pipeline().plan().nodes
+    assert {node.state for node in after if node.node.startswith("points")} == {"stale"}
+    toys.run(compute=processes)
+    assert toys.artifacts()["points[frame=0]"] != before["points[frame=0]"]
 
 
 @is_linux
