@@ -1,4 +1,4 @@
-"""True trajectories of an observed mesh, how far each true joint turns in an alignment, and how lost roll comes back."""
+"""True trajectories of an observed mesh, and how far each true joint turns in an alignment."""
 
 import json
 from dataclasses import dataclass
@@ -10,11 +10,6 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
-from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import Pose
-from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.roll import chosen_rolls
-from kinetree.tasks.numerics.registration.roll_candidates import limbs, roll_candidates, rolled
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -78,18 +73,6 @@ class Truth:
                 U[:, :, 2] *= np.sign(np.linalg.det(U @ Vt))[:, None]
                 out[name] = U @ Vt
         return out
-
-
-def with_roll(
-    body: DeformationGraph, cluster: Ints, poses: list[Pose], targets: list[Target], start: int
-) -> tuple[list[Pose], Ints]:
-    """Poses in which limbs have their roll back, and (node,) the limb of those that rolled."""
-    tried = [roll_candidates(body, pose, target, cluster) for pose, target in zip(poses, targets, strict=True)]
-    turn = chosen_rolls(np.stack([t.angle for t in tried]), np.stack([t.misfit for t in tried]), start)
-    limb = np.full(len(body.node), -1)
-    for k, one in enumerate(limbs(body, cluster)):
-        limb[one.node] = k if (turn[:, k] >= 0).any() else -1
-    return [rolled(body, pose, cluster, t, row) for pose, t, row in zip(poses, tried, turn, strict=True)], limb
 
 
 def _compared(a: Floats, b: Floats) -> tuple[float, float, float]:
