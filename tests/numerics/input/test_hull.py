@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from ball_views import CENTRE, RING, long_ball, seen
+from ball_views import CENTRE, RING, ball_masks, long_ball
 
 from kinetree.errors import HullError
 from kinetree.tasks.numerics.input.cameras import camera_ring
@@ -11,7 +11,7 @@ from kinetree.tasks.numerics.input.hull import hull, view_box
 from kinetree.tasks.numerics.input.isosurface import isosurface
 
 NAMES = [f"cam_{c:02d}" for c in range(15)]
-MASKS = list(seen())
+MASKS = list(ball_masks())
 PIXEL = 10.0 / (0.96 * 160)
 """Width of a pixel at the ball's centre."""
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from ball_views import seen, write_folder
+from ball_views import ball_masks, write_folder
 
 from kinetree.errors import SourceError
 from kinetree.tasks.numerics.input.input_kind import input_kind
@@ -14,7 +14,7 @@ def test_meshes_come_first_and_what_lies_beside_them_is_chosen_by_a_pattern(tmp_
     (tmp_path / "frame_0.ply").touch()
     for t in (10, 9):
         np.savez(tmp_path / f"volume_{t}.npz", field=VOLUME)
-        np.savez(tmp_path / f"silhouettes_{t}.npz", silhouettes=seen()[:, :9, :9])
+        np.savez(tmp_path / f"silhouettes_{t}.npz", silhouettes=ball_masks()[:, :9, :9])
     assert input_kind(str(tmp_path)) == ("meshes", [])
     kind, files = input_kind(str(tmp_path / "volume_*.npz"))
     assert (kind, [f.name for f in files]) == ("volumes", ["volume_9.npz", "volume_10.npz"])
@@ -34,7 +34,7 @@ def test_folder_of_volumes_is_volumes(tmp_path):
 
 def test_calibration_beside_packed_silhouettes_is_no_frame(tmp_path):
     np.savez(tmp_path / "cameras.npz", P=np.zeros((2, 3, 4)))
-    np.savez(tmp_path / "a_0.npz", silhouettes=seen())
+    np.savez(tmp_path / "a_0.npz", silhouettes=ball_masks())
     kind, files = input_kind(str(tmp_path))
     assert (kind, [f.name for f in files]) == ("packed silhouettes", ["a_0.npz"])
 

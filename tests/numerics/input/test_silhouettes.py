@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from ball_views import RING, calibration, seen, write_folder
+from ball_views import RING, ball_masks, calibration, write_folder
 from PIL import Image
 
 from kinetree.errors import HullError, SourceError
@@ -23,12 +23,12 @@ def read(walk, frame=0):
 def test_what_is_written_is_found_and_read_back(walk):
     assert list(camera_folders(walk)) == list(KNOWN.names)
     assert [number for number, _ in mask_files(walk, KNOWN)] == [0, 1, 2]
-    np.testing.assert_array_equal(read(walk, 1), seen(0.9, (0.0, 0.0, 0.1)))
+    np.testing.assert_array_equal(read(walk, 1), ball_masks(0.9, (0.0, 0.0, 0.1)))
 
 
 def test_images_of_one_moment_have_the_same_last_number_whatever_their_names(walk):
     (walk / "cam_03" / "frame_0001.png").rename(walk / "cam_03" / "take2_view_1.png")
-    np.testing.assert_array_equal(read(walk, 1), seen(0.9, (0.0, 0.0, 0.1)))
+    np.testing.assert_array_equal(read(walk, 1), ball_masks(0.9, (0.0, 0.0, 0.1)))
 
 
 def test_frames_are_the_numbers_of_all_cameras_and_a_camera_may_lack_some(walk):
@@ -42,7 +42,7 @@ def test_frames_are_the_numbers_of_all_cameras_and_a_camera_may_lack_some(walk):
 
 @pytest.mark.parametrize("mode", ["L", "1", "I;16", "RGB", "RGBA", "LA", "P"])
 def test_depth_and_channels_of_a_mask_do_not_matter(walk, mode):
-    path, mask = walk / "cam_00" / "frame_0000.png", seen(0.9)[0]
+    path, mask = walk / "cam_00" / "frame_0000.png", ball_masks(0.9)[0]
     if mode == "I;16":
         image = Image.fromarray(mask.astype(np.uint16) * 900)
     else:
@@ -53,8 +53,8 @@ def test_depth_and_channels_of_a_mask_do_not_matter(walk, mode):
 
 
 def test_mask_of_ones_is_a_mask(walk):
-    Image.fromarray(seen(0.9)[0].astype(np.uint8)).save(walk / "cam_00" / "frame_0000.png")
-    np.testing.assert_array_equal(read(walk)[0], seen(0.9)[0])
+    Image.fromarray(ball_masks(0.9)[0].astype(np.uint8)).save(walk / "cam_00" / "frame_0000.png")
+    np.testing.assert_array_equal(read(walk)[0], ball_masks(0.9)[0])
 
 
 def test_empty_mask_is_empty(walk):
@@ -97,17 +97,17 @@ def test_two_images_of_one_number_and_images_without_one_are_refused(walk):
 
 
 def test_packed_masks_are_read(tmp_path):
-    np.savez_compressed(tmp_path / "a.npz", silhouettes=seen())
-    np.testing.assert_array_equal(read_packed_masks(tmp_path / "a.npz", KNOWN), seen())
+    np.savez_compressed(tmp_path / "a.npz", silhouettes=ball_masks())
+    np.testing.assert_array_equal(read_packed_masks(tmp_path / "a.npz", KNOWN), ball_masks())
 
 
 @pytest.mark.parametrize(
     ("held", "words"),
     [
-        ({"silhouettes": seen()[:7]}, "silhouettes of 7 cameras, but the calibration has 15"),
-        ({"silhouettes": seen()[:, :99]}, r"200 × 99 pixels, but camera cam_00 is calibrated for 200 × 160"),
-        ({"silhouettes": seen()[0]}, r"numbers \(camera, row, column\) are needed"),
-        ({"masks": seen()}, "no array silhouettes can be read"),
+        ({"silhouettes": ball_masks()[:7]}, "silhouettes of 7 cameras, but the calibration has 15"),
+        ({"silhouettes": ball_masks()[:, :99]}, r"200 × 99 pixels, but camera cam_00 is calibrated for 200 × 160"),
+        ({"silhouettes": ball_masks()[0]}, r"numbers \(camera, row, column\) are needed"),
+        ({"masks": ball_masks()}, "no array silhouettes can be read"),
         ({"silhouettes": np.array([{}], dtype=object)}, "no array silhouettes can be read"),
         ({"silhouettes": np.zeros((15, 9000, 9000), dtype=np.bool_)}, "unpacks to .* bytes, more than"),
     ],
