@@ -2,7 +2,9 @@
 
 import numpy as np
 from articulated import Known
+from smeared import Frames, aligned, turning
 
+from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.rigid_parts import RigidParts
@@ -39,3 +41,15 @@ def given(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference, dict[
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
     return reference, aligned, leaves
+
+
+def tube(trust: float) -> tuple[Reference, RigidParts, dict[int, Alignment], dict[int, Mesh], Leaves]:
+    """What `first_tree` reads of a tube whose last joint only the frames show; vertices have so much confidence."""
+    body, frames = aligned(turning()), Frames(turning())
+    two = body._replace(label=(body.V[:, 2] > 0.0).astype(np.int64), R=body.R[:, :2], t=body.t[:, :2])
+    reference, certain, leaves = given(body.V, body.F, body.x)
+    trusted = {"confidence": np.full(len(body.V), trust)}
+    alignment = {t: Alignment(**{**a.plain(), **a.arrays(), **trusted}) for t, a in certain.items()}
+    shown = {FIRST + k: frames(k) for k in range(len(body.x))}
+    mesh = {t: Mesh(vertices=V, faces=F, vertex_of_input=np.arange(len(V)), cleaning=Cleaning()) for t, (V, F) in shown.items()}
+    return reference, rigid(two, reference.frames), alignment, mesh, leaves

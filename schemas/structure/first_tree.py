@@ -1,35 +1,31 @@
 """The tree of the first cut: which joints there are, and how far off its joints may be (2014, Sec. 6.3)."""
 
-from typing import Annotated, Literal
+from collections.abc import Sequence
+from typing import Annotated, ClassVar, Literal
 
-from kinetree.schemas.array import Array, Artifact, Floats, Ints
-from kinetree.schemas.dims import (
-    END,
-    END_VERTEX,
-    FRAME,
-    FREEDOM,
-    JOINT,
-    LIMB,
-    OTHER_FRAME,
-    OTHER_FREEDOM,
-    PAIR,
-    PART,
-    ROW,
-    VERTEX,
-    XYZ,
-)
+from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints
+from kinetree.schemas.dims import END, END_VERTEX, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
 Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, or the frames show no
 joint."""
 
 
+LAID_TOGETHER = 5
+"""Frames on which one task lays parts, at most."""
+
+
 class FirstTree(Artifact):
     """The rigid parts in one tree, each with the joint about which it turns, a part after its parent.
 
-    "part" are the parts as RigidParts numbers them, "joint" those of the tree, "limb" those laid on surfaces.
+    "part" are the parts as RigidParts numbers them, "joint" those of the tree.
     """
 
+    opens: ClassVar[tuple[str, ...]] = ("laid", "laid/frame")
+    frames: tuple[int, ...]
+    """Source frame number of every frame, ascending."""
+    laid: tuple[int, ...]
+    """Those on whose surfaces parts of limbs are laid by themselves; a few of them are a member of "laid"."""
     parents: tuple[int, ...]
     """Parent of every joint, −1 for the root, which is the first."""
     place: Annotated[Ints, Array("int32", PART)]
@@ -68,15 +64,8 @@ class FirstTree(Artifact):
     """Range of their turning against each other; NaN for borders that the spanning tree of all parts does not have."""
     dropped: tuple[Drop, ...]
     """Parts that were dropped, in that order, and why."""
-    laid_frame: Annotated[Ints, Array("int32", OTHER_FRAME)]
-    """Frames on whose surfaces parts were laid by themselves, counted from 0."""
-    laid_joint: Annotated[Ints, Array("int32", LIMB)]
-    """Joints of these parts."""
-    laid_rotation: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, ROW, XYZ)]
-    """Of such a part from the reference mesh to the frame's surface."""
-    laid_translation: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, XYZ, unit="length")]
-    """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
-    laid_stiffness: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, FREEDOM, OTHER_FREEDOM)]
-    """How firmly the surface holds the part against a turn about the origin and a shift."""
-    laid_square: Annotated[Floats, Array("float64", OTHER_FRAME, LIMB, unit="length²")]
-    """Mean squared distance of the part from the surface."""
+
+    def members(self, space: str, index: Index) -> Sequence[int]:
+        """The runs of frames that are looked at, numbered from 0, or the source frames of one."""
+        runs = [self.laid[k : k + LAID_TOGETHER] for k in range(0, len(self.laid), LAID_TOGETHER)]
+        return range(len(runs)) if space == "laid" else runs[index[0]]

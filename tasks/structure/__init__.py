@@ -7,6 +7,7 @@ from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.further_pose import further_pose
 from kinetree.tasks.structure.joint_names import joint_names
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
+from kinetree.tasks.structure.laid_parts import laid_parts
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 from kinetree.tasks.structure.rigid_parts import rigid_parts
 from kinetree.tasks.structure.skeleton import skeleton
@@ -16,6 +17,7 @@ STRUCTURE = (
     cut_poses,
     further_cut,
     first_tree,
+    laid_parts,
     kinematic_tree,
     pose_refinement,
     further_pose,

@@ -21,7 +21,7 @@ from kinetree.tasks.numerics.structure import first_tree as numerics
 from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
 from kinetree.tasks.numerics.structure.given_correspondence import is_given, limited_confidence
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, JointEvidenceSettings
-from kinetree.tasks.numerics.structure.laid_parts import LaidParts
+from kinetree.tasks.numerics.structure.laid_parts import laid_frames
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped, PruningSettings
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
@@ -45,9 +45,7 @@ def first_tree(
         evidence_settings(params),
     )
     label = np.asarray(rigid_parts.label, dtype=np.int64)
-    settings = tree_settings(params)._replace(
-        hidden_bones=params.hidden_bones and body.is_given, end_joints=params.end_joints, surface_joints=True
-    )
+    settings = tree_settings(params)._replace(hidden_bones=params.hidden_bones and body.is_given, end_joints=params.end_joints)
     tree = numerics.first_tree(
         body.surface,
         Cut(body.surface.V, label, rigid_parts.rotation, rigid_parts.translation, rigid_parts.residual),
@@ -56,7 +54,8 @@ def first_tree(
         None if body.is_given else evidence,
         settings=settings,
     )
-    return _stored(tree)
+    laid = () if body.is_given else laid_frames(len(frames)).tolist()
+    return _stored(tree, frames, tuple(frames[t] for t in laid))
 
 
 class AlignedBody(NamedTuple):
@@ -103,9 +102,11 @@ SAME = ("place", "ends", "label", "rest", "drift", "residual", "radius")
 """Fields that the artifact and the numerics call the same."""
 
 
-def _stored(tree: numerics.FirstTree) -> FirstTree:
-    """The artifact of what the numerics give."""
+def _stored(tree: numerics.FirstTree, frames: tuple[int, ...], laid: tuple[int, ...]) -> FirstTree:
+    """The artifact of what the numerics give; of frames, and of those that parts are laid on."""
     return FirstTree(
+        frames=frames,
+        laid=laid,
         parents=tuple(tree.parents.tolist()),
         followed=tree.seen is None,
         skin=tree.W,
@@ -115,7 +116,6 @@ def _stored(tree: numerics.FirstTree) -> FirstTree:
         end_positions=tree.end_x,
         **{name: getattr(tree, name) for name in SAME},
         **{**tree.graph._asdict(), "dropped": tuple((d.part, d.reason) for d in tree.graph.dropped)},
-        **{f"laid_{name}": value for name, value in tree.laid._asdict().items()},
     )
 
 
@@ -131,6 +131,5 @@ def restored(tree: FirstTree) -> numerics.FirstTree:
         seen=None if tree.followed else np.array(tree.seen),
         end_x=np.array(tree.end_positions),
         graph=numerics.PartGraph(**graph, dropped=tuple(Dropped(*d) for d in tree.dropped)),
-        laid=LaidParts(*(np.array(getattr(tree, f"laid_{name}")) for name in LaidParts._fields)),
         **{**same, "label": np.array(tree.label, np.int64)},
     )

@@ -11,10 +11,12 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
+from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.structure.first_tree import aligned_body, restored, tree_settings
+from kinetree.tasks.structure.laid_parts import joined
 
 
 @task(among=Sequence)
@@ -22,6 +24,7 @@ def kinematic_tree(
     reference: Reference,
     first_tree: FirstTree,
     further_cut: Mapping[int, FurtherCut],
+    laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
     params: KinematicTreeParams,
@@ -33,8 +36,9 @@ def kinematic_tree(
         first,
         body.tips,
         body.confidence,
-        settings=tree_settings(params)._replace(surface_joints=params.surface_joints),
+        settings=tree_settings(params),
         further=[np.array(cut.joints_with_bones if first.has_bones else cut.joints) for cut in further_cut.values()],
+        laid=joined(laid_parts) if params.surface_joints else None,
     )
     return KinematicTree(
         frames=frames,

@@ -17,6 +17,7 @@ from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import first_tree as numerics
 from kinetree.tasks.structure.first_tree import first_tree
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
+from kinetree.tasks.structure.laid_parts import laid_parts
 
 
 def surface(V: np.ndarray, F: np.ndarray) -> Mesh:
@@ -47,7 +48,9 @@ def told(
     mesh = {f: surface(*(shown(k) if shown else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))}
     chosen = KinematicTreeParams(**params)
     first = first_tree(reference, parts, aligned, mesh, leaves, chosen)
-    return kinematic_tree(reference, first, {}, aligned, leaves, chosen)
+    runs = [first.members("laid/frame", (k,)) for k in first.members("laid", ())]
+    laid = tuple(laid_parts(reference, first, {f: mesh[f] for f in run}) for run in runs)
+    return kinematic_tree(reference, first, {}, laid, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

@@ -13,14 +13,13 @@ from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
 from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
-from kinetree.tasks.numerics.structure.laid_parts import NOTHING_LAID, LaidParts, laid_parts
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.rotation_centres import drift
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
 
 READY = 64
-"""Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take, twice, and parts laid on 40."""
+"""Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take, twice."""
 
 
 class PartGraph(NamedTuple):
@@ -56,7 +55,6 @@ class FirstTree(NamedTuple):
     radius   : (part,) of the border at the joint, mesh unit; 0 for the root
     end_x    : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
     graph    : of all parts
-    laid     : parts on the frames' surfaces
     """
 
     parents: Ints
@@ -73,7 +71,6 @@ class FirstTree(NamedTuple):
     radius: Floats
     end_x: Floats
     graph: PartGraph
-    laid: LaidParts
 
     @property
     def has_bones(self) -> bool:
@@ -112,25 +109,22 @@ def first_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
-    found, ends, laid = cut_tree(body, cut, leaves, confidence, evidence, settings), 0, NOTHING_LAID
-    if evidence is not None and confidence is not None:
+    found, ends = cut_tree(body, cut, leaves, confidence, evidence, settings), 0
+    if settings.end_joints and evidence is not None and confidence is not None:
         size, meshes = body.size, evidence.surface
 
         @lru_cache(maxsize=READY)
         def surface(f: int) -> Target:
             return Target.of(*meshes(f), size, SAMPLE)
 
-        if settings.end_joints:
-            parts = len(found.rest)
-            body, found = inserted_ends(body, found, confidence, surface, settings.noise * size)
-            ends = len(found.rest) - parts
-        if settings.surface_joints:
-            laid = laid_parts(body, found, surface)
-    tree = in_tree_order(found, cut.R.shape[1], ends, laid)
+        parts = len(found.rest)
+        body, found = inserted_ends(body, found, confidence, surface, settings.noise * size)
+        ends = len(found.rest) - parts
+    tree = in_tree_order(found, cut.R.shape[1], ends)
     return tree._replace(end_x=body.x[:, tree.at_ends])
 
 
-def in_tree_order(found: TreeJoints, given: int, ends: int = 0, laid: LaidParts = NOTHING_LAID) -> FirstTree:
+def in_tree_order(found: TreeJoints, given: int, ends: int = 0) -> FirstTree:
     """A tree of so many given parts, of which so many were added at ends, whose vertices at ends are not looked up yet."""
     left, tree = found.left, found.left.part_tree.tree
     origin, place = left.origin[tree.order], np.full(given, -1)
@@ -150,7 +144,6 @@ def in_tree_order(found: TreeJoints, given: int, ends: int = 0, laid: LaidParts 
         radius=np.append(0.0, left.part_tree.borders.radius[tree.border[1:]]),
         end_x=np.zeros((len(found.R), 0, 3)),
         graph=_graph(found),
-        laid=laid,
     )
 
 

@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, co
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
+from kinetree.tasks.numerics.structure.laid_parts import LaidParts
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
@@ -97,6 +98,7 @@ def kinematic_tree(
     *,
     settings: KinematicTreeSettings,
     further: Sequence[Floats] = (),
+    laid: LaidParts | None = None,
 ) -> tuple[KinematicTree, Derivation]:
     """Places the joints of a tree and poses it in every frame; and how that came about.
 
@@ -105,6 +107,7 @@ def kinematic_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     further    : (frame, joint, xyz) of every further cut of the body, see `cut_joints`; joints of the tree are then the mean
                  over all cuts that have them
+    laid       : parts on the frames' surfaces, where joints within limbs are moved to; None moves none
     """
     V, x, area, tree, label = body.V, body.x, body.area, first.parents, first.label
     if first.ends:
@@ -113,8 +116,8 @@ def kinematic_tree(
     agreed = _agreed(first, further, body.size)
     share = confident_share(label, area, confidence, len(x), len(tree))
     on_surface = SurfaceJoints(agreed.rest, np.full(len(tree), np.nan))
-    if settings.surface_joints:
-        on_surface = surface_joints(first, agreed.rest, share)
+    if laid is not None:
+        on_surface = surface_joints(first, laid, agreed.rest, share)
     rest = on_surface.rest
     off = first.drift if rest is first.rest else first.drift_at(rest)
     poses = frame_poses(

@@ -1,6 +1,6 @@
 """Parts of a body laid by themselves on the frames' own surfaces (ours, see `surface_joints`)."""
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -8,10 +8,9 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.hinged_piece import laid_as_one, sampled_piece
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFitSettings, PiecePose, shift_stiffness
-from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 
 EXACT = 1e-4
 """Least distance of a part from a surface, share of the root of the area: a reference has none from its own."""
@@ -48,31 +47,30 @@ class LaidParts(NamedTuple):
     square: Floats
 
 
-NOTHING_LAID = LaidParts(
-    np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 0, 3, 3)), np.zeros((0, 0, 3)), np.zeros((0, 0, 6, 6)),
-    np.zeros((0, 0)),
-)  # fmt: skip
+def laid_frames(count: int, settings: LaidPartsSettings | None = None) -> Ints:
+    """Frames on which parts are laid, of so many, ascending; none where there are few."""
+    chosen = settings or LaidPartsSettings()
+    frames = np.unique(np.linspace(0, count - 1, min(count, chosen.most_frames)).round().astype(np.int64))
+    return frames if len(frames) >= chosen.least_frames else frames[:0]
 
 
 def laid_parts(
-    body: MovingSurface, found: TreeJoints, surface: Callable[[int], Target], settings: LaidPartsSettings | None = None
+    V: Floats, F: Ints, area: Floats, tree: FirstTree, surfaces: Mapping[int, Target], settings: LaidPartsSettings | None = None
 ) -> LaidParts:
-    """All parts with enough vertices, each by itself from where it is aligned; none where there are few frames.
+    """All parts with enough vertices, each by itself from where it is aligned.
 
-    surface : gives a frame's surface, prepared, by its place among the frames
+    V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
+    surfaces   : by place among the frames, prepared surfaces
     """
-    chosen = settings or LaidPartsSettings()
-    frames = np.unique(np.linspace(0, len(body.x) - 1, min(len(body.x), chosen.most_frames)).round().astype(np.int64))
-    pieces = _pieces(body, found, chosen) if len(frames) >= chosen.least_frames else {}
-    if not pieces:
-        return NOTHING_LAID
-    rows = []
-    for f in frames.tolist():
-        target = surface(f)
-        starts = {p: PiecePose(found.R[f, p], found.t[f, p], np.eye(3)) for p in pieces}
+    pieces, rows = _pieces(V, F, area, tree, settings or LaidPartsSettings()), []
+    for f, target in surfaces.items():
+        starts = {p: PiecePose(tree.R[f, p], tree.t[f, p], np.eye(3)) for p in pieces}
         rows.append([_on_surface(piece, starts[p], target) for p, piece in pieces.items()])
-    R, t, H, square = (np.array([[fit[k] for fit in row] for row in rows]) for k in range(4))
-    return LaidParts(frames, np.array(list(pieces)), R, t, H, square)
+    shapes = (3, 3), (3,), (6, 6), ()
+    fits = (
+        np.array([[fit[k] for fit in row] for row in rows]).reshape(len(rows), len(pieces), *n) for k, n in enumerate(shapes)
+    )
+    return LaidParts(np.array(list(surfaces), np.int64), np.array(list(pieces), np.int64), *fits)
 
 
 def within_limbs(parents: Ints) -> Flags:
@@ -85,14 +83,14 @@ def within_limbs(parents: Ints) -> Flags:
     return np.asarray((parents > 0) & (below[above] == 1))
 
 
-def _pieces(body: MovingSurface, found: TreeJoints, chosen: LaidPartsSettings) -> dict[int, Piece]:
+def _pieces(V: Floats, F: Ints, area: Floats, tree: FirstTree, chosen: LaidPartsSettings) -> dict[int, Piece]:
     """Points of the parts that have enough vertices."""
-    pieces, N = {}, smoothed_normals(body.V, body.F)
-    for part in range(found.W.shape[1]):
-        own = np.flatnonzero((found.label == part) & (found.W[:, part] > chosen.rigid_weight))
+    pieces, N = {}, smoothed_normals(V, F)
+    for part in range(len(tree.parents)):
+        own = np.flatnonzero((tree.label == part) & (tree.W[:, part] > chosen.rigid_weight))
         if len(own) >= chosen.least_vertices:
-            mass = found.W[own, part] * np.sqrt(body.area[own] / body.area.sum())
-            pieces[part] = sampled_piece(body.V[own], N[own], mass, np.zeros(len(own), np.bool_), np.zeros(3), np.zeros(3))
+            mass = tree.W[own, part] * np.sqrt(area[own] / area.sum())
+            pieces[part] = sampled_piece(V[own], N[own], mass, np.zeros(len(own), np.bool_), np.zeros(3), np.zeros(3))
     return pieces
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.laid_parts import within_limbs
+from kinetree.tasks.numerics.structure.laid_parts import LaidParts, within_limbs
 
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
@@ -76,14 +76,16 @@ class _Pull(NamedTuple):
     seen: Floats
 
 
-def surface_joints(tree: FirstTree, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None) -> SurfaceJoints:
+def surface_joints(
+    tree: FirstTree, laid: LaidParts, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None
+) -> SurfaceJoints:
     """Joints within limbs where the frames agree on them, and how far all are from where the surfaces have them.
 
     rest : (part, xyz) the joints in the reference, mesh unit
     seen : (frame, part) share of its surface that is certain, 0 to 1
     """
-    chosen, laid = settings or SurfaceJointsSettings(), tree.laid
-    moved, offset, may_move = rest.copy(), np.full(len(rest), np.nan), within_limbs(tree.parents)
+    chosen, may_move = settings or SurfaceJointsSettings(), within_limbs(tree.parents)
+    moved, offset = rest.copy(), np.full(len(rest), np.nan)
     parts = {part: _Laid(*(a[:, k] for a in laid[2:])) for k, part in enumerate(laid.joint.tolist())}
     share = seen[laid.frame]
     for joint, above in enumerate(tree.parents.tolist()):

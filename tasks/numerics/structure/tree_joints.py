@@ -46,8 +46,6 @@ class KinematicTreeSettings(NamedTuple):
     """Whether bones under skin that is nowhere rigid are looked for where every vertex was followed, see `hidden_bones`."""
     end_joints: bool = False
     """Whether joints within the last parts of limbs are looked for on the frames' surfaces, see `end_joints`."""
-    surface_joints: bool = False
-    """Whether parts of limbs are laid on the frames' surfaces, and joints within limbs moved there, see `surface_joints`."""
     second_ends: bool = False
     """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
     root_amid_limbs: bool = False

@@ -16,7 +16,7 @@ def with_ends() -> FirstTree:
     body, ones = aligned(turning()), np.ones((24, len(aligned(turning()).V)))
     label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
     cut = Cut(body.V, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2])
-    settings = TREE._replace(end_joints=True, surface_joints=True)
+    settings = TREE._replace(end_joints=True)
     return first_tree(moving(body), cut, tips, ones, Frames(turning()).evidence(), settings=settings)
 
 
@@ -41,10 +41,6 @@ def test_vertices_beside_a_joint_that_frames_alone_show_are_where_the_frames_hav
         surface, found, np.ones(surface.x.shape[:2]), Frames(turning()).prepared(surface.size), 0.002 * surface.size
     )
     np.testing.assert_array_equal(tree.end_x, after.x[:, tree.at_ends])
-
-
-def test_parts_are_laid_on_the_tree_that_has_the_ends() -> None:
-    assert with_ends().laid.joint.tolist() == [0, 1, 2]
 
 
 def test_hidden_bones_are_told_from_joints_at_ends() -> None:
