@@ -17,6 +17,7 @@ from kinetree.errors import MeshError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input import draco
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
+from kinetree.tasks.numerics.input.ply_triangles import binary_triangles
 from kinetree.tasks.numerics.input.unpacked import too_large
 
 MOST_BYTES = 2**31
@@ -144,6 +145,8 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
         raise MeshError("its header has two elements of one name; the file is damaged, export it again")
     if re.search(rb"^\s*format\s+ascii", header, re.MULTILINE):
         refuse_wrong_rows(rows, body)
+    elif (triangles := binary_triangles(header, body)) is not None:
+        return triangles
     from trimesh.exchange.ply import load_ply
 
     try:
