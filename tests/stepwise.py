@@ -130,7 +130,7 @@ def aligned(meshes: dict[int, Mesh], nodes: int = 200) -> SimpleNamespace:
         tips=steps.extrema,
     )
     steps.first_fit = {t: first_fit(m, graph, steps.tracking[t]) for t, m in meshes.items()}
-    steps.recovery = recovery(graph, steps.take_entries, steps.first_fit, meshes)
+    steps.recovery = recovery(graph, steps.take_entries, steps.first_fit, meshes, steps.extrema)
     steps.stiffness, steps.roll_candidates, steps.roll, steps.refit = [], [], [], []
     for number in graph.members("pass", ()):
         one_pass(steps, number)

@@ -127,7 +127,7 @@ def volumetric(*, letter: bool = False) -> Volumetric:
     entries = take_entries(ends, reference)
     order = tracking_order(reference, entries, Sequence(frames=tuple(mesh), fps=25.0, unit="mm"), ends, tracks)
     nodes, tracked = followed(reference, order, one, motion, mesh)
-    aligned = carried if letter else aligned_by(reference, entries, nodes, tracked, mesh)
+    aligned = carried if letter else aligned_by(reference, entries, nodes, tracked, mesh, ends)
     tree = graph_skeleton(one, motion, aligned, mesh, place)
     touching = contact_kinds(one, motion, runs)
     return Volumetric(
@@ -150,11 +150,16 @@ def followed(
 
 
 def aligned_by(
-    reference: Reference, entries: TakeEntries, nodes: DeformationGraph, tracked: dict[int, Tracking], mesh: dict[int, Mesh]
+    reference: Reference,
+    entries: TakeEntries,
+    nodes: DeformationGraph,
+    tracked: dict[int, Tracking],
+    mesh: dict[int, Mesh],
+    ends: dict[int, Extrema],
 ) -> dict[int, Alignment]:
     """The surface as it was tracked, without the passes of the shelf registration."""
     fitted = {t: first_fit(mesh[t], nodes, at) for t, at in tracked.items()}
-    usual = recovery(nodes, entries, fitted, mesh)
+    usual = recovery(nodes, entries, fitted, mesh, ends)
     poses = {t: Refit(rotation=at.rotation, translation=at.translation) for t, at in tracked.items()}
     return {t: alignment(mesh[t], reference, nodes, usual, (at,)) for t, at in poses.items()}
 

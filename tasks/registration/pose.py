@@ -18,10 +18,12 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.vertex_colour import VertexColour
+from kinetree.schemas.topology.extrema import Extrema
 from kinetree.tasks.numerics.registration import deformation, roll_candidates
 from kinetree.tasks.numerics.registration import deformation_graph as numerics
 from kinetree.tasks.numerics.registration.colour_term import FrameColour
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs
 from kinetree.tasks.numerics.registration.near_pose import NearPose
 
 NO_COLOUR, NO_REFERENCE_COLOUR, NO_AGREEMENT = VertexColour.none(), ReferenceColour.none(), ColourAgreement.none()
@@ -87,6 +89,11 @@ def stored_tracking(
         earlier_rotation=earlier.rotation,
         earlier_translation=earlier.translation,
     )
+
+
+def limbs_of(stored: DeformationGraph, tips: Extrema) -> FrameLimbs:
+    """The limbs of the body at rest and of a frame."""
+    return FrameLimbs(np.array(stored.stems), np.array(tips.stems), np.array(tips.centre))
 
 
 def target(

@@ -14,9 +14,10 @@ from kinetree.schemas.registration.recovery import Recovery
 from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.vertex_colour import VertexColour
+from kinetree.schemas.topology.extrema import Extrema
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import recovery as numerics
-from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, target
+from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, limbs_of, pose, target
 
 
 @task(among=Sequence)
@@ -25,6 +26,7 @@ def recovery(
     take_entries: TakeEntries,
     first_fit: Mapping[int, FirstFit],
     mesh: Mapping[int, Mesh],
+    tips: Mapping[int, Extrema],
     vertex_colour: Mapping[int, VertexColour] = MappingProxyType({}),
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Recovery:
@@ -41,6 +43,7 @@ def recovery(
         frames.index(deformation_graph.frame),
         fit_settings(first_fit[deformation_graph.frame].fitting),
         takes=spans,
+        limbs=lambda at: limbs_of(deformation_graph, tips[frames[at]]),
     )
     recovered = sorted(outcome.recovered)
     poses = [outcome.recovered[at].pose for at in recovered]

@@ -12,11 +12,11 @@ from kinetree.schemas.registration.tracking import Tracking, TrackingParams
 from kinetree.schemas.registration.tracking_order import TrackingOrder
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.schemas.topology.extrema import Extrema
-from kinetree.tasks.numerics.registration import limb_swing
 from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swung
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     distant_points,
@@ -26,7 +26,16 @@ from kinetree.tasks.numerics.registration.near_pose import (
     thinned_frame,
 )
 from kinetree.tasks.numerics.registration.tracking import stepped_back
-from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, pose, stored_tracking, target
+from kinetree.tasks.registration.pose import (
+    NO_COLOUR,
+    NO_REFERENCE_COLOUR,
+    fit_settings,
+    graph,
+    limbs_of,
+    pose,
+    stored_tracking,
+    target,
+)
 
 
 @task(over="frame", along=TrackingOrder)
@@ -49,28 +58,19 @@ def tracking(
     points = thinned_frame(np.array(mesh.vertices), mesh.faces, body.size)
     is_entry, has_colours = index[0] in take_entries.frames, len(vertex_colour.colour) > 0 and len(reference_colour.colour) > 0
     # few points show too little of colours, and say nothing of where a body stands in another take
-    near, attempt, swung = None if is_entry or has_colours else near_pose(cloud, last, points), 0, None
-    if near is not None and is_lost(near, previous.usual):
-        near, swung = _near_by_limbs(cloud, last, near, points, deformation_graph, tips)
+    near, attempt = None if is_entry or has_colours else near_pose(cloud, last, points), 0
+    limbs = limbs_of(deformation_graph, tips)
+    if near is not None and is_lost(near, previous.usual) and (start := swung(cloud, last, *limbs)) is not None:
+        near = min(near, near_pose(cloud, start, points), key=lambda one: one.distant)
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
-        fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0], swung)
+        fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0], limbs)
         near, attempt = NearPose(fitted.pose, distant_points(cloud, fitted.pose, points)), 1 + fitted.attempt
     # the reference is far from nothing, whatever the capture's holes
     usual = near.distant if previous.steps == 0 else min(previous.usual, near.distant)
     before, frames = near.pose if is_entry else last, (index[0], previous.frame)
     return stored_tracking(near, before, previous.steps + 1, usual, params, attempt, frames)
-
-
-def _near_by_limbs(
-    cloud: Nodes, last: Pose, near: NearPose, points: Target, rest: DeformationGraph, tips: Extrema
-) -> tuple[NearPose, Pose | None]:
-    """The near pose or that from swung limbs, whichever explains more; and the pose with swung limbs, if there are any."""
-    swung = limb_swing.swung(cloud, last, np.array(rest.stems), tips.stems, np.array(tips.centre))
-    if swung is None:
-        return near, None
-    return min(near, near_pose(cloud, swung, points), key=lambda one: one.distant), swung
 
 
 def _fitted(
@@ -80,17 +80,17 @@ def _fitted(
     frame: Target,
     fitting: FitSettings,
     number: int,
-    swung: Pose | None,
+    limbs: FrameLimbs,
 ) -> numerics.Tracking:
     """A frame fitted with all samples; in another take, from wherever the body may stand."""
     distant = usual = previous.usual  # what is far is uncovered too, so no frame on the way leaves less uncovered
     if starts:  # how the body moved before says nothing here
-        return numerics.entered(body, starts, frame, fitting, usual, distant=distant)
+        return numerics.entered(body, starts, frame, fitting, usual, distant=distant, limbs=limbs)
     last, earlier = pose(previous), None
     if previous.steps > 0:
         ahead = (number - previous.frame) / (previous.frame - previous.earlier_frame)
         earlier = stepped_back(Pose(previous.earlier_rotation, previous.earlier_translation), last, ahead)
-    return numerics.tracking(body, earlier, last, frame, fitting, usual, distant=distant, swung=swung)
+    return numerics.tracking(body, earlier, last, frame, fitting, usual, distant=distant, limbs=limbs)
 
 
 def _moved(pose: Pose, entries: TakeEntries, frame: int) -> list[Pose]:

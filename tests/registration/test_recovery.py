@@ -28,7 +28,7 @@ def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     made = walk()
     body = graph(made.deformation_graph)
     tracked = {**made.first_fit, 3: lost(made.first_fit[3], 0.5 * made.reference.size, 0.9)}
-    found = recovery(made.deformation_graph, made.take_entries, tracked, made.mesh)
+    found = recovery(made.deformation_graph, made.take_entries, tracked, made.mesh, made.extrema)
     assert found.recovered.tolist() == [3]
     assert found.failed.tolist() == [False, False, False, True, False]
     assert found.uncovered[3] == 0.9
@@ -37,10 +37,26 @@ def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     assert np.linalg.norm(shape(body, again)[0] - shape(body, true)[0], axis=1).mean() < 0.01 * made.reference.size
 
 
-def test_lost_frame_beyond_is_no_help() -> None:
+def test_lost_frame_whose_neighbours_are_too_far_is_found_again_from_where_it_shows_limbs() -> None:
     made = walk()
+    tracked = {**made.first_fit, 3: lost(made.first_fit[3], 0.5 * made.reference.size, 0.9)}
+    away = np.array([0.0, 0.0, 0.4 * made.reference.size])
+    far = made.mesh[3].model_copy(update={"vertices": made.mesh[3].vertices + away})
+    centre = tuple(np.array(made.extrema[3].centre) + away)
+    tips = made.extrema[3].model_copy(update={"stems": made.extrema[3].stems + away, "centre": centre})
+    limbless = tips.model_copy(update={"stems": tips.stems[:0]})
+    blind, seeing = (
+        recovery(made.deformation_graph, made.take_entries, tracked, {**made.mesh, 3: far}, {**made.extrema, 3: limbs})
+        for limbs in (limbless, tips)
+    )
+    assert seeing.uncovered_after[0] < 0.02 < blind.uncovered_after.min(initial=1.0)
+
+
+def test_lost_frame_beyond_is_no_help_where_no_limbs_are_seen() -> None:
+    made = walk()
+    tips = {t: at.model_copy(update={"stems": at.stems[:0]}) for t, at in made.extrema.items()}
     gone, worse = (lost(made.first_fit[t], 0.5 * made.reference.size, share) for t, share in ((3, 0.5), (4, 0.9)))
-    found = recovery(made.deformation_graph, made.take_entries, {**made.first_fit, 3: gone, 4: worse}, made.mesh)
+    found = recovery(made.deformation_graph, made.take_entries, {**made.first_fit, 3: gone, 4: worse}, made.mesh, tips)
     assert not len(found.recovered)
     assert found.failed[[3, 4]].all()
 

@@ -10,8 +10,11 @@ from shipped import FITTING
 from stepwise import along, walk
 
 from kinetree.schemas.array import Floats
+from kinetree.schemas.registration.reference_colour import ReferenceColour
 from kinetree.schemas.registration.take_entries import TakeEntries
 from kinetree.schemas.registration.tracking import Tracking, TrackingParams
+from kinetree.schemas.registration.vertex_colour import VertexColour
+from kinetree.schemas.topology.extrema import Extrema
 from kinetree.tasks.numerics.registration import first_fit as numeric_first_fit
 from kinetree.tasks.numerics.registration import recovery as numeric_recovery
 from kinetree.tasks.numerics.registration import tracking as numeric_tracking
@@ -102,6 +105,29 @@ def test_a_limb_far_from_where_it_was_is_brought_to_where_the_frame_shows_it_and
     assert known.unexplained < 0.003
 
 
+@pytest.mark.parametrize("where", ["in colour", "where a take is entered"])
+def test_a_limb_far_away_is_also_reached_by_fits_with_all_samples(where: str) -> None:
+    made = walk()
+    rest, at = made.tracking[made.reference.frame], made.reference.frame + 1
+    far = np.array([0.0, 0.0, 0.4 * made.reference.size])
+    mesh = made.mesh[at].model_copy(update={"vertices": made.mesh[at].vertices + far})
+    centre = tuple(np.array(made.extrema[at].centre) + far)
+    tips = made.extrema[at].model_copy(update={"stems": made.extrema[at].stems + far, "centre": centre})
+    grey = {
+        "vertex_colour": VertexColour(colour=np.full((len(mesh.vertices), 3), 128, np.uint8)),
+        "reference_colour": ReferenceColour(colour=np.full((len(made.reference.vertices), 3), 128, np.uint8)),
+    }
+    places = {"rotation": np.eye(3)[None], "shift": np.zeros((1, 3)), "distance": np.zeros(1)}
+    entered_here = TakeEntries(frames=(at,), before=(made.reference.frame,), entry=np.zeros(1, np.int32), **places)
+    entries, colours = (made.take_entries, grey) if where == "in colour" else (entered_here, {})
+
+    def by(limbs: Extrema) -> Tracking:
+        return tracking(mesh, made.deformation_graph, entries, rest, TrackingParams(), (at,), limbs, **colours)
+
+    blind, seeing = by(tips.model_copy(update={"stems": tips.stems[:0]})), by(tips)
+    assert seeing.unexplained < 0.01 < blind.unexplained
+
+
 OTHERS = TrackingParams(
     steps=2, stiffness=(0.3, 0.1), reach=(0.05, 0.02), scale=(0.03, 0.01), point_weight=(0.04, 0.01), solver_steps=5
 )
@@ -141,7 +167,7 @@ def test_every_parameter_reaches_every_fit_with_all_samples(
     poses = {t: here.model_copy(update={"fitting": OTHERS}) for t, here in made.first_fit.items()}
     poses[3] = poses[3].model_copy(update={"uncovered": 0.9})
     fits.clear()
-    recovery(made.deformation_graph, made.take_entries, poses, made.mesh)
+    recovery(made.deformation_graph, made.take_entries, poses, made.mesh, made.extrema)
     assert [values(fitting) for fitting in fits] == [OTHERS.model_dump()]
 
 
@@ -168,9 +194,9 @@ def test_fits_where_a_take_is_entered_know_what_is_far_from_the_body_in_all_fram
     told: list[float] = []
     fitted = numeric_tracking.tracking
 
-    def listening(*given: Any, distant: float = 0.0) -> Any:
+    def listening(*given: Any, distant: float = 0.0, limbs: Any = None) -> Any:
         told.append(distant)
-        return fitted(*given, distant=distant)
+        return fitted(*given, distant=distant, limbs=limbs)
 
     monkeypatch.setattr(numeric_tracking, "tracking", listening)
     tracking(made.mesh[at], made.deformation_graph, entries, previous, TrackingParams(), (at,), made.extrema[at])

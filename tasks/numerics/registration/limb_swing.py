@@ -48,6 +48,19 @@ class StemPoints(NamedTuple):
     weight: Floats
 
 
+class FrameLimbs(NamedTuple):
+    """The limbs of the body at rest, and those that a frame shows.
+
+    rest   : (limb, station, xyz) stems of the reference, see `extrema.stems`, mesh unit
+    frame  : (limb, station, xyz) of the frame
+    centre : (xyz) of the frame's surface, mesh unit
+    """
+
+    rest: Floats
+    frame: Floats
+    centre: Floats
+
+
 def swung(
     graph: DeformationGraph,
     pose: Pose,

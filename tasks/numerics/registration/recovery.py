@@ -13,6 +13,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs
 from kinetree.tasks.numerics.registration.tracking import Tracking, tracking
 
 
@@ -47,6 +48,7 @@ def recovery(
     fitting: FitSettings,
     settings: RecoverySettings | None = None,
     takes: Sequence[tuple[slice, int]] | None = None,
+    limbs: Callable[[int], FrameLimbs] | None = None,
 ) -> Recovery:
     """Track failed frames again and keep what covers more (ours).
 
@@ -59,6 +61,7 @@ def recovery(
     reference : position of the reference frame, which never fails
     fitting   : how frames were tracked
     takes     : positions of the frames of each take, and of the one that is reached first; None takes all as one
+    limbs     : gives the limbs of the body and of the frame at a position; None where they are not known
     returns   : Recovery
     """
     others = np.arange(len(uncovered)) != reference
@@ -78,7 +81,8 @@ def recovery(
         if share(beside) >= share(at) or (earlier is not None and not _still_fails(at, share(at), uncovered, settings)):
             continue
         before = None if earlier is None else here(earlier)
-        again = tracking(graph, before, here(beside), target(at), fitting, usual=usual)
+        own = None if limbs is None else limbs(at)
+        again = tracking(graph, before, here(beside), target(at), fitting, usual=usual, limbs=own)
         if again.uncovered < share(at):
             recovered[at] = again
     return Recovery(failed, usual, recovered)

@@ -16,6 +16,7 @@ from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSe
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 from kinetree.tasks.numerics.registration.edges import edge_energy
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swung
 
 
 class TrackingSettings(NamedTuple):
@@ -32,6 +33,11 @@ class TrackingSettings(NamedTuple):
     """Reach of matches in the first step of the wide ways, share of √area. Chosen on: not recorded."""
     scale: float = 0.08
     """Distance from the plane at which a match counts a quarter in that step, share of √area. Chosen on: not recorded."""
+    bent: float = 1.4
+    """How many times as much as the other ways' best a pose from swung limbs may bend. Chosen on a wolf and a ballet:
+    with arms exchanged 1.7 times or more, right ones 0.9 to 1.1 times."""
+    bent_more: float = 0.1
+    """What it may bend beyond that, share of the area: where a limb is lost the other ways may not bend at all. Not varied."""
     as_well: float = 0.02
     """Share of a frame by which one place where the body may stand may cover less than another. Not varied."""
     steps: int = 24
@@ -46,11 +52,11 @@ class Attempt(NamedTuple):
     """One way to fit a frame.
 
     settings : of the fit
-    start    : from the neighbour's pose, with limbs swung to where the frame shows them, or as if the body moved on as before
+    start    : from the neighbour's pose, or as if the body moved on as before
     """
 
     settings: FitSettings
-    start: Literal["neighbour", "swung", "predicted"] = "neighbour"
+    start: Literal["neighbour", "predicted"] = "neighbour"
 
 
 class Tracking(NamedTuple):
@@ -76,7 +82,7 @@ def tracking(
     settings: TrackingSettings | None = None,
     *,
     distant: float = 0.0,
-    swung: Pose | None = None,
+    limbs: FrameLimbs | None = None,
 ) -> Tracking:
     """Fit a frame from its neighbour's pose; if a limb stays uncovered, try other ways and take what covers most (ours).
 
@@ -87,22 +93,26 @@ def tracking(
     fitting   : of the usual way
     usual     : smallest share that any frame between the reference and this one leaves uncovered: holes of a capture
     distant   : smallest share of any such frame that is far from the body
-    swung     : the neighbour's pose with limbs swung to where this frame shows limbs; None where that is not known
+    limbs     : of the body, and those that this frame shows; None where they are not known
     returns   : Tracking of the first way that leaves little uncovered, or little of the frame far from the body; where no way
                 does, of the one that covers most
     """
     settings = settings or TrackingSettings()
     ways = attempts(fitting, settings)
     best = _attempted(graph, neighbour, target, ways[0].settings, 0)
-    starts = {"neighbour": neighbour, "swung": swung, "predicted": None if earlier is None else predicted(earlier, neighbour)}
+    starts: dict[str, Pose | None] = {
+        "neighbour": neighbour,
+        "predicted": None if earlier is None else predicted(earlier, neighbour),
+    }
     for number, way in enumerate(ways[1:], start=1):
-        is_covered = best.uncovered <= usual + settings.uncovered
-        if is_covered or distant_share(graph, best.pose, target, settings.distance) <= distant + settings.distant:
+        if not _is_lost(graph, best, target, usual, distant, settings):
             break
         start = starts[way.start]
         if start is not None:
             best = min(best, _attempted(graph, start, target, way.settings, number), key=lambda attempt: attempt.uncovered)
-    return best
+    if limbs is None or not _is_lost(graph, best, target, usual, distant, settings):
+        return best
+    return _by_limbs(graph, best, neighbour, limbs, target, fitting, settings)
 
 
 def entered(
@@ -114,34 +124,30 @@ def entered(
     settings: TrackingSettings | None = None,
     *,
     distant: float = 0.0,
+    limbs: FrameLimbs | None = None,
 ) -> Tracking:
     """Fit a frame from each place where the body may stand, and take what bends it least of those that cover the frame (ours).
 
     A body is much like itself turned back to front, and then covers a frame nearly as well; but feet must be turned over.
 
     starts  : poses to begin with, at least one
-    returns : Tracking; `graph`, `target`, `fitting`, `usual` and `distant` as in `tracking`
+    returns : Tracking; `graph`, `target`, `fitting`, `usual`, `distant` and `limbs` as in `tracking`
     """
     settings = settings or TrackingSettings()
-    found = [tracking(graph, None, start, target, fitting, usual, settings, distant=distant) for start in starts]
-    most = min(one.uncovered for one in found) + settings.as_well
-    rest = np.ones(len(graph.edge))
-    bent = [edge_energy(graph.edge, rest, *one.pose, graph.g) if one.uncovered <= most else np.inf for one in found]
-    return found[int(np.argmin(bent))]
+    found = [tracking(graph, None, start, target, fitting, usual, settings, distant=distant, limbs=limbs) for start in starts]
+    return _least_bent(graph, found, min(one.uncovered for one in found) + settings.as_well)
 
 
 def attempts(usual: FitSettings, settings: TrackingSettings | None = None) -> tuple[Attempt, ...]:
     """The ways to fit a frame, in the order in which they are tried (ours).
 
     usual   : settings of the usual way
-    returns : the usual way · from a predicted pose · with a wide reach · stiff with many steps · stiff and predicted · from
-              swung limbs, which few points did not find to be enough
+    returns : the usual way · from a predicted pose · with a wide reach · stiff with many steps · stiff and predicted
     """
     s = settings or TrackingSettings()
     wide = replace(usual, reach=(s.reach, usual.reach[1]), scale=(s.scale, usual.scale[1]))
     stiff = replace(wide, steps=s.steps, stiffness=(s.stiffness, usual.stiffness[1]), solver_steps=s.solver_steps)
-    ways = Attempt(usual), Attempt(usual, "predicted"), Attempt(wide), Attempt(stiff), Attempt(stiff, "predicted")
-    return *ways, Attempt(usual, "swung")
+    return Attempt(usual), Attempt(usual, "predicted"), Attempt(wide), Attempt(stiff), Attempt(stiff, "predicted")
 
 
 def distant_share(graph: DeformationGraph, pose: Pose, target: Target, distance: float | None = None) -> float:
@@ -174,6 +180,44 @@ def stepped_back(earlier: Pose, last: Pose, ahead: float) -> Pose:
     turn = Rotation.from_matrix(last.rotation @ earlier.rotation.transpose(0, 2, 1)).as_rotvec()
     back = Rotation.from_rotvec(-ahead * turn).as_matrix()
     return Pose(back @ last.rotation, last.translation - ahead * (last.translation - earlier.translation))
+
+
+def _is_lost(
+    graph: DeformationGraph, best: Tracking, target: Target, usual: float, distant: float, settings: TrackingSettings
+) -> bool:
+    """Whether much is uncovered and some of it far from the body."""
+    if best.uncovered <= usual + settings.uncovered:
+        return False
+    return distant_share(graph, best.pose, target, settings.distance) > distant + settings.distant
+
+
+def _by_limbs(
+    graph: DeformationGraph,
+    best: Tracking,
+    neighbour: Pose,
+    limbs: FrameLimbs,
+    target: Target,
+    fitting: FitSettings,
+    settings: TrackingSettings,
+) -> Tracking:
+    """The frame fitted from swung limbs if that covers more and bends hardly more: exchanged limbs cover a frame, but bend."""
+    start = swung(graph, neighbour, *limbs)
+    if start is None:
+        return best
+    found = _attempted(graph, start, target, fitting, len(attempts(fitting, settings)))
+    most = settings.bent * _bending(graph, best.pose) + settings.bent_more * graph.size**2
+    return min(best, found, key=lambda one: one.uncovered) if _bending(graph, found.pose) <= most else best
+
+
+def _least_bent(graph: DeformationGraph, found: Sequence[Tracking], most: float) -> Tracking:
+    """Of those that leave no more uncovered than `most`, the one whose graph bends least."""
+    bent = [_bending(graph, one.pose) if one.uncovered <= most else np.inf for one in found]
+    return found[int(np.argmin(bent))]
+
+
+def _bending(graph: DeformationGraph, pose: Pose) -> float:
+    """How far the graph bends, mesh unit²."""
+    return float(edge_energy(graph.edge, np.ones(len(graph.edge)), *pose, graph.g))
 
 
 def _attempted(graph: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracking:

@@ -6,6 +6,7 @@ from shipped import FITTING
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs
 from kinetree.tasks.numerics.registration.recovery import failures, recovery
 from kinetree.tasks.numerics.registration.tracking import TrackingSettings, tracking
 
@@ -43,6 +44,27 @@ def test_the_last_frame_of_a_chain_is_found_again_from_the_two_before_it(body):
     found = recovery(body, share, [*good[:4], at_rest(body)].__getitem__, frames.__getitem__, 0, FITTING)
     assert list(found.recovered) == [4]
     assert np.linalg.norm(shape(body, found.recovered[4].pose)[0] - body.V @ turned[4].T, axis=1).mean() < 0.01 * LENGTH
+
+
+def test_a_lost_frame_that_no_neighbour_reaches_is_found_again_from_the_limbs_that_it_shows(body):
+    V, F = tube(around=29, along=57, start=0.07)
+    away = np.array([0.0, 3.0 * LENGTH, 0.0])
+    frame, share = Target.of(V + away, F, body.size), np.array([0.001, 0.3, 0.001, 0.001, 0.0])
+    halves = np.stack([np.outer(side * np.array([0.5, 1.5, 2.5, 3.5, 4.5]), [0.0, 0.0, 1.0]) for side in (-1.0, 1.0)])
+    asked = []
+
+    def limbs(at):
+        asked.append(at)
+        return FrameLimbs(halves, halves + away, away)
+
+    alone, led = (
+        recovery(body, share, lambda at: at_rest(body), lambda at: frame, 4, FITTING, limbs=known).recovered
+        for known in (None, limbs)
+    )
+    assert set(asked) == {1}
+    assert led[1].uncovered < 0.01
+    assert np.linalg.norm(shape(body, led[1].pose)[0] - body.V - away, axis=1).mean() < 0.01 * LENGTH
+    assert 1 not in alone or alone[1].uncovered > 0.1
 
 
 def test_good_frames_and_the_reference_are_left_alone(body):
