@@ -84,13 +84,14 @@ def within_limbs(parents: Ints) -> Flags:
 
 
 def _pieces(V: Floats, F: Ints, area: Floats, tree: FirstTree, chosen: LaidPartsSettings) -> dict[int, Piece]:
-    """Points of the parts that have enough vertices."""
+    """Points of the parts that have enough vertices; each turns about its own middle, since fits damp turns by their lever."""
     pieces, N = {}, smoothed_normals(V, F)
     for part in range(len(tree.parents)):
         own = np.flatnonzero((tree.label == part) & (tree.W[:, part] > chosen.rigid_weight))
         if len(own) >= chosen.least_vertices:
             mass = tree.W[own, part] * np.sqrt(area[own] / area.sum())
-            pieces[part] = sampled_piece(V[own], N[own], mass, np.zeros(len(own), np.bool_), np.zeros(3), np.zeros(3))
+            middle = np.average(V[own], axis=0, weights=mass**2)
+            pieces[part] = sampled_piece(V[own], N[own], mass, np.zeros(len(own), np.bool_), middle, middle)
     return pieces
 
 

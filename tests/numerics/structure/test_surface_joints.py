@@ -16,20 +16,24 @@ from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, Surf
 
 OFF = np.array([0.0, 0.0, 0.5])
 """How far off the joint is put, half a radius along the limb."""
+HERE = np.zeros(3)
+"""No shift of the body from where it lies."""
 
 
 def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float = 1.0,
     shown: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
+    shift: Floats = HERE,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
-    """The joints as they were put, and what the surfaces say of them; the last one is put off."""
+    """The joints as they were put, and what the surfaces say of them; the last one is put off, and the body is shifted."""
     surface, found = three_parts(frames, scale)
     rest = found.rest.copy()
     rest[1:, :2], rest[1, 2], rest[2] = 0.0, 0.0, scale * (np.array([0.0, 0.0, END]) + off)
     given, size = shown or Frames(turning(), 0.02, scale), surface.size
     tree = in_tree_order(found, 3)
-    surfaces = {f: Target.of(*given(f), size) for f in range(frames)}
-    laid = laid_parts(surface.V, surface.F, surface.area, tree, surfaces)
+    tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift), rest + shift
+    surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, given(f)) for f in range(frames))}
+    laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
     return rest, surface_joints(tree, laid, rest, np.full((frames, 3), seen), settings)
 
 
@@ -55,6 +59,14 @@ def test_the_same_on_a_body_of_another_size() -> None:
     (_, one), (_, two) = moved(), moved(scale=40.0)
     np.testing.assert_allclose(40.0 * one, two, atol=0.4)
     assert abs(two[2, 2] - 40.0 * END) < 0.4 * 40.0 * OFF[2]
+
+
+@pytest.mark.parametrize("lengths", [10.0, 1000.0])
+def test_the_same_far_from_the_origin(lengths: float) -> None:
+    shift = 10.0 * lengths * np.array([0.6, -0.64, 0.48])
+    (_, here), (_, there) = on_surfaces(), on_surfaces(shift=shift)
+    np.testing.assert_allclose(there.rest - shift, here.rest, atol=1e-3)
+    np.testing.assert_allclose(there.offset, here.offset, atol=1e-3)
 
 
 def test_joints_of_limbs_with_the_trunk_stay() -> None:
