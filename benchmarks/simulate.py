@@ -32,7 +32,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from amdahl import AT_WORKER, IN_LOOP, Jobs, longest_path, makespan, recorded
+from amdahl import AT_WORKER, OF_NODE, OF_PARCEL, Jobs, longest_path, makespan, recorded
 
 from kinetree.pipeline.dataset.dataset import Dataset
 from kinetree.pipeline.inspect import Pipeline
@@ -209,9 +209,10 @@ class Asked:
 def bounds(sequence: Units, chosen: argparse.Namespace, workers: int, loops: int) -> dict[str, float]:
     """Seconds by each thing that a night cannot be faster than; the longest of them is what holds it up."""
     n, latency = chosen.sequences, chosen.latency
+    sent = OF_NODE * sequence.nodes + OF_PARCEL * sequence.parcels
     return {
         "workers": n * (sequence.compute + AT_WORKER * sequence.nodes + latency * sequence.asked_by_workers) / workers,
-        "the loop": n * (sequence.begin + IN_LOOP * sequence.nodes + latency * sequence.asked_by_loop) / loops,
+        "the loop": n * (sequence.begin + sent + latency * sequence.asked_by_loop) / loops,
         "the bucket's writes": n * sequence.put / ASKED["put"] / chosen.prefixes,
         "the bucket's reads": n * sequence.get / ASKED["get"] / chosen.prefixes,
         "one sequence's longest path": sequence.path + latency * sequence.asked_by_workers * sequence.path / sequence.compute,
