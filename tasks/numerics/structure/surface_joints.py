@@ -17,7 +17,8 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.laid_parts import LaidParts, within_limbs
+from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
+from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings, within_limbs
 
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
@@ -51,7 +52,7 @@ class SurfaceJoints(NamedTuple):
 
     rest   : (part, xyz) in the reference, those within limbs moved where the frames agree on it, mesh unit
     offset : (part,) root mean square distance of each joint from where halves of the surfaces alone have it, mesh unit; NaN
-             where they do not say
+             where too few frames show both parts
     """
 
     rest: Floats
@@ -94,9 +95,15 @@ def surface_joints(
             radius = float(tree.radius[joint])
             if may_move[joint]:
                 moved[joint] = _agreed(pull, rest[joint], chosen.spread * radius, chosen)
-            places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
-            offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
+            if _often_shown(pull):
+                places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
+                offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
     return SurfaceJoints(moved, offset)
+
+
+def _often_shown(pull: _Pull) -> bool:
+    """Whether enough frames show both parts; without them centres stay where the joint is, as if the surfaces had it there."""
+    return int((pull.seen >= FramePosesSettings().seen).sum()) >= LaidPartsSettings().least_frames
 
 
 def _pull(above: _Laid, own: _Laid, c: Floats, seen: Floats, chosen: SurfaceJointsSettings) -> _Pull:

@@ -21,7 +21,7 @@ HERE = np.zeros(3)
 
 
 def on_surfaces(
-    off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float = 1.0,
+    off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
     shown: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
     shift: Floats = HERE,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
@@ -34,7 +34,7 @@ def on_surfaces(
     tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift), rest + shift
     surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, given(f)) for f in range(frames))}
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
-    return rest, surface_joints(tree, laid, rest, np.full((frames, 3), seen), settings)
+    return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings)
 
 
 def moved(*args: Any, **kwargs: Any) -> tuple[Floats, Floats]:
@@ -110,3 +110,18 @@ def test_joints_that_may_not_move_have_an_offset_too_and_the_root_has_none() -> 
     assert found.rest[1].tolist() == before[1].tolist()
     assert 0.0 < found.offset[1] < 0.2
     assert np.isnan(found.offset[0])
+
+
+@pytest.mark.parametrize(("certain", "says"), [(0.0, False), (0.4, False), (0.6, True)])
+def test_a_joint_whose_parts_few_frames_show_has_no_offset(certain: float, says: bool) -> None:
+    _, found = on_surfaces(seen=certain)
+    assert np.isfinite(found.offset[1:]).tolist() == [says, says]
+
+
+def test_a_joint_has_an_offset_from_eight_frames_on_that_show_its_parts() -> None:
+    shares = np.zeros((24, 3))
+    shares[::3] = 1.0
+    for count, says in ((8, True), (7, False)):
+        shares[::3][count:] = 0.0
+        _, found = on_surfaces(seen=shares)
+        assert np.isfinite(found.offset[1:]).tolist() == [says, says]
