@@ -13,8 +13,8 @@ of the body's height; elsewhere residuals only, in % of the body's size. Seconds
 show a body that moves N times as fast. --work keeps the stores, so that a second call computes only what changed. --peer
 aligns one frame with trimesh's nricp_amberg too and gives the ratio.
 
---generated scores bodies that kinetree makes itself, with contacts and noise: a figure, its motion and its seed, or
-random:SEED for random trees. The truth is the same body skinned in every frame; `limb` is the largest mean error of one
+--generated scores bodies that kinetree makes itself, with contacts and noise: a figure and its motion, or random:SEED for
+random trees. The seed of motion and noise is the figure's place in the list of all, whatever --only names. The truth is the same body skinned in every frame; `limb` is the largest mean error of one
 limb in one frame: a limb that sits on another has tens of percent.
 """
 
@@ -175,8 +175,9 @@ def scored(folder: Path, name: str, args: argparse.Namespace, work: Path) -> Non
         plotted(args.plot, name, mine)
 
 
-def scored_generated(name: str, number: int, args: argparse.Namespace, work: Path) -> None:
+def scored_generated(name: str, args: argparse.Namespace, work: Path) -> None:
     """One line of the table for a generated sequence."""
+    number = [*GENERATED, name].index(name)
     figure, _, motion = name.partition(":")
     figure, motion = (name, "") if figure == "random" else (figure, motion)
     contacts = [{"limb": a, "target": b, "begin": c, "end": d} for a, b, c, d in GENERATED.get(name, ())]
@@ -212,8 +213,8 @@ def main() -> None:
         work = (args.work or Path(scratch)).absolute()
         if args.generated:
             print("figure        ref  frm  s/frm resid%  uncov  ?   mean%   p95%   max%  limb%")
-            for number, name in enumerate(args.only or GENERATED):
-                scored_generated(name, number, args, work)
+            for name in args.only or GENERATED:
+                scored_generated(name, args, work)
             return
         print("sequence   ref  frm  s/frm resid%  uncov  ?   mean%   p95%   max%  joints turning ≥ 0.8")
         for name in args.only or ["wave", "dance", "wolf", "camel", "dancer"]:
