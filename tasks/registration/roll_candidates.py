@@ -11,7 +11,6 @@ from kinetree.schemas.registration.roll_candidates import RollCandidates
 from kinetree.schemas.registration.stiffness import Stiffness
 from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.tasks.numerics.registration import roll_candidates as numerics
-from kinetree.tasks.numerics.registration.deformation import at_rest
 from kinetree.tasks.registration.pose import NO_AGREEMENT, NO_COLOUR, graph, pose, target
 
 
@@ -25,7 +24,9 @@ def roll_candidates(
     colour_agreement: ColourAgreement = NO_AGREEMENT,
 ) -> RollCandidates:
     """Fits every limb as a rigid body from several rolls about its axis, before passes that search for lost roll (ours)."""
+    if refit is None:
+        raise ValueError("rolls are tried from the poses of the pass before: none is searched before pass 1")
     nodes, cluster = graph(deformation_graph), stiffness.cluster.astype(np.int64)
     surface = target(mesh, deformation_graph, vertex_colour, colour_agreement)
-    fits = numerics.roll_candidates(nodes, at_rest(nodes) if refit is None else pose(refit), surface, cluster)
+    fits = numerics.roll_candidates(nodes, pose(refit), surface, cluster)
     return RollCandidates(**fits._asdict())

@@ -1,7 +1,10 @@
 """Contract of roll candidates: every frame tries the same limbs, the reference fits as it is, one pass is searched."""
 
 import numpy as np
+import pytest
 from stepwise import walk
+
+from kinetree.tasks.registration.roll_candidates import roll_candidates
 
 
 def test_every_frame_tries_the_same_limbs() -> None:
@@ -25,3 +28,9 @@ def test_passes_without_a_search_try_nothing() -> None:
     for number in (0, 2):
         assert list(made.deformation_graph.members("pass/search", (number,))) == []
     assert list(made.deformation_graph.members("pass/search", (1,))) == [0]
+
+
+def test_before_the_first_pass_there_are_no_poses_to_try_rolls_from() -> None:
+    made = walk()
+    with pytest.raises(ValueError, match="pass before"):
+        roll_candidates(made.mesh[0], made.deformation_graph, made.stiffness[0], None)
