@@ -14,8 +14,9 @@ show a body that moves N times as fast. --work keeps the stores, so that a secon
 aligns one frame with trimesh's nricp_amberg too and gives the ratio.
 
 --generated scores bodies that kinetree makes itself, with contacts and noise: a figure and its motion, or random:SEED for
-random trees. The seed of motion and noise is the figure's place in the list of all, whatever --only names. The truth is the same body skinned in every frame; `limb` is the largest mean error of one
-limb in one frame: a limb that sits on another has tens of percent.
+random trees. The seed of motion and noise is the figure's place in the list of all, whatever --only names. The truth is the
+same body skinned in every frame; `limb` is the largest mean error of one limb in one frame: a limb that sits on another has
+tens of percent.
 """
 
 import argparse

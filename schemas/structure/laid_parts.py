@@ -1,4 +1,4 @@
-"""Parts of limbs on the frames' own surfaces (ours)."""
+"""Parts of the body on the frames' own surfaces (ours)."""
 
 from typing import Annotated
 
@@ -7,7 +7,7 @@ from kinetree.schemas.dims import FRAME, FREEDOM, LIMB, OTHER_FREEDOM, ROW, XYZ
 
 
 class LaidParts(Artifact):
-    """Parts of limbs laid by themselves on the surfaces of a few frames."""
+    """Parts laid by themselves on the surfaces of a few frames."""
 
     frame: Annotated[Ints, Array("int32", FRAME)]
     """These frames, counted from 0 among those of the first tree."""

@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure import error_bars as numerics
 
 @task()
 def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
-    """Expects an error of every joint, from drift, spread over cuts, residual, turning, bone and confidence (ours)."""
+    """Expects an error of every joint, from drift, spread, residual, turning, bone, surface offset and confidence (ours)."""
     features = joint_features(skeleton, kinematic_tree)
     found = numerics.error_bars(features, kinematic_tree.cuts)
     turning = np.array([kind == "joint" for kind in skeleton.kinds])

@@ -1,4 +1,4 @@
-"""Parts of limbs on the surfaces of a few frames."""
+"""Parts of the body on the surfaces of a few frames."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ from kinetree.tasks.structure.first_tree import restored
 
 @task(over="laid")
 def laid_parts(reference: Reference, first_tree: FirstTree, mesh: Mapping[int, Mesh]) -> LaidParts:
-    """Lays the parts at joints within limbs on the frames' own surfaces, each by itself (ours)."""
+    """Lays the parts on the frames' own surfaces, each by itself (ours)."""
     V, F = np.array(reference.vertices), np.array(reference.faces, np.int64)
     area = surface_areas(V, F)
     size = float(np.sqrt(area.sum()))
