@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, rotation, tube
-from shipped import FITTING
+from shapes import y_pipe
+from shipped import FITTING, GRAPH
 
 from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs
 from kinetree.tasks.numerics.registration.tracking import (
     TrackingSettings,
@@ -52,6 +54,44 @@ def test_a_limb_that_no_other_way_reaches_is_found_at_last_from_where_it_was_swu
     assert alone.uncovered > 0.1
     assert led.attempt == len(attempts(FITTING))
     assert led.uncovered <= SETTINGS.uncovered
+
+
+def raised(points, angle, at=8.0, blend=8.0):
+    """What lies beyond `at` along x turned up about it."""
+    share = np.clip((points[:, 0] - at) / blend + 0.5, 0.0, 1.0)
+    turn = angle * share * share * (3 - 2 * share)
+    x, z = points[:, 0] - at, points[:, 2]
+    return np.stack([at + np.cos(turn) * x - np.sin(turn) * z, points[:, 1], np.sin(turn) * x + np.cos(turn) * z], axis=1)
+
+
+def crossed(graph, way, angle, base=4.0):
+    """The pose in which the second and the third of three arms have passed each other."""
+    along = graph.g @ way.T
+    arm = np.where(along.max(axis=1) > base, along.argmax(axis=1), 0)
+    R = np.stack([np.eye(3), rotation((0, 0, 1), angle), rotation((0, 0, 1), -angle)])[arm]
+    hinge = base * way[arm]
+    return Pose(R, np.einsum("nxy,ny->nx", R, graph.g - hinge) + hinge)
+
+
+def test_exchanged_limbs_that_cover_more_but_bend_much_more_are_not_taken():
+    V, F, _ = y_pipe()
+    graph = deformation_graph(V, F, GRAPH._replace(nodes=120))
+    around = 2 * np.pi * np.arange(3) / 3
+    way = np.stack([np.cos(around), np.sin(around), np.zeros(3)], axis=1)
+    stems = np.linspace(4.0, 24.0, 5)[None, :, None] * way[:, None]
+    there = raised(V, 1.6)
+    limbs = FrameLimbs(stems, np.stack([raised(stems[0], 1.6), *stems[1:]]), there.mean(axis=0))
+    neighbour, target = crossed(graph, way, 1.4), Target.of(there, F, graph.size)
+    however_bent, judged = (
+        tracking(graph, None, neighbour, target, FITTING, settings=settings, limbs=limbs)
+        for settings in (TrackingSettings(bent=1e9), SETTINGS)
+    )
+    second = V @ way[1] > 12.0
+    exchanged, right = ((shape(graph, one.pose)[0][second] @ way[1:].T).mean(axis=0) for one in (however_bent, judged))
+    assert however_bent.attempt == len(attempts(FITTING))
+    assert however_bent.uncovered < 0.5 * judged.uncovered
+    assert exchanged[1] > 12.0
+    assert right[0] > 12.0
 
 
 def test_a_missing_half_is_reported_as_uncovered(body):
