@@ -8,8 +8,9 @@ import importlib
 import logging
 import math
 import signal
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -41,6 +42,11 @@ with all tasks imported; at 80 % of its limit dask gives it no more work, at 95 
 WAITS = {"_data_producer": True}
 """Has a parcel wait at the scheduler until a worker has room for it: dask otherwise gives it at once to one that is busy, for
 however long, and other workers run out of work beside it."""
+LOUD = ("distributed", "distributed.client", "distributed.nanny", "distributed.scheduler")
+"""Loggers of dask's that write a page where a worker is killed."""
+_SILENCING = threading.Lock()
+_LEVELS: list[Mapping[str, int]] = []
+"""Of these loggers, as every run that is quiet found them, in the order of their beginnings."""
 _FILES = ("_file", "_cert", "_key")
 """How the arguments of distributed.Security end that name files."""
 
@@ -322,13 +328,18 @@ async def _end(cluster: Any, patience: float) -> None:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """A worker that was killed is our message to give, not a page of the library's log."""
-    loggers = [logging.getLogger(f"distributed{part}") for part in ("", ".client", ".nanny", ".scheduler")]
-    before: list[Any] = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL)
+    """A worker that was killed is our message to give, not a page of the library's log; the last run of this program that
+    is quiet gives the loggers back the levels that the first one found.
+    """
+    with _SILENCING:
+        _LEVELS.append({name: logging.getLogger(name).level for name in LOUD})
+        for name in LOUD:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        for logger, level in zip(loggers, before, strict=True):
-            logger.setLevel(level)
+        with _SILENCING:
+            before = _LEVELS.pop()
+            if not _LEVELS:
+                for name, level in before.items():
+                    logging.getLogger(name).setLevel(level)

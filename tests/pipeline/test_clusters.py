@@ -1,6 +1,7 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
 
 import json
+import logging
 import os
 import threading
 import time
@@ -288,6 +289,18 @@ def test_dask_names_what_runs_by_its_tasks(toys, empty):
         toys.run(client, until=("total",))
         names = client.run_on_scheduler(lambda dask_scheduler: sorted(dask_scheduler.task_prefixes))
     assert names == ["points+smooth", "total"]
+
+
+def test_runs_that_overlap_leave_the_levels_of_loggers_as_the_first_found_them(monkeypatch):
+    monkeypatch.setattr(logging.getLogger("distributed.nanny"), "level", logging.WARNING)
+    before = {name: logging.getLogger(name).level for name in clusters.LOUD}
+    first, second = clusters._quiet(), clusters._quiet()
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert {logging.getLogger(name).level for name in clusters.LOUD} == {logging.CRITICAL}
+    second.__exit__(None, None, None)
+    assert {name: logging.getLogger(name).level for name in clusters.LOUD} == before
 
 
 def test_dask_reports_on_a_run(toys, tmp_path):
