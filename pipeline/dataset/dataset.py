@@ -35,6 +35,7 @@ from kinetree.pipeline.inspection.look import Table
 from kinetree.pipeline.output.outcome import OUTCOME, Outcome
 from kinetree.pipeline.output.ownership import Owned
 from kinetree.pipeline.running.events import Listener
+from kinetree.pipeline.running.worker_parent import refuse_within_import
 from kinetree.pipeline.running.workers import Workers
 from kinetree.pipeline.settings.config import Compute
 from kinetree.pipeline.storage.files import Files
@@ -148,6 +149,8 @@ class Dataset:
         max_hours : after this no node is sent any more; the next run goes on
         raises    : StoreError, ClusterError where going on makes no sense, after what became of all was put on record
         """
+        if client is None and self.config.compute.has_own_workers:
+            refuse_within_import()
         started, began = time.perf_counter(), now()
         selected = self._selected(only, failed=failed, since=since)
         Owned.of(self.config.root).claim([SUMMARY, LOG, OUTCOME])

@@ -83,16 +83,20 @@ class WorkerParent:
         # nothing is imported from the folder that the user happens to be in
         variables = {**environment, worker_preload.SETUP: self._setup, "PYTHONSAFEPATH": "1"}
         self._preload[:] = server._preload_modules
+        is_started = False
         try:
             with _set(variables):
                 resource_tracker.ensure_running()  # which lets interrupts through again
             with _set(variables), _interrupts_held_back():
                 forkserver.set_forkserver_preload([worker_preload.__name__])
                 forkserver.ensure_running()
+            is_started = True
         except OSError:
-            server._forkserver_pid, server._preload_modules = None, list(self._preload)
-            return False
-        return True
+            server._forkserver_pid = None
+        finally:
+            if not is_started:
+                server._preload_modules = list(self._preload)
+        return is_started
 
     @property
     def is_there(self) -> bool:

@@ -5,6 +5,7 @@ import json
 import shutil
 import sys
 from dataclasses import replace
+from multiprocessing import current_process
 from types import SimpleNamespace
 
 import pytest
@@ -55,6 +56,16 @@ def test_what_helps_a_run_is_beside_a_whole_night_and_not_beside_one_with_nothin
     for _ in range(2):
         assert Dataset.of(lab.file, application=product).run()["status"] == "done"
         assert heard == ["begins", "ends"]
+
+
+def test_a_worker_process_that_imports_the_script_leaves_nothing_behind(lab, monkeypatch):
+    lab.write(compute={"executor": "processes", "workers": 1})
+    monkeypatch.setattr(current_process(), "_inheriting", True, raising=False)
+    before = sorted(lab.file.parent.rglob("*"))
+    dataset = lab.dataset()
+    with pytest.raises(ConfigError, match="started by a worker process"):
+        dataset.run()
+    assert [path for path in sorted(lab.results.rglob("*")) if path not in before and "store" not in path.parts] == []
 
 
 def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):

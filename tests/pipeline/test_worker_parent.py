@@ -1,5 +1,6 @@
 """Laws of the process that workers are forked from: it loads what they need, is begun for a reason, and ends with the run."""
 
+import contextlib
 import os
 import signal
 import sys
@@ -116,6 +117,19 @@ def test_where_the_system_has_no_socket_for_it_workers_start_as_dask_starts_them
     with WorkerParent() as parent, launcher(ONE, None, parent):
         assert not parent.is_there
         assert Client.current().submit(int, "3").result(timeout=60) == 3
+
+
+@pytest.mark.parametrize("error", [OSError, RuntimeError])
+def test_where_it_does_not_start_what_the_program_has_it_load_stays(monkeypatch, error):
+    def refused():
+        raise error
+
+    monkeypatch.setattr(forkserver._forkserver, "_preload_modules", ["colorsys"])
+    monkeypatch.setattr(forkserver, "ensure_running", refused)
+    with contextlib.suppress(RuntimeError), WorkerParent() as parent:
+        parent.begin({})
+    assert not parent.is_there
+    assert forkserver._forkserver._preload_modules == ["colorsys"]
 
 
 def test_it_ends_soon_while_others_have_children_of_it_and_leaves_what_they_had_set():
