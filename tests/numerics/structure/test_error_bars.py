@@ -51,6 +51,14 @@ def test_a_joint_that_no_other_cut_has_is_worse_than_one_whose_cuts_are_apart() 
     assert np.isfinite(found).all()
 
 
+def test_by_the_shipped_laws_a_joint_farther_from_its_place_on_the_surfaces_has_a_larger_bound() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01)}
+    bars = error_bars(features(offset=np.array([0.002, 0.008, 0.032]), **same), 4)
+    assert bars.bound[1] > 1.3 * bars.bound[0]
+    assert bars.bound[2] > 1.3 * bars.bound[1]
+    np.testing.assert_array_less(1.3 * bars.expected, bars.bound)
+
+
 def test_a_joint_farther_from_its_place_on_the_surfaces_is_worse_and_one_without_such_a_place_goes_by_the_rest() -> None:
     same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01)}
     found = error_bars(features(offset=np.array([0.002, 0.008, np.nan]), **same), 4, SETTINGS)
