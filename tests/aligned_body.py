@@ -24,7 +24,7 @@ def rigid(body: Known, frames: tuple[int, ...]) -> RigidParts:
     )  # fmt: skip
 
 
-def given(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference, dict[int, Alignment], Leaves]:
+def task_inputs(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference, dict[int, Alignment], Leaves]:
     """What the task reads."""
     frames = tuple(range(FIRST, FIRST + len(x)))
     reference = Reference(
@@ -47,7 +47,7 @@ def tube(trust: float) -> tuple[Reference, RigidParts, dict[int, Alignment], dic
     """What `first_tree` reads of a tube whose last joint only the frames show; vertices have so much confidence."""
     body, frames = aligned(turning()), Frames(turning())
     two = body._replace(label=(body.V[:, 2] > 0.0).astype(np.int64), R=body.R[:, :2], t=body.t[:, :2])
-    reference, certain, leaves = given(body.V, body.F, body.x)
+    reference, certain, leaves = task_inputs(body.V, body.F, body.x)
     trusted = {"confidence": np.full(len(body.V), trust)}
     alignment = {t: Alignment(**{**a.plain(), **a.arrays(), **trusted}) for t, a in certain.items()}
     shown = {FIRST + k: frames(k) for k in range(len(body.x))}

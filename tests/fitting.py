@@ -29,7 +29,7 @@ def true(known: Known, frame: int) -> FramePose:
     return FramePose(known.R[frame].copy(), known.R[frame, 0] @ known.joints[0] + known.t[frame, 0])
 
 
-def seen(known: Known, body: SkinnedBody, frame: int, lost: int = -1) -> Target:
+def surface_at(known: Known, body: SkinnedBody, frame: int, lost: int = -1) -> Target:
     """A frame's surface with other vertices, one arm cut off where that is asked."""
     V, F = trimesh.remesh.subdivide(known.x[frame], known.F[(known.label[known.F] != lost).all(axis=1)])
     order = np.random.default_rng(frame).permutation(len(V))

@@ -71,13 +71,13 @@ def test_every_compiled_function_has_a_file_for_each_of_its_types(own_folder: Pa
 def test_another_process_finds_what_one_has_compiled(own_folder: Path) -> None:
     ask = "from kinetree.tasks.numerics.kernel_list import lines, compile_all; print(compile_all(lines()[:1], lambda: True))"
 
-    def kept() -> dict[str, int]:
+    def files_after_a_run() -> dict[str, int]:
         subprocess.run([sys.executable, "-P", "-c", ask], check=True, capture_output=True)
         return {str(path): path.stat().st_mtime_ns for path in own_folder.rglob("*") if path.is_file()}
 
-    first = kept()
+    first = files_after_a_run()
     assert first
-    assert kept() == first
+    assert files_after_a_run() == first
 
 
 def test_a_disk_that_is_full_keeps_nothing_and_fails_no_call(own_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

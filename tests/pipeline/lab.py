@@ -81,6 +81,6 @@ class Lab:
         """What the summary holds."""
         return dict(json.loads((self.results / "summary.json").read_text()))
 
-    def told(self) -> dict[str, Any]:
+    def last_run(self) -> dict[str, Any]:
         """What the last run left."""
         return dict(json.loads((self.results / "dataset.json").read_text()))

@@ -79,7 +79,7 @@ def test_an_interrupted_run_says_so_and_the_next_goes_on(lab):
     stopped.send_signal(signal.SIGTERM)
     code, _, _ = ended(stopped)
     assert code == 130
-    assert lab.told()["status"] == "interrupted"
+    assert lab.last_run()["status"] == "interrupted"
     flag.unlink()
     assert lab.dataset().plan()["b"].state in ("unfinished", "new")
     assert lab.run()["status"] == "done"
@@ -117,8 +117,8 @@ def test_a_full_disk_ends_the_run_and_is_told_of(lab, monkeypatch):
         patched.setattr(Folder, "put", full)
         with pytest.raises(StoreFullError):
             lab.run()
-    assert lab.told()["status"] == "stopped"
-    assert "no space left" in lab.told()["error"]
+    assert lab.last_run()["status"] == "stopped"
+    assert "no space left" in lab.last_run()["error"]
     assert heard.exists()
     assert lab.run()["status"] == "done"
 
@@ -131,7 +131,7 @@ def test_a_cluster_that_goes_away_ends_the_run_and_the_next_goes_on(lab, monkeyp
         patched.setattr(Workers, "run", away)
         with pytest.raises(ClusterError):
             lab.run()
-    assert lab.told()["status"] == "stopped"
+    assert lab.last_run()["status"] == "stopped"
     assert lab.dataset().status()[0]["status"] in ("stopped", "new")
     assert lab.run()["status"] == "done"
 

@@ -11,7 +11,7 @@ from kinetree.schemas.registration.frame_confidence import FrameConfidence
 from kinetree.tasks.registration.frame_confidence import frame_confidence
 
 
-def told(
+def confidence_of(
     uncovered: list[float], unreliable: list[float] | None = None, first: int = 10, further: tuple[int, ...] = ()
 ) -> FrameConfidence:
     shares = unreliable or [0.0] * len(uncovered)
@@ -24,20 +24,20 @@ def told(
 
 
 def test_even_alignment_has_no_outliers_and_says_nothing() -> None:
-    made = told([0.001] * 6)
+    made = confidence_of([0.001] * 6)
     assert made.inlier.all()
     assert views.remarks(made) == ()
     assert made.residual.tolist() == [0.005] * 6
 
 
 def test_frames_that_stand_out_are_told_as_runs() -> None:
-    made = told([0.001, 0.2, 0.3, 0.001, 0.001, 0.2, 0.001, 0.001, 0.001])
+    made = confidence_of([0.001, 0.2, 0.3, 0.001, 0.001, 0.2, 0.001, 0.001, 0.001])
     assert made.inlier.tolist() == [True, False, False, True, True, False, True, True, True]
     assert views.remarks(made) == ("alignment failed in frames 11–12, 15: the aligned body does not fit the mesh there",)
 
 
 def test_limb_that_is_not_seen_is_reported_where_the_frame_is_an_inlier() -> None:
-    made = told([0.001] * 5, unreliable=[0.0, 0.0, 0.12, 0.1, 0.0])
+    made = confidence_of([0.001] * 5, unreliable=[0.0, 0.0, 0.12, 0.1, 0.0])
     expected = "alignment partly unreliable in frames 12–13: up to 12% of the body is hidden or does not fit"
     assert views.remarks(made) == (expected,)
 
@@ -49,5 +49,5 @@ def test_aligned_walk_has_no_outliers() -> None:
 
 def test_further_frames_are_compared_with_those_that_the_body_is_learned_from() -> None:
     shares = [0.001, 0.001, 0.001, 0.03, 0.03, 0.03, 0.03]
-    assert told(shares).inlier.all()
-    assert told(shares, further=(13, 14, 15, 16)).inlier.tolist() == [True] * 3 + [False] * 4
+    assert confidence_of(shares).inlier.all()
+    assert confidence_of(shares, further=(13, 14, 15, 16)).inlier.tolist() == [True] * 3 + [False] * 4

@@ -17,7 +17,7 @@ V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
 
 
-def seen(leaves: int, bent: float = 0.0, loop: float = 0.0, euler: int = 2) -> Extrema:
+def tips_of(leaves: int, bent: float = 0.0, loop: float = 0.0, euler: int = 2) -> Extrema:
     stem = np.array([[0, 0, 0], [0, 0, 1], [np.sin(bent), 0, 1 + np.cos(bent)]])
     return Extrema(
         vertices=np.zeros(leaves, int), persistence=np.full(leaves, 0.5), stems=np.tile(stem, (leaves, 1, 1)),
@@ -55,7 +55,7 @@ def chosen(
     return reference(
         mesh={t: Mesh(vertices=V + t, faces=F, vertex_of_input=np.arange(4), cleaning=cleaning) for t in frames},
         distribution={t: same() for t in frames},
-        tips={t: seen(n, a, loop) for t, n, a in zip(frames, leaves, angles, strict=True)},
+        tips={t: tips_of(n, a, loop) for t, n, a in zip(frames, leaves, angles, strict=True)},
         leaves=followed(leaves),
         connectivity=Connectivity(fixed=fixed, first_change=None if fixed else first + 1, vertices=4, faces=4),
         params=ReferenceParams(frame=frame),

@@ -10,7 +10,7 @@ from kinetree.tasks.numerics.input.frame_numbers import TAKE
 from kinetree.tasks.registration.take_entries import take_entries
 
 
-def seen(shift: float) -> Extrema:
+def shifted_tips(shift: float) -> Extrema:
     stems = np.array([[[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 2, 0]], [[0, 0, 0], [0, 0, -3]]], float) + shift
     return Extrema(
         vertices=np.zeros(3, int), persistence=np.full(3, 0.5), stems=stems, normals=np.zeros((3, 3)), value=np.full(3, 0.7),
@@ -18,17 +18,17 @@ def seen(shift: float) -> Extrema:
     )  # fmt: skip
 
 
-def told(*frames: int) -> Any:
+def entries_of(*frames: int) -> Any:
     reference = walk().reference.model_copy(update={"frames": frames, "frame": frames[0]})
-    return take_entries({t: seen(float(t % TAKE)) for t in frames}, reference)
+    return take_entries({t: shifted_tips(float(t % TAKE)) for t in frames}, reference)
 
 
 def test_one_take_has_no_entries() -> None:
-    assert told(4, 5, 6).frames == ()
+    assert entries_of(4, 5, 6).frames == ()
 
 
 def test_another_take_has_one_by_its_number() -> None:
-    found = told(4, 5, TAKE + 9, TAKE + 10)
+    found = entries_of(4, 5, TAKE + 9, TAKE + 10)
     assert (found.before, found.frames) == ((4,), (TAKE + 9,))
     np.testing.assert_allclose(found.rotation, [np.eye(3)], atol=1e-9)
     np.testing.assert_allclose(found.shift, [[5.0] * 3])

@@ -1,6 +1,6 @@
 """The poses of further cuts as the task gives them."""
 
-from aligned_body import FIRST, given
+from aligned_body import FIRST, task_inputs
 from articulated import three_arms
 
 from kinetree.schemas.structure.cut_poses import CutPoses
@@ -11,7 +11,7 @@ from kinetree.tasks.structure.cut_poses import cut_poses
 
 def poses(**params: int) -> CutPoses:
     body = three_arms()
-    reference, aligned, _ = given(body.V, body.F, body.x)
+    reference, aligned, _ = task_inputs(body.V, body.F, body.x)
     return cut_poses(reference, aligned, RigidPartsParams(**params))
 
 

@@ -11,7 +11,7 @@ from kinetree.tasks.numerics.structure import first_tree as numerics
 from kinetree.tasks.structure.first_tree import first_tree, restored
 
 
-def told(trust: float, **params: float) -> FirstTree:
+def tree_of_tube(trust: float, **params: float) -> FirstTree:
     return first_tree(*tube(trust), FirstTreeParams(**params))
 
 
@@ -19,7 +19,7 @@ def told(trust: float, **params: float) -> FirstTree:
 def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pytest.MonkeyPatch) -> None:
     made, whole = [], numerics.first_tree
     monkeypatch.setattr(numerics, "first_tree", lambda *a, **b: made.append(whole(*a, **b)) or made[0])
-    tree, (before,) = restored(told(trust)), made
+    tree, (before,) = restored(tree_of_tube(trust)), made
     assert tree.ends == (1 if trust < 1.0 else 0)
     assert (tree.seen is None) == (trust == 1.0)
     for one, other in ((tree, before), (tree.graph, before.graph)):
@@ -31,15 +31,15 @@ def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pyte
 
 
 def test_frames_that_parts_are_laid_on_are_a_few_at_a_time_and_none_where_all_is_given() -> None:
-    tree = told(0.99)
+    tree = tree_of_tube(0.99)
     runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
     assert [len(run) for run in runs] == [5, 5, 5, 5, 4]
     assert [frame for run in runs for frame in run] == list(tree.frames)
-    assert list(told(1.0).members("laid", ())) == []
+    assert list(tree_of_tube(1.0).members("laid", ())) == []
 
 
 def test_whether_joints_at_ends_are_looked_for_can_be_set() -> None:
-    assert told(0.99, end_joints=False).ends == 0
+    assert tree_of_tube(0.99, end_joints=False).ends == 0
 
 
 def test_it_is_made_beside_further_cuts() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from aligned_body import FIRST, given
+from aligned_body import FIRST, task_inputs
 from articulated import three_arms
 
 from kinetree.schemas.registration.alignment import Alignment
@@ -19,7 +19,7 @@ FRAME = FIRST + 5
 def cut(trust: float = 1.0, settings: RigidPartsParams | None = None, **params: float) -> FurtherCut:
     """In the sixth frame, where vertices have so much confidence."""
     body = three_arms()
-    reference, certain, leaves = given(body.V, body.F, body.x)
+    reference, certain, leaves = task_inputs(body.V, body.F, body.x)
     trusted = {"confidence": np.full(len(body.V), trust)}
     aligned = {t: Alignment(**{**a.plain(), **a.arrays(), **trusted}) for t, a in certain.items()}
     poses = CutPoses(frames=(FRAME,), settings=settings or RigidPartsParams())

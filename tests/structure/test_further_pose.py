@@ -1,7 +1,7 @@
 """Contract of further_pose: one frame by itself, as the tree has it, fitted where uncertain."""
 
 import numpy as np
-from fitting import FIRST, arms, articulation, seen
+from fitting import FIRST, arms, articulation, surface_at
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
@@ -14,7 +14,7 @@ TREE = articulation(arms()[0])
 def posed(row: int, lost: int = -1, certain: float = 1.0) -> FurtherPose:
     """A frame whose true pose the tree has in this row, one arm aligned wrongly where that is asked."""
     known, body = arms()
-    surface = seen(known, body, row)
+    surface = surface_at(known, body, row)
     mesh = Mesh(vertices=surface.V, faces=surface.F, vertex_of_input=np.arange(len(surface.V)), cleaning=Cleaning())
     confidence = np.where(known.label == lost, 0.05, certain)
     off = 0.02 * body.size * (known.label == lost)[:, None]

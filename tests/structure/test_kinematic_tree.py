@@ -24,8 +24,8 @@ def surface(V: np.ndarray, F: np.ndarray) -> Mesh:
     return Mesh(vertices=V, faces=F, vertex_of_input=np.arange(len(V)), cleaning=Cleaning())
 
 
-def told(
-    body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), shown: Frames | None = None, **params: float
+def tree_of(
+    body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), surfaces: Frames | None = None, **params: float
 ) -> KinematicTree:
     frames = tuple(range(FIRST, FIRST + len(body.x)))
     count = len(frames)
@@ -45,7 +45,9 @@ def told(
         frames=frames, rows=np.zeros((len(tips), count), int), positions=positions, kept=np.ones((1, len(tips)), bool),
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
-    mesh = {f: surface(*(shown(k) if shown else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))}
+    mesh = {
+        f: surface(*(surfaces(k) if surfaces else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))
+    }
     chosen = KinematicTreeParams(**params)
     first = first_tree(reference, parts, aligned, mesh, leaves, chosen)
     runs = [first.members("laid/frame", (k,)) for k in first.members("laid", ())]
@@ -56,7 +58,7 @@ def told(
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
     body = three_arms()
     tips = tuple(int(np.argmax(body.V @ [np.cos(a), np.sin(a), 0.0])) for a in (0, 2 * np.pi / 3, 4 * np.pi / 3))
-    found = told(body, tips=tips)
+    found = tree_of(body, tips=tips)
     assert found.names == (
         "root", "limb_a_1", "limb_a_end", "limb_b_1", "limb_b_end", "limb_c_1", "limb_c_end"
     )  # fmt: skip
@@ -68,20 +70,20 @@ def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
 
 
 def test_same_input_gives_the_same_bytes() -> None:
-    one, two = told(three_arms()), told(three_arms())
+    one, two = tree_of(three_arms()), tree_of(three_arms())
     for name in KinematicTree.array_fields():
         assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
 
 
 def test_stiff_sequence_has_a_root_alone() -> None:
-    found = told(chain((0.0,), np.tile(np.eye(3), (12, 2, 1, 1))))
+    found = tree_of(chain((0.0,), np.tile(np.eye(3), (12, 2, 1, 1))))
     assert found.kinds == ("root",)
 
 
 def test_what_counts_as_a_joint_can_be_set() -> None:
     body = chain((0.0,), swings(16, 2, 10, axes=1))
-    assert told(body).kinds.count("joint") == 1
-    assert told(body, degrees=30.0).kinds.count("joint") == 0
+    assert tree_of(body).kinds.count("joint") == 1
+    assert tree_of(body, degrees=30.0).kinds.count("joint") == 0
 
 
 def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,7 +95,7 @@ def test_what_makes_a_joint_evident_reaches_the_evidence(monkeypatch: pytest.Mon
         return made(*given[:4], None, settings=settings)
 
     monkeypatch.setattr(numerics, "first_tree", listening)
-    told(body, np.full(body.x.shape[:2], 0.9), clear_motion=7.0, misfit_ratio=1.5, misfit_ratio_if_moving=1.2)
+    tree_of(body, np.full(body.x.shape[:2], 0.9), clear_motion=7.0, misfit_ratio=1.5, misfit_ratio_if_moving=1.2)
     assert [tuple(settings[:3]) for settings in asked] == [(7.0, 1.5, 1.2)]
 
 
@@ -107,7 +109,7 @@ def test_frame_that_is_not_trusted_has_a_pose_without_confidence() -> None:
     body = chain((0.0,), swings(16, 2))
     trust = np.ones(body.x.shape[:2])
     trust[5] = 0.0
-    found = told(body, trust)
+    found = tree_of(body, trust)
     assert np.isfinite(found.positions).all()
     assert found.confidence[5].max() < 0.05 < 0.9 < found.confidence[6].min()
     assert found.support.tolist() == [15] * len(found.names)
@@ -119,7 +121,7 @@ def test_joints_at_ends_are_looked_for_where_connectivity_changes_and_only_if_as
     true = Frames(turn)
     confidence = np.full(body.x.shape[:2], 0.99)
     two = body._replace(label=(body.V[:, 2] > 0.0).astype(np.int64), R=body.R[:, :2], t=body.t[:, :2])
-    asked, not_asked = (told(two, confidence, shown=true, end_joints=flag) for flag in (True, False))
+    asked, not_asked = (tree_of(two, confidence, surfaces=true, end_joints=flag) for flag in (True, False))
     assert asked.kinds.count("joint") == 2
     (end,) = asked.end_joints
     assert asked.rest[end, 2] == pytest.approx(END, abs=0.4)
@@ -130,13 +132,13 @@ def test_joints_at_ends_are_looked_for_where_connectivity_changes_and_only_if_as
 def test_joints_within_limbs_are_moved_on_the_surfaces_where_connectivity_changes_and_only_if_asked() -> None:
     body, true = chain((0.0, END + 0.5), turning(), along=60), Frames(turning(), 0.02)
     seen = np.full(body.x.shape[:2], 0.99)
-    asked, not_asked = (told(body, seen, shown=true, end_joints=False, surface_joints=flag) for flag in (True, False))
+    asked, not_asked = (tree_of(body, seen, surfaces=true, end_joints=False, surface_joints=flag) for flag in (True, False))
     assert asked.kinds == not_asked.kinds == ("root", "joint", "joint", "leaf")
     assert END - 0.1 < asked.rest[2, 2] < not_asked.rest[2, 2] - 0.2
     np.testing.assert_array_equal(asked.rest[[0, 1, 3]], not_asked.rest[[0, 1, 3]])
     assert np.isfinite(asked.surface_offset).tolist() == [False, True, True, False]
     assert np.isnan(not_asked.surface_offset).all()
-    given = [told(body, surface_joints=flag) for flag in (True, False)]
+    given = [tree_of(body, surface_joints=flag) for flag in (True, False)]
     np.testing.assert_array_equal(*(found.rest for found in given))
     assert np.isnan(given[0].surface_offset).all()
 
@@ -144,7 +146,7 @@ def test_joints_within_limbs_are_moved_on_the_surfaces_where_connectivity_change
 def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:
     turn = swings(16, 2, degrees=30.0)
     turn[:, 1] = swings(16, 2, degrees=2.0)[:, 1]
-    found = told(chain((0.0,), turn))
+    found = tree_of(chain((0.0,), turn))
     assert sorted(found.joint_of_part.tolist()) == [-1, 0]
     assert found.dropped == ((int(np.argmin(found.joint_of_part)), "still"),)
     assert found.in_tree.tolist() == [True]
@@ -153,12 +155,12 @@ def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:
 def test_body_of_one_part_has_no_borders_and_no_bones() -> None:
     body = chain((0.0,), swings(12, 2))
     stiff = body._replace(label=np.zeros(len(body.V), int), R=body.R[:, :1], t=body.t[:, :1], x=np.stack([body.V] * 12))
-    alone = told(stiff)
+    alone = tree_of(stiff)
     assert (len(alone.pair), alone.joint_of_part.tolist(), alone.free_length.tolist()) == (0, [0], [0.0])
 
 
 def test_bones_of_rigid_arms_hardly_vary_before_their_lengths_are_held() -> None:
-    found = told(three_arms())
+    found = tree_of(three_arms())
     assert sorted(found.joint_of_part.tolist()) == [0, 1, 3, 5]
     assert found.length_variation.max() < 0.5
     assert found.length_variation[0] == 0.0

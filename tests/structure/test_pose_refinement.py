@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from articulated import Known
-from fitting import FIRST, SPOILT, arms, articulation, seen
+from fitting import FIRST, SPOILT, arms, articulation, surface_at
 
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
@@ -12,9 +12,9 @@ from kinetree.schemas.structure.pose_refinement import PoseRefinement
 from kinetree.tasks.structure.pose_refinement import pose_refinement
 
 
-def told(known: Known, rows: tuple[int, ...]) -> PoseRefinement:
+def refined(known: Known, rows: tuple[int, ...]) -> PoseRefinement:
     _, body = arms()
-    surfaces = {row: seen(known, body, row) for row in rows}
+    surfaces = {row: surface_at(known, body, row) for row in rows}
     mesh = {
         FIRST + row: Mesh(vertices=s.V, faces=s.F, vertex_of_input=np.arange(len(s.V)), cleaning=Cleaning())
         for row, s in surfaces.items()
@@ -30,7 +30,7 @@ def told(known: Known, rows: tuple[int, ...]) -> PoseRefinement:
 
 def test_arm_that_was_off_is_where_its_surface_is() -> None:
     known, body = arms()
-    found = told(known, SPOILT)
+    found = refined(known, SPOILT)
     before = articulation(known).positions[list(SPOILT)]
     true = articulation(known, ()).positions[list(SPOILT)]
     assert found.frames == (FIRST + 6, FIRST + 7)
@@ -42,7 +42,7 @@ def test_arm_that_was_off_is_where_its_surface_is() -> None:
 
 def test_ends_of_bones_go_with_their_bones() -> None:
     known, _ = arms()
-    found = told(known, SPOILT)
+    found = refined(known, SPOILT)
     assert found.rotation[:, 2] == pytest.approx(found.rotation[:, 1])
     reach = np.linalg.norm(found.positions[:, 2] - found.positions[:, 1], axis=1)
     assert reach == pytest.approx(np.full(2, np.linalg.norm(known.joints[1])))
@@ -50,7 +50,7 @@ def test_ends_of_bones_go_with_their_bones() -> None:
 
 def test_frame_that_is_right_keeps_its_bytes() -> None:
     known, _ = arms()
-    found, before = told(known, (3,)), articulation(known)
+    found, before = refined(known, (3,)), articulation(known)
     assert not found.moved.any()
     for name in ("positions", "rotation", "confidence"):
         assert getattr(found, name)[0].tobytes() == getattr(before, name)[3].tobytes()
@@ -58,7 +58,7 @@ def test_frame_that_is_right_keeps_its_bytes() -> None:
 
 def test_same_input_gives_the_same_bytes() -> None:
     known, _ = arms()
-    one, two = told(known, SPOILT), told(known, SPOILT)
+    one, two = refined(known, SPOILT), refined(known, SPOILT)
     for name in PoseRefinement.array_fields():
         assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
 

@@ -18,7 +18,7 @@ STEMS = np.stack([np.outer(side * HEIGHTS, [0.0, 0.0, 1.0]) for side in (-1.0, 1
 NONE = np.zeros((0, 5, 3))
 
 
-def seen(angle, order=(1, 0)):
+def bent_stems(angle, order=(1, 0)):
     """Stems and centre of the bent tube as a frame shows them, in an order of its own."""
     return np.stack([bent(stem, angle) for stem in STEMS])[list(order)], bent(V, angle).mean(axis=0)
 
@@ -34,7 +34,7 @@ def test_points_at_rest_lie_where_they_are_and_turn_with_the_body(body):
 
 def test_a_limb_that_no_fit_from_the_last_pose_reaches_is_reached_from_where_it_was_swung(body):
     thin, frame = thinned_body(body), thinned_frame(bent(V, FAR), F, body.size)
-    starts = at_rest(body), swung(thin, at_rest(body), STEMS, *seen(FAR))
+    starts = at_rest(body), swung(thin, at_rest(body), STEMS, *bent_stems(FAR))
     lost, found = (near_pose(thin, start, frame) for start in starts)
     assert lost.distant > 0.3
     assert found.distant < 0.1
@@ -44,26 +44,26 @@ def test_a_limb_that_no_fit_from_the_last_pose_reaches_is_reached_from_where_it_
 
 
 def test_limbs_that_are_where_they_were_stay(body):
-    still = swung(body, at_rest(body), STEMS, *seen(0.0))
+    still = swung(body, at_rest(body), STEMS, *bent_stems(0.0))
     np.testing.assert_allclose(shape(body, still)[0], body.V, atol=0.01 * LENGTH)
 
 
 def test_limbs_are_told_apart_about_the_centre_wherever_the_body_has_gone(body):
     away = np.array([0.0, 0.0, LENGTH])
-    stems, centre = seen(0.3)
+    stems, centre = bent_stems(0.3)
     here, there = (swung(body, at_rest(body), STEMS, stems + shift, centre + shift) for shift in (0.0 * away, away))
     np.testing.assert_allclose(shape(body, there)[0], shape(body, here)[0] + away, atol=0.01 * LENGTH)
 
 
 def test_a_limb_that_the_frame_does_not_show_goes_along_with_the_others(body):
-    stems, centre = seen(0.0)
+    stems, centre = bent_stems(0.0)
     shift = np.array([0.0, 2.0, 0.0])
     found = swung(body, at_rest(body), STEMS, stems[:1] + shift, centre + shift)
     np.testing.assert_allclose(shape(body, found)[0], body.V + shift, atol=0.05 * LENGTH)
 
 
 def test_without_limbs_nothing_is_swung(body):
-    stems, centre = seen(0.3)
+    stems, centre = bent_stems(0.3)
     assert swung(body, at_rest(body), NONE, stems, centre) is None
     assert swung(body, at_rest(body), STEMS, NONE, centre) is None
 

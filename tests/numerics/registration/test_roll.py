@@ -7,7 +7,7 @@ from kinetree.tasks.numerics.registration.roll import chosen_rolls, frame_rolls
 FRAMES, TURNS, REFERENCE = 20, 12, 4
 
 
-def told(true, depth, noise=0.0, seed=0):
+def offered_turns(true, depth, noise=0.0, seed=0):
     """angle, misfit (frame, 1, turn): every frame offers the same turns, and fits those near its true one (frame,)."""
     angle = np.tile(2 * np.pi * np.arange(TURNS) / TURNS, (FRAMES, 1))
     angle = np.angle(np.exp(1j * angle))
@@ -22,7 +22,7 @@ def grown():
 
 
 def test_roll_that_grows_is_followed():
-    angle, misfit = told(grown(), 0.1, noise=0.02)
+    angle, misfit = offered_turns(grown(), 0.1, noise=0.02)
     turn = chosen_rolls(angle, misfit, REFERENCE)[:, 0]
     found = np.where(turn >= 0, angle[np.arange(FRAMES), 0, turn], 0.0)
     assert np.degrees(np.abs(found - grown())).max() < 31.0
@@ -31,13 +31,13 @@ def test_roll_that_grows_is_followed():
 
 def test_noise_moves_no_limb():
     for seed in range(20):
-        angle, misfit = told(np.zeros(FRAMES), 0.0, noise=0.06, seed=seed)
+        angle, misfit = offered_turns(np.zeros(FRAMES), 0.0, noise=0.06, seed=seed)
         assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_two_turns_that_fit_alike_leave_the_limb_where_it_is():
-    angle, misfit = told(grown(), 0.1)
-    opposite = told(grown() + np.pi, 0.1)[1]
+    angle, misfit = offered_turns(grown(), 0.1)
+    opposite = offered_turns(grown() + np.pi, 0.1)[1]
     assert (chosen_rolls(angle, misfit, REFERENCE) >= 0).any()
     assert (chosen_rolls(angle, np.minimum(misfit, opposite), REFERENCE) == -1).all()
 
@@ -45,25 +45,25 @@ def test_two_turns_that_fit_alike_leave_the_limb_where_it_is():
 def test_one_frame_alone_moves_no_limb():
     true = np.zeros(FRAMES)
     true[10] = np.radians(120.0)
-    angle, misfit = told(true, 0.2)
+    angle, misfit = offered_turns(true, 0.2)
     assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_a_limb_that_fits_where_it_is_stays():
-    angle, misfit = told(np.zeros(FRAMES), 0.2, noise=0.05)
+    angle, misfit = offered_turns(np.zeros(FRAMES), 0.2, noise=0.05)
     assert (chosen_rolls(angle, misfit, REFERENCE) == -1).all()
 
 
 def test_the_reference_is_never_turned_whatever_it_says():
-    angle, misfit = told(np.full(FRAMES, np.radians(90.0)), 0.2)
+    angle, misfit = offered_turns(np.full(FRAMES, np.radians(90.0)), 0.2)
     turn = chosen_rolls(angle, misfit, REFERENCE)[:, 0]
     assert turn[REFERENCE] == -1
     assert (turn[REFERENCE + 4 :] == 3).all()
 
 
 def test_time_may_run_either_way_and_limbs_do_not_know_each_other():
-    angle, misfit = told(grown(), 0.1, noise=0.02)
-    still = told(np.zeros(FRAMES), 0.1)
+    angle, misfit = offered_turns(grown(), 0.1, noise=0.02)
+    still = offered_turns(np.zeros(FRAMES), 0.1)
     both = chosen_rolls(np.concatenate([angle, still[0]], axis=1), np.concatenate([misfit, still[1]], axis=1), REFERENCE)
     np.testing.assert_array_equal(both[:, :1], chosen_rolls(angle, misfit, REFERENCE))
     assert (both[:, 1] == -1).all()

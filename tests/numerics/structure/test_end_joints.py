@@ -10,7 +10,9 @@ from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints
 
 
-def found(degrees: float, noise: float = 0.0, settings: EndJointsSettings | None = None, bent: float = 0.0) -> list[EndJoint]:
+def joints_at(
+    degrees: float, noise: float = 0.0, settings: EndJointsSettings | None = None, bent: float = 0.0
+) -> list[EndJoint]:
     surface, tree = found_in(aligned(turning(degrees), bent))
     shown = Frames(turning(degrees), noise).prepared(surface.size)
     return end_joints(surface, tree, np.ones(surface.x.shape[:2]), shown, settings)
@@ -27,13 +29,13 @@ def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJ
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_joint_that_is_not_in_the_aligned_vertices_is_found(noise: float) -> None:
-    (joint,) = found(25.0, noise)
+    (joint,) = joints_at(25.0, noise)
     np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
     assert joint.shown.all()
 
 
 def test_the_piece_beyond_moves_as_in_the_frames() -> None:
-    (joint,) = found(25.0)
+    (joint,) = joints_at(25.0)
     true = Frames(turning(25.0)).true
     between = np.einsum("tyx,tyz->txz", joint.R[:, 1], true.R[:, 2])
     # a round tube does not show how it turns about its own axis
@@ -43,20 +45,20 @@ def test_the_piece_beyond_moves_as_in_the_frames() -> None:
 
 @pytest.mark.parametrize("noise", [0.0, 0.02, 0.05])
 def test_no_joint_is_found_where_nothing_turns(noise: float) -> None:
-    assert found(0.0, noise) == []
+    assert joints_at(0.0, noise) == []
 
 
 def test_a_reference_that_is_bent_beyond_the_ring_is_no_evidence() -> None:
-    straight, bent = (found(8.0, 0.03, bent=degrees)[0].score for degrees in (0.0, 15.0))
+    straight, bent = (joints_at(8.0, 0.03, bent=degrees)[0].score for degrees in (0.0, 15.0))
     assert bent == pytest.approx(straight, rel=0.1)
-    assert found(5.0, 0.06, bent=15.0) == []
+    assert joints_at(5.0, 0.06, bent=15.0) == []
 
 
 @pytest.mark.parametrize(("degrees", "slice_length", "joints"), [(25.0, 1.0, 1), (25.0, 10.0, 0), (8.0, 10.0, 1)])
 def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joint(
     degrees: float, slice_length: float, joints: int
 ) -> None:
-    assert len(found(degrees, settings=EndJointsSettings(slice_length=slice_length))) == joints
+    assert len(joints_at(degrees, settings=EndJointsSettings(slice_length=slice_length))) == joints
 
 
 def test_a_part_that_no_frame_shows_has_no_joint() -> None:
@@ -76,13 +78,13 @@ def test_in_frames_that_do_not_show_it_the_piece_goes_with_its_part() -> None:
 
 
 def test_a_long_take_is_judged_in_some_frames_and_posed_in_all() -> None:
-    (joint,) = found(25.0, settings=EndJointsSettings(most_frames=12))
+    (joint,) = joints_at(25.0, settings=EndJointsSettings(most_frames=12))
     assert joint.shown.all()
 
 
 @pytest.mark.parametrize(("degrees", "noise"), [(4.0, 0.02), (6.0, 0.04)])
 def test_a_joint_that_one_take_turns_counts_as_much_as_in_that_take_alone(degrees: float, noise: float) -> None:
-    (alone,) = found(degrees, noise)
+    (alone,) = joints_at(degrees, noise)
     (joint,) = found_in_takes([degrees, 0.0, 0.0], noise)
     assert joint.score == pytest.approx(alone.score, rel=0.01)
     np.testing.assert_array_equal(joint.cut.far, alone.cut.far)

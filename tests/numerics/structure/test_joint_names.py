@@ -16,7 +16,7 @@ JOINTS = {
 ENDS = {"foot_l", "foot_r", "crown", "hand_l", "hand_r"}
 
 
-def told(order: list[str], wobble: float = 0.0) -> dict[str, str]:
+def names_of(order: list[str], wobble: float = 0.0) -> dict[str, str]:
     """Joint → name, the joints given in some order in which parents come first."""
     rest = np.array([JOINTS[k][1] for k in order], float)
     rest += wobble * np.random.default_rng(3).normal(size=rest.shape)
@@ -37,7 +37,7 @@ def shuffled(seed: int) -> list[str]:
 
 
 def test_names_tell_the_tree() -> None:
-    names = told(shuffled(0))
+    names = names_of(shuffled(0))
     assert names["pelvis"] == "root"
     assert names["chest"] == "spine_1"
     assert (names["hip_l"], names["knee_l"], names["foot_l"]) in {
@@ -49,11 +49,11 @@ def test_names_tell_the_tree() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_names_do_not_depend_on_the_order_in_which_joints_are_given(seed: int) -> None:
-    assert told(shuffled(seed)) == told(shuffled(99))
+    assert names_of(shuffled(seed)) == names_of(shuffled(99))
 
 
 def test_names_stay_under_small_changes() -> None:
-    assert told(shuffled(0), wobble=0.05) == told(shuffled(0))
+    assert names_of(shuffled(0), wobble=0.05) == names_of(shuffled(0))
 
 
 def test_ends_beside_joints_are_told_apart() -> None:

@@ -1,7 +1,7 @@
 """Where a limb may be that surface calls for."""
 
 import numpy as np
-from fitting import FRAMES, arms, seen, tip, true, turned
+from fitting import FRAMES, arms, surface_at, tip, true, turned
 from limbs import rotation
 
 from kinetree.tasks.numerics.structure.articulated_frame import FramePose, relative_rotations
@@ -16,7 +16,7 @@ def chosen(start_away: bool) -> tuple[FramePose | None, FramePose, float]:
     known, body = arms()
     frame, at = 5, true(known, 5)
     start = turned(at, 1, AWAY) if start_away else at
-    target = seen(known, body, frame)
+    target = surface_at(known, body, frame)
     is_known = np.ones((FRAMES, 4), bool)
     is_known[frame, 1] = False
     unseen = np.array([False, True, False, False])

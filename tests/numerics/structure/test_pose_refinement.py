@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fitting import FRAMES, arms, seen, tip, true, turned
+from fitting import FRAMES, arms, surface_at, tip, true, turned
 from limbs import rotation
 
 from kinetree.tasks.numerics.registration.correspondence import Target
@@ -31,7 +31,7 @@ def spoilt(
         certain[known.label == ARM] = trust
     R, confidence = known.R.copy(), np.ones((FRAMES, 4))
     R[FRAME], confidence[FRAME, ARM] = start.R, trust
-    found = refined_pose(body, start, seen(known, body, FRAME, lost), aligned, certain, KnownPoses(R, confidence), FRAME)
+    found = refined_pose(body, start, surface_at(known, body, FRAME, lost), aligned, certain, KnownPoses(R, confidence), FRAME)
     return found, start, at
 
 

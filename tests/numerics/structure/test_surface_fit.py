@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fitting import arms, seen, tip, true, turned
+from fitting import arms, surface_at, tip, true, turned
 from limbs import rotation
 
 from kinetree.tasks.numerics.structure.articulated_frame import relative_rotations
@@ -17,14 +17,14 @@ def test_body_is_drawn_onto_the_surface_without_any_aligned_vertex() -> None:
     at = true(known, FRAME)
     start = turned(at, 1, rotation((0.0, 0.0, 1.0), 0.4))
     expected = relative_rotations(start.R, body.parents)
-    found = fitted_to_surface(body, start, seen(known, body, FRAME), known.x[FRAME], np.zeros(len(known.V)), expected)
+    found = fitted_to_surface(body, start, surface_at(known, body, FRAME), known.x[FRAME], np.zeros(len(known.V)), expected)
     assert np.linalg.norm(tip(body, found, 1) - tip(body, at, 1)) < 0.01 * body.size
 
 
 def test_arm_that_the_frame_lost_is_held_where_it_was_expected() -> None:
     known, body = arms()
     at = true(known, FRAME)
-    target = seen(known, body, FRAME, lost=1)
+    target = surface_at(known, body, FRAME, lost=1)
     surface = equations(body, target, searched(body, at, target), 0.02 * body.size, 0.05)
     support = surface_support(body, surface)
     assert support[1] < 0.3 < 0.7 < support[[0, 2, 3]].min()

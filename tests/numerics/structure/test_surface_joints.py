@@ -22,17 +22,17 @@ HERE = np.zeros(3)
 
 def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
-    shown: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
+    mesh_at: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
     shift: Floats = HERE,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and the body is shifted."""
     surface, found = three_parts(frames, scale)
     rest = found.rest.copy()
     rest[1:, :2], rest[1, 2], rest[2] = 0.0, 0.0, scale * (np.array([0.0, 0.0, END]) + off)
-    given, size = shown or Frames(turning(), 0.02, scale), surface.size
+    meshes, size = mesh_at or Frames(turning(), 0.02, scale), surface.size
     tree = in_tree_order(found, 3)
     tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift), rest + shift
-    surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, given(f)) for f in range(frames))}
+    surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, meshes(f)) for f in range(frames))}
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
     return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings)
 
@@ -78,13 +78,13 @@ def test_joints_of_limbs_with_the_trunk_stay() -> None:
 def test_a_joint_stays_where_halves_of_the_frames_put_it_at_different_places(period: int) -> None:
     low, high = (chain((0.0, END + d), turning(), around=27, along=83) for d in (-0.8, 0.3))
 
-    def shown(frame: int) -> tuple[Floats, Ints]:
+    def mesh_at(frame: int) -> tuple[Floats, Ints]:
         body = low if frame // period % 2 else high
         return body.x[frame], body.F
 
-    before, after = moved(shown=shown)
+    before, after = moved(mesh_at=mesh_at)
     np.testing.assert_array_equal(before, after)
-    assert moved(shown=shown, settings=SurfaceJointsSettings(agree=1e9))[1][2, 2] != before[2, 2]
+    assert moved(mesh_at=mesh_at, settings=SurfaceJointsSettings(agree=1e9))[1][2, 2] != before[2, 2]
 
 
 def test_frames_that_do_not_show_the_parts_hardly_move_a_joint() -> None:
