@@ -101,7 +101,7 @@ class Freshness:
 
 def _asked_params(task: AnyTask, params: Mapping[str, Params]) -> dict[str, Any]:
     """What a task sees of its block: the fields of its own class of params."""
-    if task.params is None or task.block not in params:
+    if task.params is None:
         return {}
     return params[task.block].model_dump(mode="json", include=set(task.params.model_fields))
 
