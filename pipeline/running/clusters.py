@@ -24,7 +24,7 @@ from kinetree.errors.small_text import small_json, small_text
 from kinetree.pipeline.running.execute import Result, execute
 from kinetree.pipeline.running.following import MEMORY, begun_topic
 from kinetree.pipeline.running.living_workers import LivingWorkers
-from kinetree.pipeline.running.own_workers import Starts, kept_up
+from kinetree.pipeline.running.own_workers import Starts, looked_after
 from kinetree.pipeline.running.parcels import Demand
 from kinetree.pipeline.running.worker_parent import refuse_within_import
 from kinetree.pipeline.settings.config import Compute
@@ -85,7 +85,7 @@ def local(compute: Compute, configured: Configured = contextlib.nullcontext, sta
         client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
         cluster.scale(workers)
         try:
-            with kept_up(cluster, workers, starts or Starts()):
+            with looked_after(cluster, workers, starts or Starts()):
                 yield client
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
             cluster.sync(_end, cluster, patience=0.1)

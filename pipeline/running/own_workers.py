@@ -29,9 +29,14 @@ class Starts:
     """How often some of them ended and were started again."""
     in_vain: int = 0
     """How often in succession all of them ended while they started."""
+    failure: Exception | None = None
+    """Why nobody looks after them any longer."""
 
     def check(self) -> None:
-        """Raises ClusterError where no worker starts."""
+        """Raises ClusterError where no worker starts, or nobody looks after them."""
+        if self.failure is not None:
+            what = f"{type(self.failure).__name__}: {self.failure}"
+            raise ClusterError(f"worker processes are no longer looked after ({what})") from self.failure
         script = unguarded_script()
         if self.in_vain and script:
             raise ClusterError(f"no worker process starts: {script} starts the run; {GUARD}")
@@ -40,10 +45,14 @@ class Starts:
 
 
 def unguarded_script() -> str:
-    """The script that this program is, where it cannot know whether a worker imports it; "" where it can, or there is none."""
+    """The file of this program, where workers import it and its text has no `__name__`; else "".
+
+    Python's workers import no `__main__.py` of a package (`python -m PACKAGE`).
+    """
     main = sys.modules.get("__main__")
     file = getattr(main, "__file__", None)
-    if file is None:
+    module = getattr(getattr(main, "__spec__", None), "name", "")
+    if file is None or module.rpartition(".")[2] == "__main__":
         return ""
     with contextlib.suppress(OSError, UnicodeDecodeError):
         return "" if "__name__" in Path(file).read_text(encoding="utf-8") else str(file)
@@ -51,17 +60,24 @@ def unguarded_script() -> str:
 
 
 @contextlib.contextmanager
-def kept_up(cluster: Any, workers: int, starts: Starts) -> Iterator[None]:
-    """Has so many workers in a LocalCluster until the block ends, whatever becomes of them."""
-    keeping = asyncio.run_coroutine_threadsafe(_keep_up(cluster, workers, starts), cluster.loop.asyncio_loop)
+def looked_after(cluster: Any, workers: int, starts: Starts) -> Iterator[None]:
+    """Has so many workers in a LocalCluster until the block ends, whatever becomes of them; `starts` says what did."""
+
+    async def looking_after() -> None:
+        try:
+            await _look_after(cluster, workers, starts)
+        except Exception as error:  # whatever it is, the run would wait for workers for ever
+            starts.failure = error
+
+    looking = asyncio.run_coroutine_threadsafe(looking_after(), cluster.loop.asyncio_loop)
     try:
         yield
     finally:
-        keeping.cancel()
+        looking.cancel()
 
 
-async def _keep_up(cluster: Any, workers: int, starts: Starts) -> None:
-    """A nanny starts a worker anew that dies, and none that ends while it starts, nor itself."""
+async def _look_after(cluster: Any, workers: int, starts: Starts) -> None:
+    """Starts what a nanny does not: workers that end before they have come, and those whose nanny ends."""
     empty, times = 0.0, 0
     while True:
         await asyncio.sleep(FOLLOW_SECONDS)

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from importlib.machinery import ModuleSpec
 from multiprocessing import forkserver
 
 import dask.config
@@ -47,6 +48,7 @@ def test_only_a_script_that_never_asks_for_its_name_is_blamed(tmp_path, monkeypa
     main = sys.modules["__main__"]
     script = tmp_path / "script.py"
     monkeypatch.setattr(main, "__file__", str(script), raising=False)
+    monkeypatch.setattr(main, "__spec__", None)
     assert unguarded_script() == ""
     script.write_text("run()")
     assert unguarded_script() == str(script)
@@ -54,6 +56,25 @@ def test_only_a_script_that_never_asks_for_its_name_is_blamed(tmp_path, monkeypa
     assert unguarded_script() == ""
     monkeypatch.delattr(main, "__file__")
     assert unguarded_script() == ""
+
+
+@pytest.mark.parametrize("module", ["script", "tool.script", "tool.__main__"])
+def test_no_package_that_python_runs_is_blamed(tmp_path, monkeypatch, module):
+    main = sys.modules["__main__"]
+    script = tmp_path / "script.py"
+    script.write_text("run()")
+    monkeypatch.setattr(main, "__file__", str(script), raising=False)
+    monkeypatch.setattr(main, "__spec__", ModuleSpec(module, None))
+    assert unguarded_script() == ("" if module == "tool.__main__" else str(script))
+
+
+def test_what_ends_their_care_ends_the_run(toys, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("by nought")
+
+    monkeypatch.setattr(own_workers, "_look_after", broken)
+    with pytest.raises(ClusterError, match=r"no longer looked after \(ZeroDivisionError: by nought\)"):
+        toys.run(compute={"executor": "processes", "workers": 1})
 
 
 def test_workers_that_end_while_they_start_end_the_run_after_some_tries(monkeypatch):
