@@ -56,7 +56,7 @@ def local(compute: Compute, configured: Configured = contextlib.nullcontext, sta
     """Processes of this machine, one thread each, gone when the block ends, however it ends.
 
     configured : a context with what dask is to be configured to where they are made, and nowhere else
-    starts     : hears how often they ended while they started
+    starts     : counts how often they ended while they started, and has the error after which nobody looks after them
     raises     : ConfigError where they may hold less memory than they need for their code
     """
     refuse_within_import()
