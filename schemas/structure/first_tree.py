@@ -25,7 +25,7 @@ class FirstTree(Artifact):
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
     laid: tuple[int, ...]
-    """Those on whose surfaces parts of limbs are laid by themselves; a few of them are a member of "laid"."""
+    """Those on whose surfaces parts are laid by themselves; a few of them are a member of "laid"."""
     parents: tuple[int, ...]
     """Parent of every joint, −1 for the root, which is the first."""
     place: Annotated[Ints, Array("int32", PART)]

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
-from kinetree.schemas.dims import FRAME, FREEDOM, LIMB, OTHER_FREEDOM, ROW, XYZ
+from kinetree.schemas.dims import FRAME, FREEDOM, OTHER_FREEDOM, PART, ROW, XYZ
 
 
 class LaidParts(Artifact):
@@ -11,13 +11,13 @@ class LaidParts(Artifact):
 
     frame: Annotated[Ints, Array("int32", FRAME)]
     """These frames, counted from 0 among those of the first tree."""
-    joint: Annotated[Ints, Array("int32", LIMB)]
+    joint: Annotated[Ints, Array("int32", PART)]
     """Joints of the first tree about which the parts turn, ascending."""
-    rotation: Annotated[Floats, Array("float64", FRAME, LIMB, ROW, XYZ)]
+    rotation: Annotated[Floats, Array("float64", FRAME, PART, ROW, XYZ)]
     """Of every part from the reference mesh to the frame's surface."""
-    translation: Annotated[Floats, Array("float64", FRAME, LIMB, XYZ, unit="length")]
+    translation: Annotated[Floats, Array("float64", FRAME, PART, XYZ, unit="length")]
     """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
-    stiffness: Annotated[Floats, Array("float64", FRAME, LIMB, FREEDOM, OTHER_FREEDOM)]
+    stiffness: Annotated[Floats, Array("float64", FRAME, PART, FREEDOM, OTHER_FREEDOM)]
     """How firmly the surface holds the part against a turn about the origin and a shift."""
-    square: Annotated[Floats, Array("float64", FRAME, LIMB, unit="length²")]
+    square: Annotated[Floats, Array("float64", FRAME, PART, unit="length²")]
     """Mean squared distance of the part from the surface."""

@@ -1,4 +1,4 @@
-"""Parts of limbs on surfaces as the task gives them."""
+"""Parts on surfaces as the task gives them."""
 
 import numpy as np
 from aligned_body import tube
