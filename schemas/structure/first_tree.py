@@ -42,7 +42,7 @@ class FirstTree(Artifact):
     """Of every joint's part from the reference mesh to each frame."""
     translation: Annotated[Floats, Array("float64", FRAME, JOINT, XYZ, unit="length")]
     """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
-    seen: Annotated[Floats, Array("float64", FRAME, JOINT)]
+    certain_share: Annotated[Floats, Array("float64", FRAME, JOINT)]
     """Share of the surface of every joint's part that is certain in each frame."""
     rest: Annotated[Floats, Array("float64", JOINT, XYZ, unit="length")]
     """Position of every joint in the reference mesh, as this cut has it."""

@@ -21,7 +21,7 @@ def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pyte
     monkeypatch.setattr(numerics, "first_tree", lambda *a, **b: made.append(whole(*a, **b)) or made[0])
     tree, (before,) = restored(tree_of_tube(trust)), made
     assert tree.ends == (1 if trust < 1.0 else 0)
-    assert (tree.seen is None) == (trust == 1.0)
+    assert (tree.certain_share is None) == (trust == 1.0)
     for one, other in ((tree, before), (tree.graph, before.graph)):
         for name, value in one._asdict().items():
             if isinstance(value, np.ndarray):

@@ -42,19 +42,19 @@ class PartGraph(NamedTuple):
 class FirstTree(NamedTuple):
     """Parts in one tree, each with the joint about which it turns, in the tree's order: a part after its parent.
 
-    parents  : (part,) −1 for the root
-    place    : (given,) place in the tree of every part that was given, −1 for those dropped and those without vertices
-    ends     : how many of the parts, the last ones, lie beyond joints that the frames' surfaces alone show
-    label    : (vertex,) part
-    W        : (vertex, part) skinning weights
-    R, t     : (frame, part, 3, 3) · (frame, part, xyz) from the reference
-    seen     : (frame, part) share of its surface that is certain, 0 to 1; None where every vertex was followed
-    rest     : (part, xyz) the joint in the reference, mesh unit
-    drift    : (part,) distance between the joint as its two parts carry it, mesh unit; 0 for the root
-    residual : (part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root
-    radius   : (part,) of the border at the joint, mesh unit; 0 for the root
-    end_x    : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
-    graph    : of all parts
+    parents       : (part,) −1 for the root
+    place         : (given,) place in the tree of every part that was given, −1 for those dropped and those without vertices
+    ends          : how many of the parts, the last ones, lie beyond joints that the frames' surfaces alone show
+    label         : (vertex,) part
+    W             : (vertex, part) skinning weights
+    R, t          : (frame, part, 3, 3) · (frame, part, xyz) from the reference
+    certain_share : (frame, part) share of its surface that is certain, 0 to 1; None where every vertex was followed
+    rest          : (part, xyz) the joint in the reference, mesh unit
+    drift         : (part,) distance between the joint as its two parts carry it, mesh unit; 0 for the root
+    residual      : (part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root
+    radius        : (part,) of the border at the joint, mesh unit; 0 for the root
+    end_x         : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
+    graph         : of all parts
     """
 
     parents: Ints
@@ -64,7 +64,7 @@ class FirstTree(NamedTuple):
     W: Floats
     R: Floats
     t: Floats
-    seen: Floats | None
+    certain_share: Floats | None
     rest: Floats
     drift: Floats
     residual: Floats
@@ -86,12 +86,12 @@ class FirstTree(NamedTuple):
     @property
     def motion(self) -> JointMotion:
         """Of the two parts at every joint but the root."""
-        return JointMotion.of(self.R, self.t, self.parents, self.seen)
+        return JointMotion.of(self.R, self.t, self.parents, self.certain_share)
 
     def drift_at(self, rest: Floats) -> Floats:
         """(part,) the drift of joints elsewhere; rest (part, xyz) in the reference, mesh unit."""
         pair = np.stack([np.arange(1, len(rest)), self.parents[1:]], axis=1)
-        return np.append(0.0, drift(self.R, self.t, pair, rest[1:], self.seen))
+        return np.append(0.0, drift(self.R, self.t, pair, rest[1:], self.certain_share))
 
 
 def first_tree(
@@ -137,7 +137,7 @@ def in_tree_order(found: TreeJoints, given: int, ends: int = 0) -> FirstTree:
         W=found.W,
         R=found.R,
         t=found.t,
-        seen=None if left.parts.confidence is None else left.parts.confidence[:, tree.order],
+        certain_share=None if left.parts.confidence is None else left.parts.confidence[:, tree.order],
         rest=found.rest,
         drift=found.drift,
         residual=found.residual,

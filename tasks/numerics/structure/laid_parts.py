@@ -33,10 +33,10 @@ class LaidParts(NamedTuple):
     """Parts on the surfaces of some frames.
 
     frame                 : (laid,) place among the frames, ascending
-    joint                 : (limb,) about which each part turns, in the tree's order, ascending
-    rotation, translation : (laid, limb, 3, 3) · (laid, limb, xyz) from the reference, mesh unit
-    stiffness             : (laid, limb, 6, 6) of the fit about the origin, see `shift_stiffness`
-    square                : (laid, limb) mean squared distance from the surface, mesh unit²
+    joint                 : (part,) about which each part turns, in the tree's order, ascending
+    rotation, translation : (laid, part, 3, 3) · (laid, part, xyz) from the reference, mesh unit
+    stiffness             : (laid, part, 6, 6) of the fit about the origin, see `shift_stiffness`
+    square                : (laid, part) mean squared distance from the surface, mesh unit²
     """
 
     frame: Ints
