@@ -88,7 +88,7 @@ def test_a_part_of_few_vertices_moves_as_before() -> None:
 
 
 def test_a_few_vertices_that_some_motion_explains_are_no_core() -> None:
-    bars, without = [wavy(16, seed) for seed in range(10)], RigidCoresSettings(least_alike=0.0)
+    bars, without = [wavy(12, seed) for seed in range(10)], RigidCoresSettings(least_alike=0.0)
     assert not any(taken(*bar) for bar in bars)
     assert sum(taken(*bar, without) for bar in bars) >= 3
 
