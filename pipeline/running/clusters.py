@@ -109,9 +109,9 @@ class OwnNanny(Nanny):  # type: ignore[misc]
     config: dict[str, Any]
     pre_spawn_env: dict[str, str]
 
-    def __init__(self, *given: Any, configured: Configured, **named: Any) -> None:
+    def __init__(self, *args: Any, configured: Configured, **options: Any) -> None:
         with configured():
-            super().__init__(*given, **named)
+            super().__init__(*args, **options)
             self.config = copy.deepcopy(self.config)  # its inner parts are those of the program's
         if get_mp_context().get_start_method() == "forkserver":
             self.pre_spawn_env = {}  # dask would leave it in this program's own environment; a forked worker sets it itself
@@ -190,8 +190,8 @@ def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
 def _left_address(file: Path) -> str:
     """What a scheduler left in its file; raises OSError where the file is not there yet."""
     file.stat()
-    held = small_json(small_text(file, ConfigError, SCHEDULER_FILE_BYTES), str(file), ConfigError)
-    return str(held["address"])
+    scheduler = small_json(small_text(file, ConfigError, SCHEDULER_FILE_BYTES), str(file), ConfigError)
+    return str(scheduler["address"])
 
 
 @contextlib.contextmanager

@@ -36,7 +36,7 @@ class Ref:
     label: str
     artifact: str | None = None
     step: int | None = None
-    given: Artifact | None = None
+    carried: Artifact | None = None
 
 
 @dataclass(frozen=True)
@@ -180,19 +180,19 @@ def _run(bench: _Bench, number: int, step: Step, task: Task[..., Any], key: str,
     return Result("ran", key, digest, seconds, record)
 
 
-def _recorded(bench: _Bench, given: Input) -> dict[str, Any]:
+def _recorded(bench: _Bench, read_input: Input) -> dict[str, Any]:
     """An argument in the words of a record: argument, form, nodes, artifacts."""
     return {
-        "argument": given.argument,
-        "form": given.form,
-        "nodes": [ref.label for ref in given.reads],
-        "artifacts": [_digest(bench, ref) for ref in given.reads],
+        "argument": read_input.argument,
+        "form": read_input.form,
+        "nodes": [ref.label for ref in read_input.reads],
+        "artifacts": [_digest(bench, ref) for ref in read_input.reads],
     }
 
 
 def _digest(bench: _Bench, ref: Ref) -> str:
-    if ref.given is not None:
-        return artifact_digest(ref.given)
+    if ref.carried is not None:
+        return artifact_digest(ref.carried)
     return bench.results[ref.step].artifact if ref.step is not None else str(ref.artifact)
 
 
@@ -200,19 +200,19 @@ def _asked_index(task: Task[..., Any], step: Step) -> Index | None:
     return tuple(step.index[dim] for dim in task.over) if task.asks_index else None
 
 
-def _value(bench: _Bench, task: Task[..., Any], given: Input) -> Any:
-    cls = next(a.artifact for a in task.arguments if a.name == given.argument)
-    artifacts = [_artifact(bench, cls, ref) for ref in given.reads]
-    if given.form == "tuple":
+def _value(bench: _Bench, task: Task[..., Any], read_input: Input) -> Any:
+    cls = next(a.artifact for a in task.arguments if a.name == read_input.argument)
+    artifacts = [_artifact(bench, cls, ref) for ref in read_input.reads]
+    if read_input.form == "tuple":
         return tuple(artifacts)
-    if given.numbers is not None:
-        return dict(zip(given.numbers, artifacts, strict=True))
+    if read_input.numbers is not None:
+        return dict(zip(read_input.numbers, artifacts, strict=True))
     return artifacts[0] if artifacts else None
 
 
 def _artifact(bench: _Bench, cls: type[Artifact], ref: Ref) -> Artifact:
-    if ref.given is not None:
-        return ref.given
+    if ref.carried is not None:
+        return ref.carried
     if ref.step is not None and ref.step in bench.made:
         return bench.made[ref.step]
     return _read(bench.store.url, cls, _digest(bench, ref))
