@@ -109,7 +109,7 @@ def first_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
-    found, ends = cut_tree(body, cut, leaves, confidence, evidence, settings), 0
+    joints, ends = cut_tree(body, cut, leaves, confidence, evidence, settings), 0
     if settings.end_joints and evidence is not None and confidence is not None:
         size, meshes = body.size, evidence.surface
 
@@ -117,45 +117,45 @@ def first_tree(
         def surface(f: int) -> Target:
             return Target.of(*meshes(f), size, SAMPLE)
 
-        parts = len(found.rest)
-        body, found = inserted_ends(body, found, confidence, surface, settings.noise * size)
-        ends = len(found.rest) - parts
-    tree = in_tree_order(found, cut.R.shape[1], ends)
+        parts = len(joints.rest)
+        body, joints = inserted_ends(body, joints, confidence, surface, settings.noise * size)
+        ends = len(joints.rest) - parts
+    tree = in_tree_order(joints, cut.R.shape[1], ends)
     return tree._replace(end_x=body.x[:, tree.at_ends])
 
 
-def in_tree_order(found: TreeJoints, given: int, ends: int = 0) -> FirstTree:
-    """A tree of so many given parts, of which so many were added at ends, whose vertices at ends are not looked up yet."""
-    left, tree = found.left, found.left.part_tree.tree
-    origin, place = left.origin[tree.order], np.full(given, -1)
-    place[found.used[origin[origin != NO_PART]]] = np.flatnonzero(origin != NO_PART)
+def in_tree_order(joints: TreeJoints, parts: int, ends: int = 0) -> FirstTree:
+    """The tree of a cut of so many parts; `ends` parts of it were added at ends. Vertices at ends are not looked up yet."""
+    left, tree = joints.left, joints.left.part_tree.tree
+    origin, place = left.origin[tree.order], np.full(parts, -1)
+    place[joints.used[origin[origin != NO_PART]]] = np.flatnonzero(origin != NO_PART)
     return FirstTree(
         parents=tree.parents,
         place=place,
         ends=ends,
-        label=found.label,
-        W=found.W,
-        R=found.R,
-        t=found.t,
+        label=joints.label,
+        W=joints.W,
+        R=joints.R,
+        t=joints.t,
         certain_share=None if left.parts.confidence is None else left.parts.confidence[:, tree.order],
-        rest=found.rest,
-        drift=found.drift,
-        residual=found.residual,
+        rest=joints.rest,
+        drift=joints.drift,
+        residual=joints.residual,
         radius=np.append(0.0, left.part_tree.borders.radius[tree.border[1:]]),
-        end_x=np.zeros((len(found.R), 0, 3)),
-        graph=_graph(found),
+        end_x=np.zeros((len(joints.R), 0, 3)),
+        graph=_graph(joints),
     )
 
 
-def _graph(found: TreeJoints) -> PartGraph:
+def _graph(joints: TreeJoints) -> PartGraph:
     """All parts by the numbers that they were given."""
-    before, used = found.left.before, found.used
+    before, used = joints.left.before, joints.used
     return PartGraph(
         pair=used[before.borders.pair],
         centre=before.joints.rest,
         border_drift=before.joints.drift,
         border_degrees=_border_degrees(before),
-        dropped=tuple(d._replace(part=int(used[d.part])) for d in found.left.dropped),
+        dropped=tuple(d._replace(part=int(used[d.part])) for d in joints.left.dropped),
     )
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
@@ -71,16 +71,6 @@ def laid_parts(
         np.array([[fit[k] for fit in row] for row in rows]).reshape(len(rows), len(pieces), *n) for k, n in enumerate(shapes)
     )
     return LaidParts(np.array(list(surfaces), np.int64), np.array(list(pieces), np.int64), *fits)
-
-
-def within_limbs(parents: Ints) -> Flags:
-    """(part,) whether a part hangs on one that is not the root and has no other part below it.
-
-    Flesh around hips, shoulders and necks bends on its own: there rigid pieces lead away from the joint.
-    """
-    below = np.bincount(parents[1:], minlength=len(parents))
-    above = np.maximum(parents, 0)
-    return np.asarray((parents > 0) & (below[above] == 1))
 
 
 def _pieces(V: Floats, F: Ints, area: Floats, tree: FirstTree, chosen: LaidPartsSettings) -> dict[int, Piece]:

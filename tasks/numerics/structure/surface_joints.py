@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
-from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings, within_limbs
+from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings
 
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
@@ -99,6 +99,16 @@ def surface_joints(
                 places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
                 offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
     return SurfaceJoints(moved, offset)
+
+
+def within_limbs(parents: Ints) -> Flags:
+    """(part,) whether a part hangs on one that is not the root and has no other part below it.
+
+    Flesh around hips, shoulders and necks bends on its own: there rigid pieces lead away from the joint.
+    """
+    below = np.bincount(parents[1:], minlength=len(parents))
+    above = np.maximum(parents, 0)
+    return np.asarray((parents > 0) & (below[above] == 1))
 
 
 def _often_shown(pull: _Pull) -> bool:

@@ -4,7 +4,7 @@ import numpy as np
 from smeared import Frames, three_parts, turning
 
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
-from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings, laid_frames, laid_parts, within_limbs
+from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings, laid_frames, laid_parts
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 
 
@@ -33,10 +33,6 @@ def test_stiffness_is_that_of_a_turn_and_a_shift() -> None:
     assert found.stiffness.shape == (24, 3, 6, 6)
     np.testing.assert_allclose(found.stiffness, found.stiffness.swapaxes(2, 3), atol=1e-9)
     assert (np.linalg.eigvalsh(found.stiffness) > -1e-9).all()
-
-
-def test_parts_within_limbs_are_those_without_a_branch_above_them() -> None:
-    assert within_limbs(np.array([-1, 0, 1, 2, 0, 4, 4])).tolist() == [False, False, True, True, False, False, False]
 
 
 def test_of_many_frames_some_are_looked_at_and_of_few_none() -> None:

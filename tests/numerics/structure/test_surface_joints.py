@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.laid_parts import laid_parts
-from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, SurfaceJointsSettings, surface_joints
+from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, SurfaceJointsSettings, surface_joints, within_limbs
 
 OFF = np.array([0.0, 0.0, 0.5])
 """How far off the joint is put, half a radius along the limb."""
@@ -125,3 +125,7 @@ def test_a_joint_has_an_offset_from_eight_frames_on_that_show_its_parts() -> Non
         shares[::3][count:] = 0.0
         _, found = on_surfaces(seen=shares)
         assert np.isfinite(found.offset[1:]).tolist() == [says, says]
+
+
+def test_parts_within_limbs_are_those_without_a_branch_above_them() -> None:
+    assert within_limbs(np.array([-1, 0, 1, 2, 0, 4, 4])).tolist() == [False, False, True, True, False, False, False]
