@@ -81,12 +81,12 @@ def local(compute: Compute, configured: Configured = contextlib.nullcontext, sta
                 **secured(compute),
             )
         cluster = stack.enter_context(_closed(made))
-        client = stack.enter_context(_closed(Client(cluster)))
-        client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
-        cluster.scale(workers)
         try:
-            with looked_after(cluster, workers, starts or Starts()):
-                yield client
+            with _closed(Client(cluster)) as client:  # first to go: what it waits for is computed again where a worker ends
+                client.register_plugin(_Deaf())  # before there is any worker that could die while it is told
+                cluster.scale(workers)
+                with looked_after(cluster, workers, starts or Starts()):
+                    yield client
         except BaseException:  # nodes in the middle may take minutes, and what they publish is whole or nothing
             cluster.sync(_end, cluster, patience=0.1)
             raise
@@ -275,6 +275,8 @@ class Remote:
                 raise lost from None
             except OSError as error:  # of the network: what a task raises comes as a result
                 raise ClusterError(f"the scheduler is gone ({type(error).__name__}); run again to go on") from None
+            finally:
+                future.release()  # or it is computed again where a worker ends that still holds it
 
         outcome = asyncio.run_coroutine_threadsafe(fetched(), client.loop.asyncio_loop)
         outcome.add_done_callback(lambda _: workers.forget(future.key))

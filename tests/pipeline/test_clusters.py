@@ -1,5 +1,6 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
 
+import gc
 import json
 import logging
 import os
@@ -280,6 +281,32 @@ def test_a_result_that_cannot_be_fetched_is_no_fault_of_its_node(toys, empty, mo
         monkeypatch.setattr(client, "_gather", closed)
         with pytest.raises(ClusterError, match=r"the scheduler is gone \(CommClosedError\); run again"):
             toys.run(client, until=("points",))
+
+
+def test_what_was_fetched_stays_with_no_worker(toys, empty):
+    """A worker that ends would have it computed again elsewhere, for nobody."""
+    empty.scale(1)
+    gc.disable()
+    try:
+        with Client(empty) as client:
+            toys.run(client)
+            toys.until(lambda: not client.run_on_scheduler(lambda dask_scheduler: [*dask_scheduler.tasks]), "nothing is left")
+    finally:
+        gc.enable()
+
+
+def test_nothing_is_computed_again_while_workers_end(toys, monkeypatch):
+    """Each that ends before the others would leave them what it still holds, such as a failure, which has no record."""
+    wanted, end = [], clusters._end
+
+    async def noted(cluster, patience):
+        wanted.extend(key for key, task in cluster.scheduler.tasks.items() if task.who_wants)
+        await end(cluster, patience)
+
+    monkeypatch.setattr(clusters, "_end", noted)
+    toys.flag("fail-report-6")
+    assert toys.run(compute={"executor": "processes", "workers": 2}).heard.nodes("failed") == ["report"]
+    assert wanted == []
 
 
 def test_dask_names_what_runs_by_its_tasks(toys, empty):
