@@ -162,9 +162,9 @@ def parameters(graph: Graph) -> list[Setting]:
     """Numeric parameters of the tasks of a graph."""
     numeric = []
     for task in graph.tasks:
-        if task.params is not None and not task.is_origin:
-            meanings = _meanings(task.params.__module__, task.params.__name__)
-            for field, info in task.params.model_fields.items():
+        if task.sets is not None and not task.is_origin:
+            meanings = _meanings(task.sets.__module__, task.sets.__name__)
+            for field, info in task.sets.model_fields.items():
                 if is_numeric(info.default):
                     numeric.append(Setting("parameter", task.module, task.name, field, info.default, meanings.get(field, "")))
     return numeric

@@ -261,7 +261,7 @@ def _blocks_are_those_of_tasks(graph: Graph) -> None:
 
 def _sets(owner: AnyTask | None, params: type[Params]) -> bool:
     """Whether the block of that name is this task's own and has all fields of the params."""
-    return owner is not None and owner.params is not None and owner.block == owner.name and issubclass(owner.params, params)
+    return owner is not None and owner.sets is not None and issubclass(owner.sets, params)
 
 
 def _every_space_is_opened_once(graph: Graph) -> None:

@@ -24,7 +24,7 @@ from kinetree.schemas.array import Artifact, Params
 DECLARING = ("task", "graph", "graph_cache")
 """Modules of this folder that decide what a signature says."""
 PLAIN = ("name", "is_origin", "on_request", "asks_index", "threads", "retries", "timeout", "memory", "block", "is_linked")
-CLASSES = ("params", "returns", "along", "among")
+CLASSES = ("params", "sets", "returns", "along", "among")
 REMEDY = "delete the folder kinetree/graphs of the user's cache"
 Row = Mapping[str, Any]
 C = TypeVar("C", Artifact, Params)
@@ -134,6 +134,7 @@ def _task(row: Row) -> AnyTask:
         arguments=tuple(Argument(name, _artifact(cls), form, previous) for name, cls, form, previous in row["arguments"]),
         where=f"{source_of(module)}:{row['line']}",
         params=_class(row["params"], Params) if row["params"] else None,
+        sets=_class(row["sets"], Params) if row["sets"] else None,
         returns=_artifact(row["returns"]),
         along=_artifact(row["along"]) if row["along"] else None,
         among=_artifact(row["among"]) if row["among"] else None,

@@ -95,7 +95,9 @@ class Task(Generic[P, R]):
     memory: int | None = None
     """Bytes that one node needs while it is computed; None takes what earlier nodes of the task needed."""
     block: str = ""
-    """The block of the configuration that sets it: its own name, or that of another task with the same parameters."""
+    """The block of the configuration that sets it: its own name, or that of another task whose block has all its parameters."""
+    sets: type[Params] | None = None
+    """All parameters of its own block, of which it may see a part alone; None where it has no block of its own."""
     is_linked: bool = False
     """Whether its artifacts were made by another graph and are read from the store by digest."""
 
@@ -147,7 +149,7 @@ def task(
     retries: int = 1,
     timeout: float | None = None,
     memory: int | None = None,
-    block: str | None = None,
+    block: str | type[Params] | None = None,
 ) -> Callable[[Callable[P, R]], Task[P, R]]:
     """Declares a function as a task; see the module's docstring for what its signature says.
 
@@ -162,8 +164,9 @@ def task(
                  process cannot be ended: it is given up and goes on. The executor `sync` has no limit
     memory     : bytes that one node needs; workers that declare a resource `memory` compute no more at a time than fits.
                  None takes the most that a node of the task was measured to need
-    block      : the block of the configuration that sets `params`, where that is another task's with the same class of params,
-                 or with one that extends it: the task sees the fields of its own class alone
+    block      : for a task that another's block of the configuration sets, the name of that block; for a task whose own block
+                 has more parameters than it reads, the class of them all, which extends that of `params`. A task sees the
+                 fields of its own class of params alone, and no other is in its keys
     raises     : GraphError, at import, where the signature does not say enough
     """
 
@@ -176,10 +179,8 @@ def task(
             raise GraphError(f"{place}: timeout is {timeout} and memory is {memory}; expected more than 0 seconds and bytes")
         if among is not None and not among.selects:
             raise GraphError(f"{place}: is among {among.__name__}, which selects nothing")
-        if block is not None and declared.params is None:
-            raise GraphError(f"{place}: is set by the block {block}, but takes no params")
         limited = replace(declared, threads=threads, retries=retries, timeout=timeout, memory=memory)
-        limited = replace(limited, block=block or declared.name)
+        limited = replace(limited, **_block(declared, block, place))
         return replace(limited, among=among, on_request=on_request)
 
     return declare
@@ -203,7 +204,7 @@ def linked(made_by: Task[P, R], *, over: str) -> Task[P, R]:
 
     over : the dimension of the members whose artifacts they are; another origin's artifact opens it
     """
-    beginning = replace(made_by, over=space(over), arguments=(), params=None, along=None, asks_index=False)
+    beginning = replace(made_by, over=space(over), arguments=(), params=None, sets=None, along=None, asks_index=False)
     return replace(beginning, is_origin=True, is_linked=True, on_request=False)
 
 
@@ -258,7 +259,18 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
     _refuse_bad_traversal(declared, place)
     if asks_index and not over:
         raise GraphError(f"{place}: asks for its index, but runs once and has none; say over what it runs")
-    return replace(declared, asks_index=asks_index, block=declared.name)
+    return replace(declared, asks_index=asks_index, block=declared.name, sets=declared.params)
+
+
+def _block(task: Task[..., Any], block: str | type[Params] | None, place: str) -> dict[str, Any]:
+    """The block that sets a task, and all parameters of its own one."""
+    if isinstance(block, type):
+        if task.params is not None and not issubclass(block, task.params):
+            raise GraphError(f"{place}: its block is set by {block.__name__}, which does not extend {task.params.__name__}")
+        return {"block": task.name, "sets": block}
+    if block is not None and task.params is None:
+        raise GraphError(f"{place}: is set by the block {block}, but takes no params")
+    return {"block": block or task.name, "sets": task.params if block in (None, task.name) else None}
 
 
 def _refuse_bad_traversal(task: Task[..., Any], place: str) -> None:

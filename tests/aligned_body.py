@@ -7,8 +7,13 @@ from smeared import Frames, aligned, turning
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.end_rings import EndRings
+from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
+from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.structure.end_rings import end_rings
+from kinetree.tasks.structure.extended_tree import extended_tree
 
 FIRST = 10
 
@@ -41,6 +46,30 @@ def task_inputs(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference,
         lost=np.zeros(0, int), lost_begin=np.zeros(0, int), lost_end=np.zeros(0, int),
     )  # fmt: skip
     return reference, aligned, leaves
+
+
+def judged(
+    first: FirstTree,
+    reference: Reference,
+    alignment: dict[int, Alignment],
+    mesh: dict[int, Mesh],
+) -> tuple[EndRings, ...]:
+    """What the frames of every run show of rings at ends."""
+    runs = [first.members("judged/frame", (k,)) for k in first.members("judged", ())]
+    return tuple(end_rings(reference, first, {f: alignment[f] for f in run}, {f: mesh[f] for f in run}) for run in runs)
+
+
+def extended(
+    first: FirstTree,
+    reference: Reference,
+    alignment: dict[int, Alignment],
+    mesh: dict[int, Mesh],
+    leaves: Leaves,
+    surface_joints: bool = True,
+) -> ExtendedTree:
+    """The tree with joints at ends."""
+    rings, params = judged(first, reference, alignment, mesh), ExtendedTreeParams(surface_joints=surface_joints)
+    return extended_tree(reference, first, rings, alignment, mesh, leaves, params)
 
 
 def tube(trust: float) -> tuple[Reference, RigidParts, dict[int, Alignment], dict[int, Mesh], Leaves]:

@@ -1,15 +1,20 @@
 """The finished body from its parts at once, as the tasks make it one after the other."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 
+from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.cut_joints import cut_joints
-from kinetree.tasks.numerics.structure.first_tree import first_tree
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRings, Fits, end_rings, lay_rings
+from kinetree.tasks.numerics.structure.extended_tree import extended_tree
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
+from kinetree.tasks.numerics.structure.tree_joints import NOISE, Cut, KinematicTreeSettings
 
 
 def whole_tree(
@@ -21,8 +26,30 @@ def whole_tree(
     *,
     settings: KinematicTreeSettings,
     further: Sequence[Cut] = (),
+    surface: Callable[[int], Target] | None = None,
+    has_second_ends: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
-    """The body, and how it came about; arguments as of the numerics."""
+    """The body, and how it came about; joints at ends are looked for where the frames' surfaces are given."""
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
+    if surface is not None and confidence is not None:
+        ends = joints_at_ends(body, first, confidence, surface)
+        first = extended_tree(body, first, ends, confidence, NOISE * body.size) if ends else first
     joints = [cut_joints(body, other, leaves, confidence, settings)[first.has_bones] for other in further]
-    return kinematic_tree(body, first, leaves, confidence, settings=settings, further=joints)
+    return kinematic_tree(body, first, leaves, confidence, further=joints, has_second_ends=has_second_ends)
+
+
+def joints_at_ends(
+    body: MovingSurface,
+    tree: FirstTree,
+    confidence: np.ndarray,
+    surface: Callable[[int], Target],
+    settings: EndJointsSettings | None = None,
+) -> list[EndJoint]:
+    """The joints at ends, judged in runs of frames as tasks judge them."""
+    frames, count = EndFrames.of(tree, body.area, confidence, cache(surface)), len(body.x)
+    rings, runs = end_rings(body.V, body.F, body.area, tree), []
+    for run in judged_runs(count, body.takes, settings):
+        fits: list[Fits] = [{} for _ in rings]
+        lay_rings(frames, run, rings, fits)
+        runs.append(EndRings.of(run, fits))
+    return end_joints(frames, rings, EndRings.joined(runs).fits, body.takes, settings)

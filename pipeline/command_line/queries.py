@@ -208,7 +208,7 @@ def _read(argument: dict[str, Any]) -> str:
 def _task_row(task: Any) -> dict[str, Any]:
     from kinetree.pipeline.settings.sentences import sentences
 
-    fields, texts = (task.params.model_fields, sentences(task.params)) if task.params and task.block == task.name else ({}, {})
+    fields, texts = (task.sets.model_fields, sentences(task.sets)) if task.sets else ({}, {})
     return {
         "task": task.name,
         "over": "/".join(task.over),
@@ -219,7 +219,7 @@ def _task_row(task: Any) -> dict[str, Any]:
         "along": task.traversed,
         "writes": task.returns.__name__,
         "params": {n: {"default": f.default, "what": texts.get(n, "")} for n, f in fields.items()},
-        "set_by": [f"{task.block}.{n}" for n in task.params.model_fields] if task.params and not fields else [],
+        "set_by": [f"{task.block}.{n}" for n in task.params.model_fields] if task.params not in (None, task.sets) else [],
         "on_request": task.on_request,
         "paper": task.paper,
         "summary": task.summary,

@@ -93,7 +93,7 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     """
     reading = Reading.of(application.methods(), application.presets)
     content, where, base = _read(target)
-    known = {task.name for graph in application.methods().values() for task in graph.tasks if task.params is not None}
+    known = {task.name for graph in application.methods().values() for task in graph.tasks if task.sets is not None}
     for key in content:
         if key not in {*known, *RUN_KEYS, *KEYS}:
             raise ConfigError(f"{where}: no such key {key!r}; {nearest(str(key), {*known, *RUN_KEYS, *KEYS})}")

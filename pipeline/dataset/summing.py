@@ -99,7 +99,7 @@ class Summing:
         origins = [task for task in self.graph.tasks if task.is_origin and not task.is_linked]
         if len(origins) != 1 or origins[0].params is None:
             raise GraphError(f"the graph over data sets has {len(origins)} origins; expected one, with params")
-        params: dict[str, Any] = {task.name: task.params() for task in self.graph.tasks if task.params and not task.is_origin}
+        params: dict[str, Any] = {task.name: task.sets() for task in self.graph.tasks if task.sets and not task.is_origin}
         params[origins[0].name] = origins[0].params.model_validate({"sequences": rows})
         return Config("data set", params, self.dataset.root, self.dataset.store, self.dataset.compute)
 

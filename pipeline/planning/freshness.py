@@ -30,7 +30,7 @@ class Freshness:
         distrusted: MadeWith,
     ) -> None:
         self.graph = graph
-        self.params = {task.name: _asked_params(task, params) for task in graph.tasks}
+        self.params = {task.name: asked_params(task, params) for task in graph.tasks}
         self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self.force = force
         self.recall = recall
@@ -99,7 +99,7 @@ class Freshness:
         return differences(work, then) or (Reason("artifact", "its record is missing or damaged"),)
 
 
-def _asked_params(task: AnyTask, params: Mapping[str, Params]) -> dict[str, Any]:
+def asked_params(task: AnyTask, params: Mapping[str, Params]) -> dict[str, Any]:
     """What a task sees of its block: the fields of its own class of params."""
     if task.params is None:
         return {}

@@ -60,13 +60,13 @@ class _PathsOf(Mapping[str, frozenset[tuple[str, ...]]]):
         self._methods = methods
 
     def __getitem__(self, name: str) -> frozenset[tuple[str, ...]]:
-        params = next((graph.by_name[name].params for graph in self._methods.values() if name in graph.by_name), None)
+        params = next((graph.by_name[name].sets for graph in self._methods.values() if name in graph.by_name), None)
         if params is None:
             raise KeyError(name)
         return params.path_fields()
 
     def __iter__(self) -> Iterator[str]:
-        names = dict.fromkeys(task.name for graph in self._methods.values() for task in graph.tasks if task.params is not None)
+        names = dict.fromkeys(task.name for graph in self._methods.values() for task in graph.tasks if task.sets is not None)
         return iter(names)
 
     def __len__(self) -> int:

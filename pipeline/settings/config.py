@@ -176,7 +176,7 @@ def resolved(
     """The checked configuration that blocks with absolute paths make; raises as `load`."""
     methods = application.methods()
     method = _method(blocks, methods, origins)
-    known = {task.name: task.params for task in methods[method].tasks if task.params is not None and task.block == task.name}
+    known = {task.name: task.sets for task in methods[method].tasks if task.sets is not None}
     _refuse_unknown(blocks, {*known, *RUN_KEYS}, application.renamed, origins)
     params = {name: checked(cls, block(blocks, name), name, origins, application.renamed) for name, cls in known.items()}
     output = _folder(blocks, "output", origins) or Path(f"{application.name}-output").absolute()

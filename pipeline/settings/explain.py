@@ -17,7 +17,7 @@ def explained(config: Config, graph: Graph) -> str:
     """The configuration as YAML: a block per task in the order of the graph, its source above it."""
     lines = [f"method: {config.method}"]
     for task in graph.tasks:
-        if task.params is not None and task.block == task.name:
+        if task.sets is not None:
             cited = f" ({task.paper})" if task.paper else ""
             lines += ["", f"# {task.summary}{cited}", f"{task.name}:", *_block(config.params[task.name], 1)]
     return "\n".join(lines) + "\n"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from kinetree.schemas.array import Artifact, Index
-from kinetree.schemas.structure.rigid_parts import RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams
 
 
 class CutPoses(Artifact):
@@ -13,7 +13,7 @@ class CutPoses(Artifact):
     opens: ClassVar[tuple[str, ...]] = ("cut",)
     frames: tuple[int, ...] = ()
     """Source frame numbers of these poses, in the order in which they were chosen."""
-    settings: RigidPartsParams = RigidPartsParams()
+    settings: CutParams = CutParams()
     """How the body is cut in all poses."""
 
     def members(self, space: str, index: Index) -> Sequence[int]:

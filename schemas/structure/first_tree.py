@@ -4,34 +4,25 @@ from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints
-from kinetree.schemas.dims import END, END_VERTEX, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
+from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
 Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, or the frames show no
 joint."""
 
 
-LAID_TOGETHER = 5
-"""Frames on which one task lays parts, at most."""
-
-
-class FirstTree(Artifact):
+class JointTree(Artifact):
     """The rigid parts in one tree, each with the joint about which it turns, a part after its parent.
 
     "part" are the parts as RigidParts numbers them, "joint" those of the tree.
     """
 
-    opens: ClassVar[tuple[str, ...]] = ("laid", "laid/frame")
     frames: tuple[int, ...]
     """Source frame number of every frame, ascending."""
-    laid: tuple[int, ...]
-    """Those on whose surfaces parts are laid by themselves; a few of them are a member of "laid"."""
     parents: tuple[int, ...]
     """Parent of every joint, −1 for the root, which is the first."""
     place: Annotated[Ints, Array("int32", PART)]
     """Joint about which each part turns; −1 for parts that were dropped."""
-    ends: int
-    """How many of the joints, the last ones, the frames' surfaces alone show."""
     followed: bool
     """Whether every vertex was followed with certainty."""
     label: Annotated[Ints, Array("int32", VERTEX)]
@@ -48,12 +39,10 @@ class FirstTree(Artifact):
     """Position of every joint in the reference mesh, as this cut has it."""
     drift: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Root mean square distance between the joint as one of its parts and as the other carries it; 0 for the root."""
-    residual: Annotated[Floats, Array("float64", JOINT, unit="length")]
-    """Root mean square of what the motions of the joint's two parts leave unexplained; 0 for the root."""
+    unexplained: Annotated[Floats, Array("float64", FRAME, JOINT, unit="length")]
+    """Root mean square of what the motion of every joint's part leaves unexplained."""
     radius: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Radius of the border between the joint's two parts; 0 for the root."""
-    end_positions: Annotated[Floats, Array("float64", FRAME, END_VERTEX, XYZ, unit="length")]
-    """Where the frames have the vertices on either side of the joints that their surfaces alone show, by number."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]
     """Parts that meet, before any was dropped."""
     centre: Annotated[Floats, Array("float64", PAIR, XYZ, unit="length")]
@@ -65,7 +54,17 @@ class FirstTree(Artifact):
     dropped: tuple[Drop, ...]
     """Parts that were dropped, in that order, and why."""
 
+
+class FirstTree(JointTree):
+    """The joints that the first cut shows."""
+
+    opens: ClassVar[tuple[str, ...]] = ("judged", "judged/frame")
+    judged: tuple[tuple[int, ...], ...] = ()
+    """Source frames in which rings at ends of limbs are judged, in runs of a few that follow each other: each is a member of
+    "judged". Empty where joints at ends are not looked for."""
+    is_given: bool = False
+    """Whether the frames give the correspondence, so that their surfaces say nothing more."""
+
     def members(self, space: str, index: Index) -> Sequence[int]:
-        """The runs of frames that are looked at, numbered from 0, or the source frames of one."""
-        runs = [self.laid[k : k + LAID_TOGETHER] for k in range(0, len(self.laid), LAID_TOGETHER)]
-        return range(len(runs)) if space == "laid" else runs[index[0]]
+        """The runs of frames in which rings are judged, numbered from 0, or the source frames of one."""
+        return range(len(self.judged)) if space == "judged" else self.judged[index[0]]

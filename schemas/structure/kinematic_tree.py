@@ -9,6 +9,7 @@ from pydantic import Field
 
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, XYZ
+from kinetree.schemas.structure.extended_tree import ExtendedTreeParams
 from kinetree.schemas.structure.skeleton import ArticulatedBody
 
 MOST_TOGETHER = 2
@@ -49,11 +50,8 @@ class FirstTreeParams(JointParams, CutJointsParams):
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
 
 
-class KinematicTreeParams(FirstTreeParams):
+class KinematicTreeParams(ExtendedTreeParams, FirstTreeParams):
     """What counts as a joint, and where joints are looked for and placed."""
-
-    surface_joints: bool = True
-    """Whether joints within limbs are moved to where the frames' surfaces have them, if halves of the frames agree."""
 
 
 class KinematicTree(ArticulatedBody):

@@ -8,7 +8,7 @@ from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
 from kinetree.schemas.dims import ANNULUS, CONE, FRAME, PART, REMOVAL, ROW, VERTEX, XYZ
 
 
-class RigidPartsParams(Params):
+class CutParams(Params):
     """How finely the surface is cut, and what removing a part must cost for it to stay."""
 
     rings: int = Field(default=50, ge=4, le=1000)
@@ -17,6 +17,11 @@ class RigidPartsParams(Params):
     """Patches that the surface is cut into at first."""
     removal_cost: float = Field(default=0.0025, gt=0)
     """Motion left unexplained without a part, share of the root of the area; a part that costs less is removed."""
+
+
+class RigidPartsParams(CutParams):
+    """How the body is cut, and how often."""
+
     cuts: int = Field(default=4, ge=1, le=50)
     """Poses in which the body is cut; joints are the mean over all cuts, and know how far these are apart."""
 

@@ -67,10 +67,10 @@ def _centres(
     label = rigid_clusters(V, F, x, confidence, area, np.array(s.label), params.removal_cost)
     part = part_motions(V, x, confidence, area, label, params.removal_cost)
     leaves = np.array(s.leaf_vertex)
-    settings = tree_settings(params)._replace(second_ends=params.second_ends, root_amid_limbs=params.root == "limbs")
+    settings = tree_settings(params)._replace(root_amid_limbs=params.root == "limbs")
     body = MovingSurface(V, F.astype(np.int64), x, area)
     first = first_tree(body, Cut(V, *part), leaves, confidence, evidence, settings=settings)
-    return numerics.kinematic_tree(body, first, leaves, confidence, settings=settings)
+    return numerics.kinematic_tree(body, first, leaves, confidence, has_second_ends=params.second_ends)
 
 
 def _edges(s: IntegratedStructure, motions: Mapping[int, GraphMotion]) -> numerics.KinematicTree:

@@ -1,7 +1,9 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
 from kinetree.tasks.structure.cut_poses import cut_poses
+from kinetree.tasks.structure.end_rings import end_rings
 from kinetree.tasks.structure.error_bars import error_bars
+from kinetree.tasks.structure.extended_tree import extended_tree
 from kinetree.tasks.structure.first_tree import first_tree
 from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.further_pose import further_pose
@@ -17,6 +19,8 @@ STRUCTURE = (
     cut_poses,
     further_cut,
     first_tree,
+    end_rings,
+    extended_tree,
     laid_parts,
     kinematic_tree,
     pose_refinement,

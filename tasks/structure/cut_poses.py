@@ -9,7 +9,7 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.cut_poses import CutPoses
-from kinetree.schemas.structure.rigid_parts import RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams, RigidPartsParams
 from kinetree.tasks.numerics.structure.further_cut import distinct_poses
 from kinetree.tasks.numerics.structure.given_correspondence import limited_confidence
 
@@ -21,4 +21,4 @@ def cut_poses(reference: Reference, alignment: Mapping[int, Alignment], params: 
     x = np.stack([a.vertices for a in aligned])
     confidence = limited_confidence(np.stack([a.confidence for a in aligned]))
     chosen = distinct_poses(x, confidence, frames.index(reference.frame), params.cuts - 1)
-    return CutPoses(frames=tuple(frames[t] for t in chosen), settings=params)
+    return CutPoses(frames=tuple(frames[t] for t in chosen), settings=CutParams(**params.model_dump(exclude={"cuts"})))

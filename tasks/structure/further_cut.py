@@ -16,7 +16,8 @@ from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure.cut_joints import cut_joints
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.structure.tree_joints import Cut
-from kinetree.tasks.structure.first_tree import aligned_body, tree_settings
+from kinetree.tasks.structure.arguments.aligned_body import aligned_body
+from kinetree.tasks.structure.first_tree import tree_settings
 from kinetree.tasks.structure.rigid_parts import parts_settings
 
 

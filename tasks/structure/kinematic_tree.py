@@ -8,37 +8,36 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
-from kinetree.schemas.structure.first_tree import FirstTree
+from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
-from kinetree.tasks.structure.first_tree import aligned_body, restored, tree_settings
+from kinetree.tasks.structure.arguments.aligned_body import aligned_body
+from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.laid_parts import joined
 
 
-@task(among=Sequence)
+@task(among=Sequence, block=KinematicTreeParams)
 def kinematic_tree(
     reference: Reference,
-    first_tree: FirstTree,
+    extended_tree: ExtendedTree,
     further_cut: Mapping[int, FurtherCut],
     laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
-    params: KinematicTreeParams,
 ) -> KinematicTree:
-    """Places the joints of the first cut's tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
-    frames, body, first = tuple(alignment), aligned_body(reference, alignment, leaves), restored(first_tree)
+    """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
+    frames, body, first = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
     tree, derivation = numerics.kinematic_tree(
         body.surface,
         first,
         body.tips,
         body.confidence,
-        settings=tree_settings(params),
         further=[np.array(cut.joints_with_bones if first.has_bones else cut.joints) for cut in further_cut.values()],
-        laid=joined(laid_parts) if params.surface_joints else None,
+        laid=joined(laid_parts),
     )
     return KinematicTree(
         frames=frames,

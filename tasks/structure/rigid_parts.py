@@ -8,7 +8,7 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
-from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams, RigidParts, RigidPartsParams
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
@@ -18,10 +18,8 @@ from kinetree.tasks.numerics.structure.given_correspondence import limited_confi
 from kinetree.tasks.numerics.structure.oversegmentation import OversegmentationSettings
 
 
-@task(among=Sequence)
-def rigid_parts(
-    reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, params: RigidPartsParams
-) -> RigidParts:
+@task(among=Sequence, block=RigidPartsParams)
+def rigid_parts(reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, params: CutParams) -> RigidParts:
     """Divides the surface into the rigid parts that the motion shows (2014, Sec. 6.1 and 6.2)."""
     aligned, at = list(alignment.values()), leaves.frames.index(reference.frame)
     frames, x = tuple(alignment), np.stack([a.vertices for a in aligned])
@@ -46,7 +44,7 @@ def rigid_parts(
     )
 
 
-def parts_settings(params: RigidPartsParams) -> numerics.RigidPartsSettings:
+def parts_settings(params: CutParams) -> numerics.RigidPartsSettings:
     """What the numerics take."""
     first_cut = OversegmentationSettings(params.rings, params.patches)
     return numerics.RigidPartsSettings(first_cut, EliminationSettings(params.removal_cost))

@@ -58,12 +58,18 @@ def test_joints_follow_the_aligned_surface_and_not_the_nodes() -> None:
 def test_second_ends_and_the_root_follow_their_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
     here, asked = volumetric(), []
 
-    def noted(*arguments: Any, settings: Any, **named: Any) -> Any:
-        asked.append((settings.second_ends, settings.root_amid_limbs))
-        return whole(*arguments, settings=settings, **named)
+    def listening(*arguments: Any, settings: Any) -> Any:
+        asked.append(settings.root_amid_limbs)
+        return first(*arguments, settings=settings)
 
-    whole = numerics.kinematic_tree
+    def noted(*arguments: Any, has_second_ends: bool) -> Any:
+        asked.append(has_second_ends)
+        return whole(*arguments, has_second_ends=has_second_ends)
+
+    there, whole = graph_skeleton.function.__globals__, numerics.kinematic_tree
+    first = there["first_tree"]
+    monkeypatch.setitem(there, "first_tree", listening)
     monkeypatch.setattr(numerics, "kinematic_tree", noted)
     for chosen in (GraphSkeletonParams(), GraphSkeletonParams(second_ends=False, root="surface")):
         graph_skeleton(here.integrated_structure, here.graph_motion, here.alignment, here.mesh, chosen)
-    assert asked == [(True, True), (False, False)]
+    assert asked == [True, True, False, False]

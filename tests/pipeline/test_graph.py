@@ -184,6 +184,23 @@ def test_a_block_that_no_task_with_these_params_has_is_refused():
         task(over="day", block="seed")(leaf.function)
 
 
+def test_a_block_with_more_settings_than_its_task_reads_extends_what_it_reads():
+    class Wider(SeedParams):
+        water: float = 1.0
+
+    class Other(Params):
+        water: float = 1.0
+
+    def sown(params: SeedParams) -> Seed:
+        """Grows."""
+        return Seed()
+
+    assert task(block=Wider)(sown).sets is Wider
+    assert task(block=Wider)(leaf.function).sets is Wider
+    with pytest.raises(GraphError, match="its block is set by Other, which does not extend SeedParams"):
+        task(block=Other)(sown)
+
+
 def test_cycle_is_refused_naming_every_place():
     @task()
     def egg(harvest: Harvest) -> Order:

@@ -93,10 +93,10 @@ def test_task_artifact_and_params_share_one_stem(name):
         assert task.returns.__module__ == f"kinetree.schemas.{place}.{stem}"
     if task.params is not None:
         owner = TASKS[task.block]  # the task itself, or another whose block sets both
-        assert owner.params.__name__.lower() == f"{owner.name.replace('_', '')}params"
-        assert issubclass(owner.params, task.params)
-        if owner is task:
-            assert task.params.__module__ == f"kinetree.schemas.{place}.{stem}"
+        assert issubclass(owner.sets, task.params)
+    if task.sets is not None:
+        assert task.sets.__name__.lower() == f"{task.name.replace('_', '')}params"
+        assert task.sets.__module__ == f"kinetree.schemas.{place}.{stem}"
 
 
 @pytest.mark.parametrize("model", ARTIFACTS, ids=named)
@@ -119,4 +119,4 @@ def test_dimensions_have_one_name_each():
 def test_defaults_make_a_configuration():
     for method, graph in METHODS.items():
         params = Pipeline.of({"method": method}).config.params
-        assert set(params) == {task.block for task in graph.tasks if task.params is not None}
+        assert set(params) == {task.block for task in graph.tasks if task.params or task.sets}

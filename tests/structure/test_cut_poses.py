@@ -4,7 +4,7 @@ from aligned_body import FIRST, task_inputs
 from articulated import three_arms
 
 from kinetree.schemas.structure.cut_poses import CutPoses
-from kinetree.schemas.structure.rigid_parts import RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams, RigidPartsParams
 from kinetree.tasks.methods import METHODS
 from kinetree.tasks.structure.cut_poses import cut_poses
 
@@ -23,7 +23,7 @@ def test_further_cuts_are_in_other_poses_than_the_reference_and_one_cut_has_none
 
 
 def test_they_are_cut_as_the_first_one() -> None:
-    assert poses(cuts=2, rings=20).settings == RigidPartsParams(cuts=2, rings=20)
+    assert poses(cuts=2, rings=20).settings == CutParams(rings=20)
     assert METHODS["mesoscopic"].by_name["cut_poses"].block == "rigid_parts"
 
 

@@ -8,7 +8,8 @@ from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.kinematic_tree import FirstTreeParams
 from kinetree.tasks.methods import METHODS
 from kinetree.tasks.numerics.structure import first_tree as numerics
-from kinetree.tasks.structure.first_tree import first_tree, restored
+from kinetree.tasks.structure.arguments.joint_tree import restored
+from kinetree.tasks.structure.first_tree import first_tree
 
 
 def tree_of_tube(trust: float, **params: float) -> FirstTree:
@@ -20,7 +21,6 @@ def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pyte
     made, whole = [], numerics.first_tree
     monkeypatch.setattr(numerics, "first_tree", lambda *a, **b: made.append(whole(*a, **b)) or made[0])
     tree, (before,) = restored(tree_of_tube(trust)), made
-    assert tree.ends == (1 if trust < 1.0 else 0)
     assert (tree.certain_share is None) == (trust == 1.0)
     for one, other in ((tree, before), (tree.graph, before.graph)):
         for name, value in one._asdict().items():
@@ -30,16 +30,13 @@ def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pyte
                 assert value == getattr(other, name), name
 
 
-def test_frames_that_parts_are_laid_on_are_a_few_at_a_time_and_none_where_all_is_given() -> None:
+def test_frames_in_which_rings_are_judged_are_a_few_at_a_time_and_none_where_all_is_given_or_it_is_not_asked() -> None:
     tree = tree_of_tube(0.99)
-    runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
+    runs = [tree.members("judged/frame", (k,)) for k in tree.members("judged", ())]
     assert [len(run) for run in runs] == [5, 5, 5, 5, 4]
     assert [frame for run in runs for frame in run] == list(tree.frames)
-    assert list(tree_of_tube(1.0).members("laid", ())) == []
-
-
-def test_whether_joints_at_ends_are_looked_for_can_be_set() -> None:
-    assert tree_of_tube(0.99, end_joints=False).ends == 0
+    assert tree_of_tube(1.0).judged == tree_of_tube(0.99, end_joints=False).judged == ()
+    assert (tree.is_given, tree_of_tube(1.0).is_given) == (False, True)
 
 
 def test_it_is_made_beside_further_cuts() -> None:

@@ -9,20 +9,20 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import CutJointsParams
-from kinetree.schemas.structure.rigid_parts import RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams
 from kinetree.tasks.methods import METHODS
 from kinetree.tasks.structure.further_cut import further_cut
 
 FRAME = FIRST + 5
 
 
-def cut(trust: float = 1.0, settings: RigidPartsParams | None = None, **params: float) -> FurtherCut:
+def cut(trust: float = 1.0, settings: CutParams | None = None, **params: float) -> FurtherCut:
     """In the sixth frame, where vertices have so much confidence."""
     body = three_arms()
     reference, certain, leaves = task_inputs(body.V, body.F, body.x)
     trusted = {"confidence": np.full(len(body.V), trust)}
     aligned = {t: Alignment(**{**a.plain(), **a.arrays(), **trusted}) for t, a in certain.items()}
-    poses = CutPoses(frames=(FRAME,), settings=settings or RigidPartsParams())
+    poses = CutPoses(frames=(FRAME,), settings=settings or CutParams())
     return further_cut(poses, reference, aligned, leaves, CutJointsParams(**params), (FRAME,))
 
 
@@ -38,7 +38,7 @@ def test_its_joints_go_where_the_arms_turn_in_every_frame(trust: float) -> None:
 
 
 def test_it_is_cut_by_the_settings_of_the_first_cut() -> None:
-    assert cut(settings=RigidPartsParams(removal_cost=100.0)).joints.shape[1] == 0
+    assert cut(settings=CutParams(removal_cost=100.0)).joints.shape[1] == 0
 
 
 def test_of_the_block_of_the_tree_it_sees_what_counts_as_a_joint_of_a_cut_and_nothing_else() -> None:

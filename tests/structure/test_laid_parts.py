@@ -1,7 +1,7 @@
 """Parts on surfaces as the task gives them."""
 
 import numpy as np
-from aligned_body import tube
+from aligned_body import extended, tube
 
 from kinetree.schemas.structure.kinematic_tree import FirstTreeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
@@ -12,7 +12,8 @@ from kinetree.tasks.structure.laid_parts import joined, laid_parts
 def runs() -> list[LaidParts]:
     """A few frames at a time."""
     reference, parts, alignment, mesh, leaves = tube(0.99)
-    tree = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
+    first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
+    tree = extended(first, reference, alignment, mesh, leaves)
     members = (tree.members("laid/frame", (k,)) for k in tree.members("laid", ()))
     return [laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in members]
 

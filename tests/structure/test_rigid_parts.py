@@ -4,12 +4,12 @@ import numpy as np
 from aligned_body import FIRST, task_inputs
 from articulated import three_arms
 
-from kinetree.schemas.structure.rigid_parts import RigidParts, RigidPartsParams
+from kinetree.schemas.structure.rigid_parts import CutParams, RigidParts
 from kinetree.tasks.structure.rigid_parts import rigid_parts
 
 
 def parts_of(V: np.ndarray, F: np.ndarray, x: np.ndarray, **params: float) -> RigidParts:
-    return rigid_parts(*task_inputs(V, F, x), RigidPartsParams(**params))
+    return rigid_parts(*task_inputs(V, F, x), CutParams(**params))
 
 
 def test_arms_that_turn_are_parts_and_carry_their_vertices() -> None:

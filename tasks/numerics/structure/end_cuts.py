@@ -11,7 +11,6 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 
 
 class EndCutsSettings(NamedTuple):
@@ -58,26 +57,28 @@ class EndCut(NamedTuple):
 
 
 def end_cuts(
-    body: MovingSurface, label: Ints, parents: Ints, rest: Floats, settings: EndCutsSettings | None = None
+    V: Floats, F: Ints, area: Floats, label: Ints, parents: Ints, rest: Floats, settings: EndCutsSettings | None = None
 ) -> Iterator[EndCut]:
     """Rings across all parts with no part below them but the root, part by part, nearest to the border first.
 
+    V, F    : (vertex, xyz) reference, mesh unit · (face, corner)
+    area    : (vertex,) mesh unit²
     label   : (vertex,) part
     parents : (part,) −1 for the root
     rest    : (part, xyz) joints in the reference, mesh unit
     """
     chosen = settings or EndCutsSettings()
-    start, ring = rings(body.F, len(body.V))
-    edge = np.stack([np.repeat(np.arange(len(body.V)), np.diff(start)), ring], axis=1)
+    start, ring = rings(F, len(V))
+    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
     for part in range(1, len(parents)):
         own = np.flatnonzero(label == part)
         if (parents == part).any() or len(own) < 2 * chosen.least_vertices:
             continue
-        distance = from_border(body.V, edge, label, part)
+        distance = from_border(V, edge, label, part)
         inside = edge[(label[edge] == part).all(axis=1)]
         for level in np.array(chosen.levels) * np.quantile(distance[own], chosen.farthest):
-            cut = _ring(body.V, part, own, distance, inside, float(level))
-            if cut is not None and _is_wide(cut, body.area, rest[part], chosen):
+            cut = _ring(V, part, own, distance, inside, float(level))
+            if cut is not None and _is_wide(cut, area, rest[part], chosen):
                 yield cut
 
 

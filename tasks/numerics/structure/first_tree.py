@@ -1,25 +1,18 @@
 """The tree of the first cut: which joints there are, before other cuts say where these lie (2014, Sec. 6.3; ours)."""
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.cut_joints import cut_tree
-from kinetree.tasks.numerics.structure.hinged_piece import SAMPLE
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
-from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
 from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.rotation_centres import drift
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints
-
-READY = 64
-"""Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take, twice."""
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, both_residuals
 
 
 class PartGraph(NamedTuple):
@@ -51,7 +44,7 @@ class FirstTree(NamedTuple):
     certain_share : (frame, part) share of its surface that is certain, 0 to 1; None where every vertex was followed
     rest          : (part, xyz) the joint in the reference, mesh unit
     drift         : (part,) distance between the joint as its two parts carry it, mesh unit; 0 for the root
-    residual      : (part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root
+    unexplained   : (frame, part) what the motion of the part leaves unexplained, mesh unit
     radius        : (part,) of the border at the joint, mesh unit; 0 for the root
     end_x         : (frame, end vertex, xyz) where the frames have the vertices of `at_ends`, mesh unit
     graph         : of all parts
@@ -67,7 +60,7 @@ class FirstTree(NamedTuple):
     certain_share: Floats | None
     rest: Floats
     drift: Floats
-    residual: Floats
+    unexplained: Floats
     radius: Floats
     end_x: Floats
     graph: PartGraph
@@ -82,6 +75,11 @@ class FirstTree(NamedTuple):
         """(vertex,) whether a vertex is of a part on either side of a joint that the frames' surfaces alone show."""
         beyond = np.arange(len(self.parents) - self.ends, len(self.parents))
         return np.isin(self.label, np.append(beyond, self.parents[beyond]))
+
+    @property
+    def residual(self) -> Floats:
+        """(part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root."""
+        return both_residuals(self.unexplained, self.parents)
 
     @property
     def motion(self) -> JointMotion:
@@ -103,36 +101,25 @@ def first_tree(
     *,
     settings: KinematicTreeSettings,
 ) -> FirstTree:
-    """Joins the parts of a cut in one tree, drops those that are none, and adds those that the cut cannot find.
+    """Joins the parts of a cut in one tree, and drops those that are none; joints at ends are for `extended_tree` to find.
 
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
-    joints, ends = cut_tree(body, cut, leaves, confidence, evidence, settings), 0
-    if settings.end_joints and evidence is not None and confidence is not None:
-        size, meshes = body.size, evidence.surface
-
-        @lru_cache(maxsize=READY)
-        def surface(f: int) -> Target:
-            return Target.of(*meshes(f), size, SAMPLE)
-
-        parts = len(joints.rest)
-        body, joints = inserted_ends(body, joints, confidence, surface, settings.noise * size)
-        ends = len(joints.rest) - parts
-    tree = in_tree_order(joints, cut.R.shape[1], ends)
-    return tree._replace(end_x=body.x[:, tree.at_ends])
+    joints = cut_tree(body, cut, leaves, confidence, evidence, settings)
+    return in_tree_order(joints, cut.R.shape[1])
 
 
-def in_tree_order(joints: TreeJoints, parts: int, ends: int = 0) -> FirstTree:
-    """The tree of a cut of so many parts; `ends` parts of it were added at ends. Vertices at ends are not looked up yet."""
+def in_tree_order(joints: TreeJoints, parts: int) -> FirstTree:
+    """The tree of a cut of so many parts."""
     left, tree = joints.left, joints.left.part_tree.tree
     origin, place = left.origin[tree.order], np.full(parts, -1)
     place[joints.used[origin[origin != NO_PART]]] = np.flatnonzero(origin != NO_PART)
     return FirstTree(
         parents=tree.parents,
         place=place,
-        ends=ends,
+        ends=0,
         label=joints.label,
         W=joints.W,
         R=joints.R,
@@ -140,7 +127,7 @@ def in_tree_order(joints: TreeJoints, parts: int, ends: int = 0) -> FirstTree:
         certain_share=None if left.parts.confidence is None else left.parts.confidence[:, tree.order],
         rest=joints.rest,
         drift=joints.drift,
-        residual=joints.residual,
+        unexplained=np.ascontiguousarray(left.parts.residual[:, tree.order]),
         radius=np.append(0.0, left.part_tree.borders.radius[tree.border[1:]]),
         end_x=np.zeros((len(joints.R), 0, 3)),
         graph=_graph(joints),

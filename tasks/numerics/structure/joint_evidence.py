@@ -98,7 +98,6 @@ class FrameEvidence(NamedTuple):
     target     : gives a frame's surface, ready, by its place among the frames
     settings   : what makes a joint evident in them
     known      : the fits so far: where one part is dropped, most of the others are laid on the same frames again
-    surface    : gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner), by its place among the frames
     """
 
     confidence: Floats
@@ -106,7 +105,6 @@ class FrameEvidence(NamedTuple):
     target: Callable[[int], _Target]
     settings: JointEvidenceSettings
     known: dict[tuple[int, JointEvidenceSettings, bytes], _Fit]
-    surface: Callable[[int], tuple[Floats, Ints]]
 
     @staticmethod
     def of(
@@ -117,7 +115,7 @@ class FrameEvidence(NamedTuple):
     ) -> "FrameEvidence":
         """Nothing is laid on the frames yet; `surface` gives a frame's mesh, V (source, xyz) mesh unit and F (face, corner)."""
         ready = lru_cache(maxsize=TARGETS)(lambda f: _Target.of(*surface(f)))
-        return FrameEvidence(confidence, residual, ready, settings, {}, surface)
+        return FrameEvidence(confidence, residual, ready, settings, {})
 
     def laid(self, f: int, P: Floats, weight: Floats, R: Floats, t: Floats) -> _Fit:
         """P (point, xyz) as one rigid piece on the surface of frame f, from R, t."""

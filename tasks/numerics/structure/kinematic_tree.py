@@ -21,7 +21,9 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
-from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings
+
+RIGID_WEIGHT = 0.75
+"""Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
 
 
 class KinematicTree(NamedTuple):
@@ -72,7 +74,7 @@ class Derivation(NamedTuple):
     joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
     surface_offset : (joint,) root mean square distance from where halves of the frames' surfaces alone have it, mesh unit; NaN
                      where they were not asked or do not say, and where it is none
-    end_joints     : joints that the frames' surfaces alone show, see `inserted_ends`
+    end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     """
 
     pair: Ints
@@ -96,9 +98,9 @@ def kinematic_tree(
     leaves: Ints,
     confidence: Floats | None = None,
     *,
-    settings: KinematicTreeSettings,
     further: Sequence[Floats] = (),
     laid: LaidParts | None = None,
+    has_second_ends: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """Places the joints of a tree and poses it in every frame; and how that came about.
 
@@ -108,6 +110,7 @@ def kinematic_tree(
     further    : (frame, joint, xyz) of every further cut of the body, see `cut_joints`; joints of the tree are then the mean
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints within limbs are moved to; None moves none
+    has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     """
     V, x, area, tree, label = body.V, body.x, body.area, first.parents, first.label
     if first.ends:
@@ -124,11 +127,11 @@ def kinematic_tree(
         V, x, area, label, first.W, Motion(rest, first.R, first.t[:, 0].copy()), tree, confidence, takes=body.takes
     )
     support = (np.minimum(share, share[:, np.maximum(tree, 0)]) >= FramePosesSettings().seen).sum(axis=0)
-    if settings.second_ends:
+    if has_second_ends:
         leaves = np.concatenate([leaves, second_ends(V, body.F, label, tree, leaves)])
     ends = end_effectors(V, body.F, label, tree, leaves)
     spans = score_spans(len(x), body.takes)
-    made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans, settings)
+    made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans)
     return made, _derivation(first, agreed, on_surface.offset, made, order)
 
 
@@ -154,7 +157,6 @@ def _assembled(
     drift: Floats,
     support: Ints,
     spans: Ints,
-    chosen: KinematicTreeSettings,
 ) -> tuple[KinematicTree, Ints]:
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
     parts = len(parents)
@@ -180,7 +182,7 @@ def _assembled(
         degrees=np.where(is_end, 0.0, degrees[part])[order],
         drift=np.where(is_end, 0.0, drift[part])[order],
         support=support[part[order]],
-        label=np.where(W[np.arange(len(V)), label] >= chosen.rigid_weight, place[label], -1),
+        label=np.where(W[np.arange(len(V)), label] >= RIGID_WEIGHT, place[label], -1),
         influence=np.where(weight > 0, place[influence], 0),
         weight=weight,
     )

@@ -17,15 +17,17 @@ from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
 
+NOISE = 0.002
+"""Error of a vertex below which its motion says nothing of its skinning weights, share of the root of the area. Not recorded.
+Joints move by 0.3 % of the height at most when it is halved or doubled."""
+
 
 class KinematicTreeSettings(NamedTuple):
     """How parts become joints; lengths are shares of the root of the area where nothing else is said."""
 
     pruning: PruningSettings
     """What a joint must show to stay."""
-    noise: float = 0.002
-    """Error of a vertex below which its motion says nothing of its skinning weights. Not recorded. Joints move by 0.3 % of
-    the height at most when it is halved or doubled."""
+    noise: float = NOISE
     spread: float = 0.35
     """Standard deviation of a joint about where it is expected, in radii of its border. Not recorded; see DESIGN for what
     the expected place was chosen on. Joints move by 2 % of the height at most when it is halved
@@ -40,14 +42,8 @@ class KinematicTreeSettings(NamedTuple):
     residual_share: float = 0.5
     """Share of what a part's motion leaves of single vertices that its motion may err by: noise averages out over a part.
     Not recorded. Joints move by 0.1 % of the height at most when it is halved or doubled."""
-    rigid_weight: float = 0.75
-    """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
     hidden_bones: bool = False
     """Whether bones under skin that is nowhere rigid are looked for where every vertex was followed, see `hidden_bones`."""
-    end_joints: bool = False
-    """Whether joints within the last parts of limbs are looked for on the frames' surfaces, see `end_joints`."""
-    second_ends: bool = False
-    """Whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`."""
     root_amid_limbs: bool = False
     """Whether the root lies amid the limbs that hang on it, see `root_place`, and not amid its surface."""
 

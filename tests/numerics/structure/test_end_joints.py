@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from smeared import END, Frames, aligned, found_in, turning
+from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, judged_runs
+from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
 def joints_at(
@@ -15,7 +17,7 @@ def joints_at(
 ) -> list[EndJoint]:
     surface, tree = found_in(aligned(turning(degrees), bent))
     shown = Frames(turning(degrees), noise).prepared(surface.size)
-    return end_joints(surface, tree, np.ones(surface.x.shape[:2]), shown, settings)
+    return joints_at_ends(surface, in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), shown, settings)
 
 
 def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJoint]:
@@ -24,7 +26,7 @@ def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJ
     surface, tree = found_in(aligned(turn))
     takes = [slice(24 * k, 24 * k + 24) for k in range(len(degrees))]
     shown = Frames(turn, noise).prepared(surface.size)
-    return end_joints(surface._replace(takes=takes), tree, np.ones(surface.x.shape[:2]), shown)
+    return joints_at_ends(surface._replace(takes=takes), in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), shown)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
@@ -64,14 +66,14 @@ def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joi
 def test_a_part_that_no_frame_shows_has_no_joint() -> None:
     surface, tree = found_in(aligned(turning()))
     confidence = np.where(surface.V[:, 2] > 0.0, 0.1, 1.0) * np.ones((len(surface.x), 1))
-    assert end_joints(surface, tree, confidence, Frames(turning()).prepared(surface.size)) == []
+    assert joints_at_ends(surface, in_tree_order(tree, 2), confidence, Frames(turning()).prepared(surface.size)) == []
 
 
 def test_in_frames_that_do_not_show_it_the_piece_goes_with_its_part() -> None:
     surface, tree = found_in(aligned(turning()))
     confidence = np.ones(surface.x.shape[:2])
     confidence[10:13, surface.V[:, 2] > 0.0] = 0.1
-    (joint,) = end_joints(surface, tree, confidence, Frames(turning()).prepared(surface.size))
+    (joint,) = joints_at_ends(surface, in_tree_order(tree, 2), confidence, Frames(turning()).prepared(surface.size))
     assert np.flatnonzero(~joint.shown).tolist() == [10, 11, 12]
     for piece in (0, 1):
         np.testing.assert_array_equal(joint.R[10:13, piece], tree.R[10:13, joint.cut.part])
@@ -101,3 +103,13 @@ def test_the_part_must_turn_in_the_take_that_shows_the_joint() -> None:
 @pytest.mark.parametrize("noise", [0.0, 0.05])
 def test_no_take_has_a_joint_where_none_turns(noise: float) -> None:
     assert found_in_takes([0.0, 0.0, 0.0], noise) == []
+
+
+def test_frames_are_judged_in_runs_of_a_few_that_follow_each_other_within_a_take() -> None:
+    runs = judged_runs(24, [slice(0, 12), slice(12, 24)])
+    every = list(range(24))
+    assert [run.tolist() for run in runs] == [every[a:b] for a, b in ((0, 5), (5, 10), (10, 12), (12, 17), (17, 22), (22, 24))]
+    long = judged_runs(108, None)
+    assert {len(run) for run in long} == {4}
+    assert all((np.diff(run) == 1).all() for run in long)
+    assert judged_runs(1, None) == []

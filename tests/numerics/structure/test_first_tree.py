@@ -3,21 +3,12 @@
 import numpy as np
 from articulated import chain, neck, swings
 from shipped import TREE
-from smeared import Frames, aligned, found_in, moving, turning
+from smeared import moving
 
-from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree, in_tree_order
-from kinetree.tasks.numerics.structure.inserted_ends import inserted_ends
+from kinetree.tasks.numerics.structure.first_tree import first_tree, in_tree_order
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 NO_LEAVES = np.zeros(0, int)
-
-
-def with_ends() -> FirstTree:
-    body, ones = aligned(turning()), np.ones((24, len(aligned(turning()).V)))
-    label, tips = (body.V[:, 2] > 0.0).astype(np.int64), np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    cut = Cut(body.V, label, body.R[:, :2], body.t[:, :2], body.residual[:, :2])
-    settings = TREE._replace(end_joints=True)
-    return first_tree(moving(body), cut, tips, ones, Frames(turning()).evidence(), settings=settings)
 
 
 def test_a_part_knows_its_place_and_one_that_was_dropped_has_none() -> None:
@@ -31,25 +22,13 @@ def test_a_part_knows_its_place_and_one_that_was_dropped_has_none() -> None:
         np.testing.assert_array_equal(tree.R[:, tree.place[part]], body.R[:, part])
 
 
-def test_vertices_beside_a_joint_that_frames_alone_show_are_where_the_frames_have_them() -> None:
-    tree, before = with_ends(), aligned(turning())
-    assert tree.ends == 1
-    assert tree.parents.tolist() == [-1, 0, 1]
-    np.testing.assert_array_equal(tree.at_ends, before.V[:, 2] > 0.0)
-    surface, found = found_in(before)
-    after, _ = inserted_ends(
-        surface, found, np.ones(surface.x.shape[:2]), Frames(turning()).prepared(surface.size), 0.002 * surface.size
-    )
-    np.testing.assert_array_equal(tree.end_x, after.x[:, tree.at_ends])
-
-
-def test_hidden_bones_are_told_from_joints_at_ends() -> None:
+def test_bones_that_no_cut_finds_are_recognised() -> None:
     body = neck()
     ends = [0, body.R.shape[1] - 1]
     cut = Cut(body.V, (body.V[:, 2] > 0.0).astype(np.int64), body.R[:, ends], body.t[:, ends], body.residual[:, ends])
     tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
     trees = [first_tree(moving(body), cut, tips, settings=TREE._replace(hidden_bones=h)) for h in (True, False)]
-    assert [tree.has_bones for tree in (*trees, with_ends())] == [True, False, False]
+    assert [tree.has_bones for tree in trees] == [True, False]
 
 
 def test_joints_drift_as_much_as_where_they_were_found() -> None:

@@ -19,9 +19,10 @@ def both(
     leaves: tuple[int, ...] = (),
     confidence: np.ndarray | None = None,
     settings: KinematicTreeSettings = TREE,
+    has_second_ends: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     tips = np.array(leaves, dtype=np.int64)
-    return whole_tree(*known(body), tips, confidence, settings=settings)
+    return whole_tree(*known(body), tips, confidence, settings=settings, has_second_ends=has_second_ends)
 
 
 def known(body: Known) -> tuple[MovingSurface, Cut]:
@@ -209,7 +210,7 @@ def test_a_last_part_that_forks_has_a_second_end_where_asked_for() -> None:
     longer = arms.V + np.maximum(arms.V[:, :1] - 12.0, 0.0) * [4.0, 0.0, 0.0]  # so that the fork is not the root
     fork = moved(longer, arms.F, np.eye(2)[np.where(arms.label == 1, 0, 1)], arms.joints[:2], np.array([-1, 0]), swings(24, 2))
     prong = int(np.argmin(arms.V[:, 1]))
-    ends = [both(fork, (prong,), None, TREE._replace(second_ends=s))[0].names for s in (False, True)]
+    ends = [both(fork, (prong,), has_second_ends=s)[0].names for s in (False, True)]
     assert ends == [("root", "limb_a_1", "limb_a_end"), ("root", "limb_a_1", "limb_a_end_1", "limb_a_end_2")]
 
 

@@ -1,0 +1,35 @@
+"""The first tree with the joints at ends of limbs that the frames' surfaces alone show (ours)."""
+
+from collections.abc import Sequence
+from typing import Annotated, ClassVar
+
+from kinetree.schemas.array import Array, Floats, Index, Params
+from kinetree.schemas.dims import END_VERTEX, FRAME, XYZ
+from kinetree.schemas.structure.first_tree import JointTree
+
+LAID_TOGETHER = 5
+"""Frames on which one task lays parts, at most."""
+
+
+class ExtendedTreeParams(Params):
+    """Where joints are placed."""
+
+    surface_joints: bool = True
+    """Whether joints within limbs are moved to where the frames' surfaces have them, if halves of the frames agree."""
+
+
+class ExtendedTree(JointTree):
+    """The first tree; a joint at an end and the part beyond it come after all others."""
+
+    opens: ClassVar[tuple[str, ...]] = ("laid", "laid/frame")
+    laid: tuple[int, ...] = ()
+    """Source frames on whose surfaces parts are laid by themselves; a few of them are a member of "laid"."""
+    ends: int = 0
+    """How many of the joints, the last ones, the frames' surfaces alone show."""
+    end_positions: Annotated[Floats, Array("float64", FRAME, END_VERTEX, XYZ, unit="length")]
+    """Where the frames have the vertices on either side of the joints that their surfaces alone show, by number."""
+
+    def members(self, space: str, index: Index) -> Sequence[int]:
+        """The runs of frames that parts are laid on, numbered from 0, or the source frames of one."""
+        runs = [self.laid[k : k + LAID_TOGETHER] for k in range(0, len(self.laid), LAID_TOGETHER)]
+        return range(len(runs)) if space == "laid" else runs[index[0]]

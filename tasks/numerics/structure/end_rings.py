@@ -1,0 +1,142 @@
+"""The last parts of limbs on the frames' surfaces, with a hinge at rings across them (ours, see `end_joints`)."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.normals import smoothed_normals
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
+from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, sampled_piece
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
+
+Fits = dict[int, HingedFit]
+"""By frame, how a ring's part lies."""
+
+
+class EndRing(NamedTuple):
+    """A ring across the last part of a limb, and points of that part."""
+
+    cut: EndCut
+    piece: Piece
+
+
+class EndRings(NamedTuple):
+    """How the parts of rings lie in some frames; nothing is said of a ring whose part a frame does not show.
+
+    frame    : (frame,) places among all frames, ascending
+    shown    : (frame, ring) whether the frame shows the ring's part
+    one, two : (frame, ring) see `HingedFit`, mesh unit²
+    rotation, translation, turn : (frame, ring, 3, 3) · (frame, ring, xyz) · (frame, ring, 3, 3) see `PiecePose`, mesh unit
+    """
+
+    frame: Ints
+    shown: Flags
+    one: Floats
+    two: Floats
+    rotation: Floats
+    translation: Floats
+    turn: Floats
+
+    @staticmethod
+    def of(frame: Ints, fits: Sequence[Fits]) -> "EndRings":
+        """By ring and frame; frame (frame,) ascending."""
+        shape, still = (len(frame), len(fits)), np.eye(3)
+        out = EndRings(
+            frame, np.zeros(shape, np.bool_), np.zeros(shape), np.zeros(shape),
+            np.tile(still, (*shape, 1, 1)), np.zeros((*shape, 3)), np.tile(still, (*shape, 1, 1)),
+        )  # fmt: skip
+        for k, own in enumerate(fits):
+            for row, f in enumerate(frame.tolist()):
+                if f in own:
+                    fit = own[f]
+                    out.shown[row, k], out.one[row, k], out.two[row, k] = True, fit.one, fit.two
+                    out.rotation[row, k], out.translation[row, k], out.turn[row, k] = fit.pose
+        return out
+
+    @staticmethod
+    def joined(runs: Sequence["EndRings"]) -> "EndRings":
+        """All frames of several runs, of one at least."""
+        return EndRings(*(np.concatenate(rows) for rows in zip(*runs, strict=True)))
+
+    @property
+    def fits(self) -> list[Fits]:
+        """By ring and frame."""
+        frames = self.frame.tolist()
+        return [
+            {f: self._fit(row, k) for row, f in enumerate(frames) if self.shown[row, k]} for k in range(self.shown.shape[1])
+        ]
+
+    def _fit(self, row: int, k: int) -> HingedFit:
+        pose = PiecePose(self.rotation[row, k], self.translation[row, k], self.turn[row, k])
+        return HingedFit(float(self.one[row, k]), float(self.two[row, k]), pose)
+
+
+class EndFrames(NamedTuple):
+    """A tree, which frames show its parts, and the frames' surfaces.
+
+    shown   : (frame, part)
+    surface : gives a frame's surface, prepared, by its place among the frames
+    """
+
+    tree: FirstTree
+    shown: Flags
+    surface: Callable[[int], Target]
+
+    @staticmethod
+    def of(tree: FirstTree, area: Floats, confidence: Floats, surface: Callable[[int], Target]) -> "EndFrames":
+        """Frames show a part where most of it and of the part above is certain.
+
+        area, confidence : (vertex,) any unit · (frame, vertex) 0 to 1
+        """
+        share = confident_share(tree.label, area, confidence, len(confidence), len(tree.parents))
+        shown = np.minimum(share, share[:, np.maximum(tree.parents, 0)]) >= FramePosesSettings().seen
+        return EndFrames(tree, shown, surface)
+
+    def goal(self, f: int, ring: EndRing) -> Floats:
+        """(xyz,) where the rest of the body has the joint of a ring's part, mesh unit."""
+        p = self.tree.parents[ring.cut.part]
+        return np.asarray(self.tree.R[f, p] @ ring.piece.joint + self.tree.t[f, p])
+
+    def showing(self, which: Iterable[int], rings: Sequence[EndRing]) -> Iterator[tuple[int, Target, list[int]]]:
+        """Frames that show some of the rings' parts, their surfaces, and which rings these are."""
+        for f in map(int, which):
+            there = [k for k, ring in enumerate(rings) if self.shown[f, ring.cut.part]]
+            if there:
+                yield f, self.surface(f), there
+
+
+def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree) -> list[EndRing]:
+    """All rings across the last parts of limbs, part by part.
+
+    V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
+    """
+    N, W = smoothed_normals(V, F), tree.W
+    cuts = end_cuts(V, F, area, tree.label, tree.parents, tree.rest)
+    return [EndRing(c, sampled_piece(V[c.own], N[c.own], W[c.own, c.part], c.far, c.centre, tree.rest[c.part])) for c in cuts]
+
+
+def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Sequence[Fits]) -> None:
+    """Adds how the rings' parts lie in some frames, frame by frame, so that each begins where it was last.
+
+    which : (frame,) places among the frames
+    fits  : by ring
+    """
+    R, t = frames.tree.R, frames.tree.t
+    for f, target, there in frames.showing(which, rings):
+        whole: dict[int, PieceFit] = {}
+        for k in there:
+            (cut, piece), goal = rings[k], frames.goal(f, rings[k])
+            if cut.part not in whole:
+                start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
+                whole[cut.part] = laid_as_one(piece, start, goal, target)
+            fits[k][f] = laid_hinged(piece, whole[cut.part], goal, target, _nearest(fits[k], f))
+
+
+def _nearest(known: Fits, f: int) -> Floats | None:
+    """(3, 3) the turn in the nearest frame that is known; None where none is."""
+    return known[min(known, key=lambda g: (abs(g - f), g))].pose.Q if known else None

@@ -1,0 +1,1 @@
+"""What several tasks of the shelf make of their arguments."""

@@ -1,0 +1,32 @@
+"""The last parts of limbs on the surfaces of a few frames, with a hinge at rings across them."""
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.end_rings import EndRings
+from kinetree.schemas.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure import end_rings as numerics
+from kinetree.tasks.structure.arguments.joint_tree import restored
+from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
+
+
+@task(over="judged")
+def end_rings(
+    reference: Reference, first_tree: FirstTree, alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh]
+) -> EndRings:
+    """Lays the last parts of limbs on the frames' surfaces, as one piece and with a hinge at several rings (ours)."""
+    V, F, area = area_of(reference)
+    tree, frames = restored(first_tree), [first_tree.frames.index(f) for f in mesh]
+    rings = numerics.end_rings(V, F, area, tree)
+    confidence = np.zeros((len(first_tree.frames), len(V)))
+    confidence[frames] = [a.confidence for a in alignment.values()]
+    surface = cache(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
+    fits: list[numerics.Fits] = [{} for _ in rings]
+    numerics.lay_rings(numerics.EndFrames.of(tree, area, confidence, surface), np.array(frames), rings, fits)
+    return EndRings(**numerics.EndRings.of(np.array(frames), fits)._asdict())

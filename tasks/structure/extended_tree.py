@@ -1,0 +1,71 @@
+"""The first tree with the joints at ends of limbs that the frames' surfaces alone show."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+
+import numpy as np
+
+from kinetree.pipeline.task import task
+from kinetree.schemas.input.mesh import Mesh
+from kinetree.schemas.input.sequence import Sequence
+from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.end_rings import EndRings
+from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
+from kinetree.schemas.structure.first_tree import FirstTree
+from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.input.frame_numbers import take_spans
+from kinetree.tasks.numerics.structure import end_rings as rings_numerics
+from kinetree.tasks.numerics.structure import extended_tree as numerics
+from kinetree.tasks.numerics.structure import first_tree as tree_numerics
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
+from kinetree.tasks.numerics.structure.laid_parts import laid_frames
+from kinetree.tasks.numerics.structure.tree_joints import NOISE
+from kinetree.tasks.structure.arguments.aligned_body import aligned_body
+from kinetree.tasks.structure.arguments.joint_tree import fields_of, restored
+from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
+
+READY = 64
+"""Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take."""
+
+
+@task(among=Sequence, block="kinematic_tree")
+def extended_tree(
+    reference: Reference,
+    first_tree: FirstTree,
+    end_rings: tuple[EndRings, ...],
+    alignment: Mapping[int, Alignment],
+    mesh: Mapping[int, Mesh],
+    leaves: Leaves,
+    params: ExtendedTreeParams,
+) -> ExtendedTree:
+    """Adds the joints at ends of limbs that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
+    frames, tree = first_tree.frames, restored(first_tree)
+    ends = _ends(reference, first_tree, tree, end_rings, alignment, mesh)
+    if ends:
+        body = aligned_body(reference, alignment, leaves)
+        tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
+    laid = laid_frames(len(frames)).tolist() if params.surface_joints and not first_tree.is_given else []
+    return ExtendedTree(
+        frames=frames, laid=tuple(frames[t] for t in laid), ends=len(ends), end_positions=tree.end_x, **fields_of(tree)
+    )
+
+
+def _ends(
+    reference: Reference,
+    first_tree: FirstTree,
+    tree: tree_numerics.FirstTree,
+    end_rings: tuple[EndRings, ...],
+    alignment: Mapping[int, Alignment],
+    mesh: Mapping[int, Mesh],
+) -> list[EndJoint]:
+    """The joints at ends; none where no frame was judged."""
+    if not end_rings:
+        return []
+    names, (V, F, area) = rings_numerics.EndRings._fields, area_of(reference)
+    runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
+    surface = lru_cache(maxsize=READY)(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
+    confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
+    seen = rings_numerics.EndFrames.of(tree, area, confidence, surface)
+    rings = rings_numerics.end_rings(V, F, area, tree)
+    return end_joints(seen, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(first_tree.frames))

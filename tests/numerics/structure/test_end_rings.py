@@ -1,0 +1,45 @@
+"""Parts with a hinge at rings, and the form in which their places are stored."""
+
+import numpy as np
+from smeared import Frames, aligned, found_in, turning
+
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, lay_rings
+from kinetree.tasks.numerics.structure.first_tree import in_tree_order
+
+
+def laid(which: list[int], hidden: tuple[int, ...] = ()) -> tuple[list[EndRing], list[Fits]]:
+    """The rings of a tube, and how they lie in some frames; the last part is not certain in those that are hidden."""
+    body, found = found_in(aligned(turning()))
+    tree, confidence = in_tree_order(found, 2), np.ones(body.x.shape[:2])
+    confidence[np.ix_(hidden, body.V[:, 2] > 0.0)] = 0.1
+    rings = end_rings(body.V, body.F, body.area, tree)
+    fits: list[Fits] = [{} for _ in rings]
+    frames = EndFrames.of(tree, body.area, confidence, Frames(turning()).prepared(body.size))
+    lay_rings(frames, np.array(which), rings, fits)
+    return rings, fits
+
+
+def test_the_hinge_brings_the_part_nearer_to_the_surface() -> None:
+    rings, fits = laid([3, 4])
+    assert {ring.cut.part for ring in rings} == {1}
+    assert all(sorted(own) == [3, 4] for own in fits)
+    assert all(own[f].two < own[f].one for own in fits for f in own)
+
+
+def test_a_part_that_is_not_certain_is_not_laid() -> None:
+    assert all(sorted(own) == [3] for own in laid([3, 4], (4,))[1])
+
+
+def test_what_is_stored_by_frame_is_read_again_by_ring() -> None:
+    (_, whole), parts = laid([3, 4, 5], (4,)), []
+    for which in ([3, 4], [5]):
+        parts.append(EndRings.of(np.array(which), [{f: own[f] for f in which if f in own} for own in whole]))
+    again = EndRings.joined(parts)
+    assert again.frame.tolist() == [3, 4, 5]
+    assert again.shown[:, 0].tolist() == [True, False, True]
+    for own, other in zip(whole, again.fits, strict=True):
+        assert list(own) == list(other) == [3, 5]
+        for f, fit in own.items():
+            assert (fit.one, fit.two) == (other[f].one, other[f].two)
+            for mine, stored in zip(fit.pose, other[f].pose, strict=True):
+                np.testing.assert_array_equal(mine, stored)
