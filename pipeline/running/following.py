@@ -13,6 +13,8 @@ from kinetree.pipeline.settings.config import Compute
 
 MEMORY = "memory"
 """The resource of dask that says how many bytes a worker has for nodes."""
+DROP_SECONDS = 2.0
+"""How long a scheduler is given to forget the events of a run."""
 
 
 @contextlib.contextmanager
@@ -24,7 +26,7 @@ def followed(client: Any, compute: Compute, starts: Starts | None = None, *, is_
     """
     wanted, seconds = compute.wanted_workers
     workers = LivingWorkers(seconds, memory=(compute.memory_bytes or 0) if is_ours else 0, starts=starts or Starts())
-    client.subscribe_topic(begun_topic(client), workers.hear_begun)
+    client.subscribe_topic(workers.topic, workers.hear_of_parcel)
     following = asyncio.run_coroutine_threadsafe(_follow(client, workers), client.loop.asyncio_loop)
     try:
         until = time.monotonic() + seconds
@@ -41,6 +43,21 @@ def followed(client: Any, compute: Compute, starts: Starts | None = None, *, is_
         yield workers
     finally:
         following.cancel()
+        with contextlib.suppress(Exception):  # a scheduler that is gone or runs no functions keeps the last thousand events
+            client.unsubscribe_topic(workers.topic)
+            if not is_ours:
+                asyncio.run_coroutine_threadsafe(_drop_events(client, workers.topic), client.loop.asyncio_loop).result(
+                    DROP_SECONDS
+                )
+
+
+async def _drop_events(client: Any, topic: str) -> None:
+    """Has the scheduler forget the events of a run, which it would keep as long as it lives."""
+
+    def drop(topic: str, dask_scheduler: Any) -> None:  # travels as text, so that a scheduler needs nothing of ours
+        dask_scheduler._broker._topics.pop(topic, None)
+
+    await client.run_on_scheduler(drop, topic)
 
 
 async def _follow(client: Any, workers: LivingWorkers) -> None:
@@ -55,8 +72,3 @@ async def _follow(client: Any, workers: LivingWorkers) -> None:
                 known = set(threads)
             workers.hear(threads, memory)
         await asyncio.sleep(FOLLOW_SECONDS)
-
-
-def begun_topic(client: Any) -> str:
-    """Under which its workers tell a client that they begin a parcel."""
-    return f"begun-{client.id}"

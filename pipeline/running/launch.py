@@ -154,15 +154,16 @@ def environment(compute: Compute) -> dict[str, str]:
 
 
 def _on_client(client: Any, workers: Any, compute: Compute) -> Launcher:
-    from kinetree.pipeline.running import clusters
+    from kinetree.pipeline.running.clusters import dashboard
+    from kinetree.pipeline.running.sent_parcels import sent
 
     run = secrets.token_hex(8)  # two runs on one scheduler never take each other's results
     expected = compute.workers or 1
 
     def submit(name: str, demand: Demand, url: str, steps: tuple[Step, ...], sight: Sight) -> Future:
-        return clusters.sent(client, workers, f"{name}-{run}", demand, (url, steps, sight))
+        return sent(client, workers, f"{name}-{run}", demand, (url, steps, sight))
 
     def window() -> int:
         return 3 * max(expected, int(workers.threads))
 
-    return Launcher(submit, window, is_elsewhere=True, look_after=workers.check, dashboard=clusters.dashboard(client))
+    return Launcher(submit, window, is_elsewhere=True, look_after=workers.check, dashboard=dashboard(client))

@@ -1,9 +1,13 @@
 """What is known of a cluster's workers: how many there are, what they declare, and what they have begun."""
 
+import pickle
+import secrets
 import time
 from collections.abc import Mapping
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from kinetree.errors import ClusterError
 from kinetree.pipeline.running.own_workers import FOLLOW_SECONDS, Starts
@@ -21,6 +25,8 @@ class LivingWorkers:
     """The most bytes that one of them declares to have for nodes, or will declare; 0 where none does."""
     began: dict[str, tuple[float, str]] = field(default_factory=dict)
     """By dask's key, when a parcel that tells it was begun last, and the address of the worker."""
+    topic: str = field(default_factory=lambda: f"parcels-{secrets.token_hex(8)}")
+    """Of dask's events: workers tell this run under it that they begin a parcel, and what its results are."""
     starts: Starts = field(default_factory=Starts)
     """Of our own."""
     is_known: bool = False
@@ -28,6 +34,7 @@ class LivingWorkers:
     _answered: float = field(default_factory=time.monotonic)
     _seen: float = field(default_factory=time.monotonic)
     _asked: dict[str, int] = field(default_factory=dict)
+    _outcomes: "dict[str, Future[Any]]" = field(default_factory=dict)
     _fitting: float = field(default_factory=time.monotonic)
 
     def hear(self, threads: Mapping[str, int], memory: Mapping[str, int] = MappingProxyType({})) -> None:
@@ -40,10 +47,18 @@ class LivingWorkers:
         if self.memory >= self._most_asked:
             self._fitting = self._answered
 
-    def hear_begun(self, event: tuple[float, Mapping[str, str]]) -> None:
-        """A worker has begun a parcel."""
+    def hear_of_parcel(self, event: tuple[float, Mapping[str, Any]]) -> None:
+        """A worker has begun a parcel, or is done with it."""
         _, message = event
-        self.began[message["key"]] = (time.monotonic(), message["worker"])
+        if "results" not in message:
+            self.began[message["key"]] = (time.monotonic(), message["worker"])
+        elif (outcome := self._outcomes.get(message["key"])) is not None:
+            outcome.set_result(pickle.loads(message["results"]))
+
+    def expect(self, key: str) -> "Future[Any]":
+        """A parcel is sent; its results, when they have come."""
+        self._outcomes[key] = Future()
+        return self._outcomes[key]
 
     def is_begun(self, key: str, worker: str) -> bool:
         """Whether the worker at this address is the last that told that it begins a parcel."""
@@ -57,6 +72,7 @@ class LivingWorkers:
     def forget(self, key: str) -> None:
         """A parcel is over."""
         self._asked.pop(key, None)
+        self._outcomes.pop(key, None)
         self.began.pop(key, None)
 
     @property

@@ -8,7 +8,12 @@ import signal
 
 SETUP = "KINETREE_WORKER_SETUP"
 """The variable of the environment that tells the process what the product has it load, as module:function."""
-OURS = ("distributed.nanny", "distributed.worker", "kinetree.pipeline.running.clusters", "kinetree.pipeline.running.execute")
+OURS = (
+    "distributed.nanny",
+    "distributed.worker",
+    "kinetree.pipeline.running.own_cluster",
+    "kinetree.pipeline.running.sent_parcels",
+)
 
 
 def load(setup: str) -> None:

@@ -1,5 +1,6 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration starts itself."""
 
+import concurrent.futures
 import gc
 import json
 import logging
@@ -15,11 +16,14 @@ from distributed.comm import CommClosedError
 
 from kinetree.errors import ClusterError, ConfigError
 from kinetree.pipeline.inspect import Pipeline
-from kinetree.pipeline.running import clusters
+from kinetree.pipeline.running import clusters, own_cluster, sent_parcels
 from kinetree.pipeline.running.clusters import cluster_of
 from kinetree.pipeline.running.launch import ENVIRONMENT, TRIM, launcher
 from kinetree.pipeline.running.living_workers import LivingWorkers
+from kinetree.pipeline.running.own_cluster import local
 from kinetree.pipeline.running.parcels import Demand
+from kinetree.pipeline.running.quiet import LOUD, quiet
+from kinetree.pipeline.running.sent_parcels import sent
 from kinetree.pipeline.settings.config import Compute
 
 NONE = {"n_workers": 0, "threads_per_worker": 1, "processes": True, "dashboard_address": "127.0.0.1:0"}
@@ -96,10 +100,10 @@ def test_parcels_wait_at_the_scheduler_and_not_at_a_busy_worker(toys, tmp_path):
         work = ("nowhere", (), None)
         busy = client.submit(held_up, end, key="busy")
         toys.until(lambda: cluster.scheduler.total_occupancy, "the worker is busy")
-        sent = [clusters.sent(client, LivingWorkers(60), f"parcel-{n}", Demand(0, None), work) for n in range(3)]
-        toys.until(lambda: len(cluster.scheduler.tasks) == 1 + len(sent), "the scheduler has them")
+        parcels = [sent(client, LivingWorkers(60), f"parcel-{n}", Demand(0, None), work) for n in range(3)]
+        toys.until(lambda: len(cluster.scheduler.tasks) == 1 + len(parcels), "the scheduler has them")
         waiting = len(cluster.scheduler.queued)
-        for future in sent:
+        for future in parcels:
             future.cancel()
         end.touch()
         busy.result(timeout=60)
@@ -150,7 +154,7 @@ def test_a_report_of_dask_needs_workers(toys, tmp_path):
 
 
 def test_our_own_workers_are_replaced_where_none_is_left(monkeypatch):
-    with clusters.local(Compute(workers=1)) as client:
+    with local(Compute(workers=1)) as client:
         assert client.submit(abs, -1).result(timeout=60) == 1
         while not client.cluster.workers:  # the cluster lists a worker after the scheduler does
             threading.Event().wait(0.01)
@@ -166,7 +170,7 @@ def test_our_own_workers_are_told_before_they_start(monkeypatch):
     monkeypatch.setattr(
         Client, "register_plugin", lambda self, *given: (there.append(len(self.cluster.workers)), tell(self, *given))[1]
     )
-    with clusters.local(Compute(workers=1)):
+    with local(Compute(workers=1)):
         assert there == [0]
 
 
@@ -197,7 +201,7 @@ def test_our_own_workers_are_profiled_for_a_report_alone(monkeypatch, tmp_path, 
         asked.append(dask.config.get("distributed.worker.profile.enabled"))
         raise ClusterError("enough is known")
 
-    monkeypatch.setattr(clusters, "LocalCluster", refuse)
+    monkeypatch.setattr(own_cluster, "LocalCluster", refuse)
     compute = Compute(executor="processes", performance_report=report and str(tmp_path / report))
     with pytest.raises(ClusterError, match="enough is known"), launcher(compute):
         pass
@@ -270,14 +274,62 @@ def test_a_queue_that_never_starts_a_worker_is_given_up_in_words(toys, late):
     assert "--wait-workers 1: 0 workers are there after 0.5 s" in done.stderr
 
 
-def test_a_result_that_cannot_be_fetched_is_no_fault_of_its_node(toys, empty, monkeypatch):
+def fetches(cluster):
+    """How often something was fetched from workers."""
+    return [event["action"] for _, event in cluster.scheduler.get_events("all")].count("gather")
+
+
+def test_results_come_along_with_the_word_that_they_are_there(toys):
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
+        assert toys.run(client).told["status"] == "done"
+        assert fetches(cluster) == 0
+
+
+def test_results_that_are_too_long_for_an_event_are_fetched(toys, monkeypatch):
+    monkeypatch.setattr(sent_parcels, "EVENT_BYTES", 0)
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
+        assert toys.run(client).told["status"] == "done"
+        assert fetches(cluster) > 0
+
+
+def test_text_that_is_no_unicode_comes_along_too(toys):
+    """Names of files may be, and what is not to be encoded would end the stream to the scheduler."""
+    toys.edit('raise ValueError(f"{call} was told to fail")', 'raise ValueError("\\udcff")')
+    toys.flag("fail-total-210")
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
+        (failure,) = toys.run(client, until=("total",)).told["failures"]
+        assert fetches(cluster) == 0
+    assert failure["message"] == "\udcff"
+
+
+def test_nothing_of_a_run_stays_with_a_scheduler_of_somebody_else(toys):
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
+        before = set(cluster.scheduler.get_events())
+        toys.run(client)
+        left = {topic for topic in cluster.scheduler.get_events() if topic not in before}
+        assert not [topic for topic in left if not topic.startswith(("tcp", "inproc", "scheduler", client.id))]
+
+
+def test_two_runs_of_one_client_at_once_have_their_own_results(toys, tmp_path):
+    """The one that subscribes first waits in the middle until the other is over."""
+    waits = toys.flag("wait-total-210")
+    with LocalCluster(**{**INSIDE, "n_workers": 1, "threads_per_worker": 2}) as cluster, Client(cluster) as client:
+        first = concurrent.futures.ThreadPoolExecutor().submit(toys.run, client)
+        toys.until((toys.flags / "waiting-total-210").exists, "total begins")
+        assert toys.run(client, until=("smooth",), store=str(tmp_path / "other")).told["status"] == "done"
+        waits.unlink()
+        assert first.result(timeout=60).told["status"] == "done"
+        assert fetches(cluster) == 0
+
+
+def test_a_result_that_cannot_be_fetched_is_no_fault_of_its_node(toys, monkeypatch):
     """A scheduler that is killed while it sends a result."""
 
     async def closed(*_, **__):
         raise CommClosedError("Stream is closed")
 
-    empty.scale(1)
-    with Client(empty) as client:
+    monkeypatch.setattr(sent_parcels, "EVENT_BYTES", 0)
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
         monkeypatch.setattr(client, "_gather", closed)
         with pytest.raises(ClusterError, match=r"the scheduler is gone \(CommClosedError\); run again"):
             toys.run(client, until=("points",))
@@ -297,13 +349,13 @@ def test_what_was_fetched_stays_with_no_worker(toys, empty):
 
 def test_nothing_is_computed_again_while_workers_end(toys, monkeypatch):
     """Each that ends before the others would leave them what it still holds, such as a failure, which has no record."""
-    wanted, end = [], clusters._end
+    wanted, end = [], own_cluster._end
 
     async def noted(cluster, patience):
         wanted.extend(key for key, task in cluster.scheduler.tasks.items() if task.who_wants)
         await end(cluster, patience)
 
-    monkeypatch.setattr(clusters, "_end", noted)
+    monkeypatch.setattr(own_cluster, "_end", noted)
     toys.flag("fail-report-6")
     assert toys.run(compute={"executor": "processes", "workers": 2}).heard.nodes("failed") == ["report"]
     assert wanted == []
@@ -320,14 +372,14 @@ def test_dask_names_what_runs_by_its_tasks(toys, empty):
 
 def test_runs_that_overlap_leave_the_levels_of_loggers_as_the_first_found_them(monkeypatch):
     monkeypatch.setattr(logging.getLogger("distributed.nanny"), "level", logging.WARNING)
-    before = {name: logging.getLogger(name).level for name in clusters.LOUD}
-    first, second = clusters._quiet(), clusters._quiet()
+    before = {name: logging.getLogger(name).level for name in LOUD}
+    first, second = quiet(), quiet()
     first.__enter__()
     second.__enter__()
     first.__exit__(None, None, None)
-    assert {logging.getLogger(name).level for name in clusters.LOUD} == {logging.CRITICAL}
+    assert {logging.getLogger(name).level for name in LOUD} == {logging.CRITICAL}
     second.__exit__(None, None, None)
-    assert {name: logging.getLogger(name).level for name in clusters.LOUD} == before
+    assert {name: logging.getLogger(name).level for name in LOUD} == before
 
 
 def test_dask_reports_on_a_run(toys, tmp_path):

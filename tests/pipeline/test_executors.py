@@ -1,5 +1,6 @@
 """Wherever nodes are computed the results are the same bytes; workers may die, stale ones are refused."""
 
+import gc
 import json
 
 import pytest
@@ -45,6 +46,20 @@ def test_a_killed_worker_costs_its_node_another_try_and_nothing_else(toys, tmp_p
     assert toys.executions().count("report-6") == 1, "an error of the task's own is no reason to try again"
     calm = toys.artifacts(store=str(tmp_path / "calm"))
     assert {**toys.artifacts(), "report": calm["report"]} == calm
+
+
+def test_a_failure_that_has_arrived_is_not_computed_again_when_its_worker_dies_later(toys):
+    """The chain is sent when the failure has arrived, since the one worker has computed the chain's order after it."""
+    toys.flag("fail-intervals-6")
+    toys.flag("die-track-25")
+    gc.disable()  # what is in a ring goes when garbage is collected, which may be soon
+    try:
+        run = toys.run(compute={"executor": "processes", "workers": 1}, until=("track", "intervals"))
+    finally:
+        gc.enable()
+    assert run.heard.nodes("failed") == ["intervals"]
+    assert toys.executions().count("track-25") == 2
+    assert toys.executions().count("intervals-6") == 1
 
 
 def test_a_node_that_kills_every_worker_fails_alone(toys):

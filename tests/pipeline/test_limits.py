@@ -131,10 +131,10 @@ def test_nodes_that_do_not_fit_together_are_not_on_one_worker_at_once(toys):
 
 
 def test_our_own_workers_declare_their_memory():
-    from kinetree.pipeline.running import clusters
+    from kinetree.pipeline.running.own_cluster import local
 
     assert [Compute(memory=m).memory_bytes for m in ("4GB", "512 MiB", "1.5kB", "7B")] == [4 * 10**9, 2**29, 1500, 7]
-    with clusters.local(Compute(workers=1, memory="3GiB")) as client:
+    with local(Compute(workers=1, memory="3GiB")) as client:
         client.wait_for_workers(1)
         (worker,) = client.scheduler_info()["workers"].values()
     assert worker["resources"] == {"memory": 3 * 2**30}

@@ -11,6 +11,7 @@ from distributed import Client, LocalCluster, Security
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.running import clusters
+from kinetree.pipeline.running.own_cluster import local
 from kinetree.pipeline.settings.config import Compute
 
 _LISTENING = "0A"
@@ -48,7 +49,7 @@ def listening(process: int) -> set[str]:
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc")
 def test_workers_of_this_machine_listen_on_loopback_alone():
-    with clusters.local(Compute(workers=1)) as client:
+    with local(Compute(workers=1)) as client:
         assert client.submit(abs, -1).result(timeout=60) == 1
         there = listening(os.getpid())
     assert there
@@ -61,7 +62,7 @@ def test_a_socket_for_everybody_would_be_noticed():
 
 
 def test_temporary_certificates_secure_the_workers_and_strangers_are_turned_away():
-    with clusters.local(Compute(workers=1, security="temporary")) as client:
+    with local(Compute(workers=1, security="temporary")) as client:
         address = client.scheduler.address
         assert address.startswith("tls://127.0.0.1:")
         assert client.submit(abs, -1).result(timeout=60) == 1

@@ -1,0 +1,50 @@
+"""How connections to dask's scheduler and workers are secured, and closed."""
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from distributed import Security
+
+from kinetree.errors import ConfigError
+from kinetree.pipeline.settings.config import Compute
+
+_FILES = ("_file", "_cert", "_key")
+"""How the arguments of distributed.Security end that name files."""
+
+
+@contextlib.contextmanager
+def closed(opened: Any) -> Iterator[Any]:
+    """Closes a client or a cluster; one that does not stop in time ends with this process and is no fault of the run."""
+    try:
+        yield opened
+    finally:
+        with contextlib.suppress(OSError, RuntimeError, TimeoutError):
+            opened.close()
+
+
+def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
+    """The argument of dask's classes that secures their connections, if the configuration names one; raises ConfigError.
+
+    scheduler : how the configuration names one that somebody else runs; empty where the run starts its own
+    """
+    wanted = compute.security
+    if not wanted:
+        return {}
+    if wanted == "temporary":
+        if scheduler:
+            raise ConfigError(
+                f"compute.security temporary: {scheduler} has certificates of its own; name them: tls_ca_file, tls_client_cert,"
+                " tls_client_key"
+            )
+        try:
+            return {"security": Security.temporary()}
+        except ImportError:
+            raise ConfigError("compute.security temporary: cryptography is not installed; pip install cryptography") from None
+    if missing := [f"{key} {path}" for key, path in wanted.items() if key.endswith(_FILES) and not Path(path).is_file()]:
+        raise ConfigError(f"compute.security: {missing[0]}: there is no such file")
+    try:
+        return {"security": Security(require_encryption=True, **wanted)}
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"compute.security: {error}") from None
