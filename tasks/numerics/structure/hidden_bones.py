@@ -30,7 +30,12 @@ class HiddenBonesSettings(NamedTuple):
     less_drift: float = 0.5
     """Drift of both new joints, share of that of the one, at which a smaller one, down to half of `drift`, does too."""
     more_drift: float = 2.5
-    """Drift of either new joint in drifts of the one, at most."""
+    """Drift of either new joint in drifts of the one, at most, where the one drifts clearly; else they may drift no more than
+    the one does."""
+    clear_drift: float = 0.04
+    """Drift of the one joint from which on it drifts clearly, in radii of its border: a wide one drifts by as much as a neck's
+    where flesh bends. Chosen on a dance and people of even seeds: true bones that need it lie at 0.054 and above, the false one
+    at 0.033."""
     steady: float = 0.006
     """Drift of either new joint, at most."""
     apart: float = 0.9
@@ -59,6 +64,9 @@ class HiddenBonesSettings(NamedTuple):
     """Share of the largest weight of the bone from which on a vertex counts as its own, if not already as most its own."""
     rounds: int = 25
     """Rounds of weights and motion."""
+    generations: int = 2
+    """How many times bones are looked for: at all joints, then at those of the bones that were found before. Chosen on a dance
+    and people of even seeds; with 3 all results are the same."""
     noise: float = 1e-4
     """Error of a vertex below which its motion says nothing of its weights."""
     prior: RotationCentresSettings = RotationCentresSettings(spread=1.0, frames_alike=3.0, far=2.0)
@@ -136,10 +144,11 @@ def is_bone(bone: HiddenBone, between: Border, size: float, settings: HiddenBone
     """
     chosen, worst = settings, float(bone.drift.max())
     needed = between.drift > chosen.drift * size or worst < chosen.less_drift * between.drift
+    more = chosen.more_drift if between.drift > chosen.clear_drift * between.radius else 1.0
     length = float(np.linalg.norm(bone.joint[1] - bone.joint[0]))
     return bool(
         needed
-        and worst < min(chosen.steady * size, chosen.more_drift * between.drift)
+        and worst < min(chosen.steady * size, more * between.drift)
         and length > chosen.apart * between.radius
         and bone.area > chosen.area * size**2
         and bone.degrees.min() > chosen.degrees

@@ -1,6 +1,6 @@
 """The tree with its hidden bones: each becomes a part between two others (ours)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,18 +23,40 @@ def inserted_bones(
 ) -> TreeJoints:
     """The same tree with a bone between a part and the one above wherever there is a hidden one.
 
+    A joint of such a bone may hide another: a neck of two bones blends them both between chest and head.
+
     body  : every vertex of it was followed
     noise : error of a vertex below which its motion says nothing of its skinning weights, mesh unit
     """
+    chosen = settings or HiddenBonesSettings()
+    bones = _hidden_at(range(1, len(found.rest)), body, found, chosen)
+    for _ in range(chosen.generations - 1):
+        if not bones:
+            break
+        own = _Rows.of(len(found.rest), np.array(list(bones))).own.tolist()
+        found = _extended(body, found, bones, noise)
+        bones = _one_each(own, _hidden_at([k for o in own for k in (o, o + 1)], body, found, chosen))
+    return _extended(body, found, bones, noise) if bones else found
+
+
+def _one_each(own: Sequence[int], bones: dict[int, HiddenBone]) -> dict[int, HiddenBone]:
+    """The same without the worse of two bones beside the same one, which stand for one bone between them."""
+    worse = {max(o, o + 1, key=lambda k: bones[k].drift.max()) for o in own if o in bones and o + 1 in bones}
+    return {k: bone for k, bone in bones.items() if k not in worse}
+
+
+def _hidden_at(
+    joints: Iterable[int], body: MovingSurface, found: TreeJoints, chosen: HiddenBonesSettings
+) -> dict[int, HiddenBone]:
+    """The bones at some joints, ascending, each by the place of the part below it."""
     skin = MovingSkin(body.V, body.x, body.area, found.W, found.R, found.t)
     tree, met = found.left.part_tree.tree, found.left.part_tree.borders
     bones = {}
-    for k in range(1, len(tree.order)):
-        radius = float(met.radius[tree.border[k]])
-        between = Border(k, int(tree.parents[k]), found.rest[k], radius, float(found.drift[k]))
-        if (bone := hidden_bone(skin, between, settings, body.takes)) is not None:
+    for k in joints:
+        between = Border(k, int(tree.parents[k]), found.rest[k], float(met.radius[tree.border[k]]), float(found.drift[k]))
+        if (bone := hidden_bone(skin, between, chosen, body.takes)) is not None:
             bones[k] = bone
-    return _extended(body, found, bones, noise) if bones else found
+    return bones
 
 
 def _extended(body: MovingSurface, found: TreeJoints, bones: dict[int, HiddenBone], noise: float) -> TreeJoints:

@@ -119,3 +119,14 @@ def test_a_joint_that_does_not_drift_needs_no_second() -> None:
     for drift, needed in ((0.002, True), (0.001, True), (0.00015, False)):
         between = Border(1, 0, np.zeros(3), 1.0, drift * size)
         assert is_bone(bone, between, size, HiddenBonesSettings()) is needed
+
+
+def test_where_the_one_joint_drifts_little_for_its_width_two_may_not_drift_more() -> None:
+    body = neck()
+    bone = proposed(body)
+    size = float(np.sqrt(body.area.sum()))
+    assert bone is not None
+    bone, asked = bone._replace(drift=np.full(2, 0.003 * size)), HiddenBonesSettings(apart=0.0)
+    for radius, is_one in ((0.02 * size, True), (0.1 * size, False)):
+        assert is_bone(bone, Border(1, 0, np.zeros(3), radius, 0.002 * size), size, asked) is is_one
+    assert is_bone(bone, Border(1, 0, np.zeros(3), 0.1 * size, 0.0035 * size), size, asked)

@@ -5,6 +5,7 @@ from articulated import Known, chain, neck, neck_ends, swings
 from shipped import TREE
 from whole_tree import whole_tree
 
+from kinetree.tasks.numerics.structure.hidden_bones import HiddenBonesSettings
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -58,6 +59,16 @@ def test_weights_of_the_skin_are_shared_with_the_bone() -> None:
     _, after = with_bones(body)
     np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
     assert np.abs(after.W - body.W).mean() < 0.02
+
+
+def test_a_neck_of_two_bones_has_three_joints() -> None:
+    body = chain((-1.5, 0.0, 1.5), swings(24, 4, 20.0, seed=1), blend=2.0, along=60)
+    surface, found = MovingSurface(body.V, body.F, body.x, body.area), neck_ends(body)
+    asked = HiddenBonesSettings(steady=0.1)
+    one, two = (inserted_bones(surface, found, 0.002, asked._replace(generations=g)) for g in (1, 2))
+    assert [len(tree.rest) - 1 for tree in (one, two)] == [2, 3]
+    assert abs(one.rest[1:, 2] + 1.5).min() > 0.2
+    assert abs(two.rest[1:, 2] + 1.5).min() < 0.05
 
 
 def test_a_tree_without_hidden_bones_is_given_back() -> None:
