@@ -26,7 +26,7 @@ from kinetree.pipeline.inspection.plan import Plan, Planned
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.output.output import as_yaml
 from kinetree.pipeline.output.session import Session, Status
-from kinetree.pipeline.planning.layout import Given
+from kinetree.pipeline.planning.layout import OriginArtifacts
 from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.events import Account, Listener, Watch
@@ -43,7 +43,7 @@ if TYPE_CHECKING:  # networkx is imported when a graph is asked for
     from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 
 A = TypeVar("A", bound=Artifact)
-Outside = tuple[Given, list[str]]
+Outside = tuple[OriginArtifacts, list[str]]
 """What origins find, and remarks on it."""
 
 
@@ -283,7 +283,8 @@ class Pipeline:
             return
         from kinetree.pipeline.running.jobs import Job
         from kinetree.pipeline.running.launch import launcher
-        from kinetree.pipeline.running.run import run, take_back_lost
+        from kinetree.pipeline.running.run import run
+        from kinetree.pipeline.running.telling import take_back_lost
 
         is_whole, beside = False, self.beside if client is None and self.config.compute.is_here else None
         while not is_whole:

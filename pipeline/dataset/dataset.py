@@ -149,8 +149,8 @@ class Dataset:
         max_hours : after this no node is sent any more; the next run goes on
         raises    : StoreError, ClusterError where going on makes no sense, after what became of all was put on record
         """
-        if client is None and self.config.compute.has_own_workers:
-            refuse_within_import()
+        if client is None:
+            self._refuse_within_import()
         started, began = time.perf_counter(), now()
         selected = self._selected(only, failed=failed, since=since)
         Owned.of(self.config.root).claim([SUMMARY, LOG, OUTCOME])
@@ -201,6 +201,7 @@ class Dataset:
         returns : its status and the paths of its files
         raises  : ConfigError where the application makes no summary
         """
+        self._refuse_within_import()
         Owned.of(self.config.root).claim([OUTCOME])
         with Leases() as leases, Workers(self.config.compute) as workers:
             summing = self._summing()
@@ -209,6 +210,10 @@ class Dataset:
             outcome, _ = summing.make(workers)
         files = [str(self.config.root / name) for name in sorted(outcome.files)]
         return {"status": outcome.status, "files": files, "failures": list(outcome.failures)}
+
+    def _refuse_within_import(self) -> None:
+        if self.config.compute.has_own_workers:
+            refuse_within_import()
 
     def table(self) -> Table:
         """The rows of the summary, as what the sequences' last runs left makes them now."""

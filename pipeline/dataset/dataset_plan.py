@@ -77,7 +77,7 @@ def planned(name: str, there: Snapshot, before: Outcome | None, rate: float | No
         return PlannedSequence(name, "fresh")
     nodes = sum(node.state != "fresh" for node in plan.nodes)
     expected = there.estimate()
-    members = sum(len(artifacts) for artifacts in there.schedule.given.values())
+    members = sum(len(artifacts) for artifacts in there.schedule.origin_artifacts.values())
     by_rate = None if rate is None else round(rate * members, 1)
     if before is None:
         return PlannedSequence(name, "new", nodes, by_rate)

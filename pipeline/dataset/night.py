@@ -208,7 +208,7 @@ class Night:
             now(),
             session.name,
             computing_seconds(schedule),
-            sum(len(artifacts) for artifacts in schedule.given.values()),
+            sum(len(artifacts) for artifacts in schedule.origin_artifacts.values()),
             counts,
             (*known, *failures),
             _remarks(session.there) if is_done else (),

@@ -144,7 +144,7 @@ def closing(
     nodes: dict[str, dict[str, Any]] = {
         e.label: {"state": e.state, "key": e.key, "artifact": e.artifact} for e in schedule.entries.values()
     }
-    for task, members in schedule.given.items():
+    for task, members in schedule.origin_artifacts.items():
         over = schedule.graph.by_name[task].over
         for index, artifact in members.items():
             nodes[label(Node(task, index), over)]["values"] = artifact.plain()

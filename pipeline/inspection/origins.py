@@ -7,13 +7,13 @@ from kinetree.errors import InputError, ServiceError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.node import parse
-from kinetree.pipeline.planning.layout import Given
+from kinetree.pipeline.planning.layout import OriginArtifacts
 from kinetree.pipeline.settings.config import Config
 from kinetree.pipeline.storage.files import Files
 from kinetree.schemas.array import Artifact, Index
 
 
-def origin_artifacts(graph: Graph, config: Config, files: Files, history: History) -> tuple[Given, list[str]]:
+def origin_artifacts(graph: Graph, config: Config, files: Files, history: History) -> tuple[OriginArtifacts, list[str]]:
     """What every origin of the graph finds, and remarks on what it did not.
 
     Where an output folder was named and its input is not to be found, as after a move, what its last run found is taken:

@@ -168,7 +168,7 @@ def _damage_discarded(schedule: Schedule, entry: Entry) -> Iterator[None]:
 
 def _refuse_input(targets: list[Path], schedule: Schedule, inputs: Collection[str]) -> None:
     """What the input is read from is the user's own and may be all there is."""
-    origins = [artifact for members in schedule.given.values() for artifact in members.values()]
+    origins = [artifact for members in schedule.origin_artifacts.values() for artifact in members.values()]
     places = {Path(str(getattr(a, name))).resolve() for a in origins for name in a.location_fields() if name == "path"}
     for target in targets:
         beside = sum(place.parent == target.resolve().parent for place in places)

@@ -1,8 +1,9 @@
 """Artifacts that turned out to be damaged: looked at once more, and removed before they are made again."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from kinetree.errors import DamagedArtifactError
+from kinetree.errors import DamagedArtifactError, StoreError
+from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.storage.store import Store
 
@@ -17,6 +18,20 @@ def is_whole(store: Store, maker: Entry, artifact: str) -> bool:
     except DamagedArtifactError:
         return False
     return True
+
+
+def makers_of(store: Store, entries: Mapping[Node, Entry], reader: Entry, artifact: str, what: str) -> list[Node]:
+    """The nodes that make an artifact which a node could not read; none where another graph makes it, after it was removed.
+
+    raises : StoreError where nobody makes it
+    """
+    made = {node: entry.task for node, entry in entries.items() if entry.artifact == artifact}
+    makers = [node for node, task in made.items() if not task.is_origin]
+    if not makers and any(task.is_linked for task in made.values()):
+        store.discard(artifact)
+    elif not makers:
+        raise StoreError(f"{reader.label}: artifact {artifact[:12]} {what} and nothing here makes it")
+    return makers
 
 
 def discard_damaged(store: Store, maker: Entry, artifact: str) -> None:

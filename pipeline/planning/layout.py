@@ -13,7 +13,7 @@ from kinetree.schemas.array import Artifact, Index
 
 T = TypeVar("T")
 EVERYWHERE: Mapping[str, int] = MappingProxyType({})
-Given = Mapping[str, Mapping[Index, Artifact]]
+OriginArtifacts = Mapping[str, Mapping[Index, Artifact]]
 """What the origins found, by task name and index."""
 
 
@@ -29,7 +29,7 @@ class Layout:
     """A graph over one sequence; `ask` and `exists` tell what a schedule knows by now."""
 
     graph: Graph
-    given: Given
+    origin_artifacts: OriginArtifacts
     ask: Ask
     exists: Callable[[Node], bool]
 
@@ -50,6 +50,12 @@ class Layout:
                     longer.extend((*prefix, member) for member in members)
             known = longer
         return known, tuple(dict.fromkeys(blocking))
+
+    def inputs(self, task: AnyTask, index: Index) -> tuple[tuple[tuple[Argument, tuple[Node, ...]], ...], tuple[Node, ...]]:
+        """What every argument of a task reads at an index, and the nodes that block saying so."""
+        pairs = [(argument, *self.reads(task, index, argument)) for argument in task.arguments]
+        blocking = tuple(node for _, _, blocked in pairs for node in blocked)
+        return tuple((argument, nodes) for argument, nodes, _ in pairs), blocking
 
     def reads(self, task: AnyTask, index: Index, argument: Argument) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
         """The nodes that an argument of a task reads at an index, and those that block saying so."""
@@ -85,13 +91,20 @@ class Layout:
         """Members of a space's last dimension below a prefix, or the node that has to tell them; `only` this one, if any."""
         opener = self.graph.openers[space]
         if opener.is_origin and opener.over == space:
-            there = self.given[opener.name]
+            there = self.origin_artifacts[opener.name]
             if only is not None:  # asked for every node: among a thousand frames nobody looks for one
                 return [only] if (*prefix, only) in there else []
             return sorted(i[-1] for i in there if i[:-1] == prefix)
         node = Node(opener.name, project(prefix, space[:-1], opener.over))
         members = self.ask(node, lambda value: value.members("/".join(space), prefix))
         return node if members is None else [m for m in members if only is None or m == only]
+
+    def refuse_missing(self, task: AnyTask, reader: str, nodes: Sequence[Node]) -> None:
+        """Raises GraphError where a node, by its label, reads one that does not exist."""
+        for node in nodes:
+            if not self.exists(node):
+                there = label(node, self.graph.by_name[node.task].over)
+                raise GraphError(f"{reader} ({task.where}) reads {there}, which does not exist")
 
     def _previous(self, task: AnyTask, index: Index) -> tuple[Index | None, tuple[Node, ...]]:
         """The index with the previous member of the traversal, None where that starts; and the nodes that block saying so."""

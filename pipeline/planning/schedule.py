@@ -5,24 +5,24 @@ sequence), its nodes appear when that data does, so that running is a fixpoint o
 schedule nobody completes; it computes nothing.
 """
 
-from collections import defaultdict, deque
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
-from kinetree.errors import DamagedArtifactError, GraphError, StoreError
+from kinetree.errors import DamagedArtifactError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.node import Node, label
-from kinetree.pipeline.planning.damage import MENDS, discard_damaged, is_mended
+from kinetree.pipeline.planning.damage import MENDS, discard_damaged, is_mended, makers_of
+from kinetree.pipeline.planning.dependents import Dependents
 from kinetree.pipeline.planning.entry import DONE, Entry, Loss, State
 from kinetree.pipeline.planning.freshness import Freshness
-from kinetree.pipeline.planning.layout import Given, Layout, T
+from kinetree.pipeline.planning.layout import Layout, OriginArtifacts, T
 from kinetree.pipeline.planning.made_with import EVERY_VERSION_TRUSTED, MadeWith
 from kinetree.pipeline.planning.origin import Links, accepted
 from kinetree.pipeline.planning.ready import ReadyNodes
 from kinetree.pipeline.planning.reason import Reason, Recall
 from kinetree.pipeline.planning.together import together
 from kinetree.pipeline.storage.store import Record, Store
-from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Artifact, Params
 
 
@@ -38,26 +38,25 @@ class Schedule:
         graph: Graph,
         params: Mapping[str, Params],
         store: Store,
-        given: Given,
+        origin_artifacts: OriginArtifacts,
         *,
         force: Iterable[str] = (),
         recall: Recall = lambda _: "nothing",
         distrusted: MadeWith = EVERY_VERSION_TRUSTED,
         links: Links = MappingProxyType({}),
     ) -> None:
-        self.graph = graph
-        self.store = store
-        self.given = given
-        self.links = links
+        self.graph, self.store = graph, store
+        self.origin_artifacts, self.links = origin_artifacts, links
         self.freshness = Freshness(graph, params, store, frozenset(force), recall, distrusted)
         self.entries: dict[Node, Entry] = {}
-        self._layout = Layout(graph, given, self._ask, self.entries.__contains__)
-        self._dependents: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
+        self._layout = Layout(graph, origin_artifacts, self._ask, self.entries.__contains__)
         self._unlisted: dict[Node, None] = {}
+        self._dependents = Dependents(self.entries, self._unlisted)
         self._ready = ReadyNodes(graph, self.entries)
         self._values: dict[Node, Artifact] = {}
-        self._shaping = {t.name for t in graph.openers.values()}
-        self._shaping |= {graph.writers[artifact].name for t in graph.tasks for artifact in (t.along, t.among) if artifact}
+        self._shaping = {t.name for t in graph.openers.values()} | {
+            graph.writers[artifact].name for t in graph.tasks for artifact in (t.along, t.among) if artifact
+        }
         self.blocked: dict[str, tuple[Node, ...]] = {}
         self._losses: list[Loss] = []
         self._skipped_late: list[Node] = []
@@ -70,7 +69,7 @@ class Schedule:
         fresh: list[Node] = []
         for task in self.graph.tasks:
             if task.is_origin:
-                for entry in accepted(task, self.links, self.given, self.entries):
+                for entry in accepted(task, self.links, self.origin_artifacts, self.entries):
                     self.entries[entry.node] = entry
                 continue
             for each in (task, *self.graph.behind(task)):  # what is read at a previous member may come later in the graph
@@ -112,7 +111,7 @@ class Schedule:
         if entry.damaged is not None:
             discard_damaged(self.store, entry, entry.damaged)
             entry.damaged = None
-        parcel = [entry] if is_alone else together(entry, self.graph, self.entries, self._dependents, self._unlisted)
+        parcel = [entry] if is_alone else together(entry, self.graph, self.entries, self._dependents.by_node, self._unlisted)
         for member in parcel:
             member.state = "running"
         return parcel
@@ -122,7 +121,7 @@ class Schedule:
         entry = self.entries[node]
         entry.key, entry.artifact, entry.record = key, artifact, record
         entry.state = "ran" if ran else "fresh"
-        fresh = self._settle_all(self._released(node))
+        fresh = self._settle_all(self._dependents.released(node))
         if self._shaping & {node.task, *(n.task for n in fresh)}:
             fresh += self.lay_out()
         return [self.entries[n] for n in fresh if self.entries[n].state == "fresh"]
@@ -130,19 +129,7 @@ class Schedule:
     def fail(self, node: Node, cause: str) -> list[Node]:
         """A node failed: everything that waits for it is skipped; returns what was."""
         self.entries[node].state, self.entries[node].cause = "failed", cause
-        return self._skip_below(node)
-
-    def _skip_below(self, node: Node) -> list[Node]:
-        skipped: list[Node] = []
-        queue = deque([node])
-        while queue:
-            for dependent in self._dependents[queue.popleft()]:
-                entry = self.entries[dependent]
-                if entry.state not in ("skipped", "failed"):
-                    entry.state, entry.cause = "skipped", self._failure(node)
-                    skipped.append(dependent)
-                    queue.append(dependent)
-        return skipped
+        return self._dependents.skip_below(node)
 
     def put_back(self, node: Node) -> None:
         """A node that was sent was not computed, since one it travelled with was not: it waits for that one again."""
@@ -157,12 +144,9 @@ class Schedule:
         raises   : StoreError where no node makes it
         """
         entry = self.entries[node]
-        makers = [n for n, other in self.entries.items() if other.artifact == artifact and not other.task.is_origin]
-        if not makers and any(other.artifact == artifact and other.task.is_linked for other in self.entries.values()):
-            self.store.discard(artifact)  # the graph that made it makes it again
-            return None
+        makers = makers_of(self.store, self.entries, entry, artifact, what)
         if not makers:
-            raise StoreError(f"{entry.label}: artifact {artifact[:12]} {what} and nothing here makes it")
+            return None
         if entry.state == "skipped":
             return []
         redone = [(self.entries[n], self.entries[n].state) for n in makers if self.entries[n].state in DONE]
@@ -176,7 +160,7 @@ class Schedule:
         entry.state = "waits"
         entry.waits.update(makers)
         for other in makers:
-            self._dependents[other][node] = None
+            self._dependents.by_node[other][node] = None
         if not makers:
             entry.state = "stale"
             self._ready.add(node)
@@ -194,7 +178,7 @@ class Schedule:
         """The artifact of a node that has one, arrays read lazily."""
         entry = self.entries[node]
         if entry.task.is_origin and not entry.task.is_linked:
-            return self.given[node.task][node.at]
+            return self.origin_artifacts[node.task][node.at]
         if entry.artifact is None:
             raise KeyError(node)
         if node not in self._values:
@@ -203,7 +187,7 @@ class Schedule:
 
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
-        return tuple(self._dependents[node])
+        return tuple(self._dependents.by_node[node])
 
     def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
         """What an opener or a traversal answers, None while it is not there (or no longer readable)."""
@@ -235,35 +219,14 @@ class Schedule:
 
     def _link(self, entry: Entry) -> None:
         """Lists what a node reads; while that cannot be known, it waits for the nodes that will tell."""
-        blocking: list[Node] = []
-        inputs: list[tuple[Argument, tuple[Node, ...]]] = []
-        for argument in entry.task.arguments:
-            nodes, blocked = self._layout.reads(entry.task, entry.node.at, argument)
-            inputs.append((argument, nodes))
-            blocking.extend(blocked)
+        inputs, blocking = self._layout.inputs(entry.task, entry.node.at)
         wanted = blocking or [node for _, nodes in inputs for node in nodes]
-        entry.waits = {n for n in wanted if n not in self.entries or self.entries[n].state not in DONE}
-        for node in wanted:
-            self._dependents[node][entry.node] = None
+        self._dependents.wait(entry, wanted)
         if not blocking:
-            self._refuse_missing(entry, wanted)
-            entry.inputs = tuple(inputs)
+            self._layout.refuse_missing(entry.task, entry.label, wanted)
+            entry.inputs = inputs
             del self._unlisted[entry.node]
-        failed = next((n for n in wanted if n in self.entries and self.entries[n].state in ("failed", "skipped")), None)
-        if failed is not None and entry.state != "skipped":
-            entry.state, entry.cause = "skipped", self._failure(failed)
-            self._skipped_late += [entry.node, *self._skip_below(entry.node)]
-
-    def _failure(self, node: Node) -> str:
-        """The label of the node whose failure is why `node` did not run."""
-        entry = self.entries[node]
-        return entry.cause if entry.state == "skipped" else entry.label
-
-    def _refuse_missing(self, entry: Entry, wanted: Sequence[Node]) -> None:
-        for node in wanted:
-            if node not in self.entries:
-                name = label(node, self.graph.by_name[node.task].over)
-                raise GraphError(f"{entry.label} ({entry.task.where}) reads {name}, which does not exist")
+        self._skipped_late += self._dependents.skipped_late(entry, wanted)
 
     def _settle_all(self, nodes: Iterable[Node]) -> list[Node]:
         """Settles nodes whose inputs are all there, and on from those that turn out fresh; returns these."""
@@ -273,18 +236,8 @@ class Schedule:
             node = queue.popleft()
             if self.entries[node].state == "waits" and self._settle(self.entries[node]):
                 fresh.append(node)
-                queue.extend(self._released(node))
+                queue.extend(self._dependents.released(node))
         return fresh
-
-    def _released(self, node: Node) -> list[Node]:
-        """The dependents that waited for nothing but this node."""
-        released = []
-        for dependent in self._dependents[node]:
-            entry = self.entries[dependent]
-            entry.waits.discard(node)
-            if not entry.waits and dependent not in self._unlisted and entry.state == "waits":
-                released.append(dependent)
-        return released
 
     def _settle(self, entry: Entry) -> bool:
         """Computes a node's key and asks the store; True where the node is fresh."""

@@ -12,16 +12,6 @@ from kinetree.errors import (
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.execute import Result
-from kinetree.pipeline.running.jobs import Job
-
-
-def tell_losses(job: Job) -> None:
-    """What could not be read while more of the graph was laid out, or was not there in the end."""
-    for loss in job.schedule.losses():
-        job.watch.damaged(loss.entry, loss.was, loss.what)
-        if loss.skipped is not None:
-            failed = beyond_repair(loss.entry.artifact or "", loss.what)
-            job.watch.fail(loss.entry, failed, [job.schedule.entries[n] for n in loss.skipped])
 
 
 def refuse_to_wait_for(entry: Entry, limit: float, *, is_elsewhere: bool) -> None:

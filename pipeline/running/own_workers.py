@@ -1,5 +1,6 @@
 """Our own worker processes while they start: one that ends then is started again, and where all do, the run ends in words."""
 
+import ast
 import asyncio
 import contextlib
 import sys
@@ -45,7 +46,7 @@ class Starts:
 
 
 def unguarded_script() -> str:
-    """The file of this program, where workers import it and its text has no `__name__`; else "".
+    """The file of this program, where workers import it and no condition of its text asks for `__name__`; else "".
 
     Python's workers import no `__main__.py` of a package (`python -m PACKAGE`).
     """
@@ -54,9 +55,13 @@ def unguarded_script() -> str:
     module = getattr(getattr(main, "__spec__", None), "name", "")
     if file is None or module.rpartition(".")[2] == "__main__":
         return ""
-    with contextlib.suppress(OSError, UnicodeDecodeError):
-        return "" if "__name__" in Path(file).read_text(encoding="utf-8") else str(file)
-    return ""
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):  # what cannot be read is not blamed
+        return ""
+    conditions = [node.test for node in ast.walk(tree) if isinstance(node, ast.If)]
+    names = {name.id for test in conditions for name in ast.walk(test) if isinstance(name, ast.Name)}
+    return "" if "__name__" in names else str(file)
 
 
 @contextlib.contextmanager

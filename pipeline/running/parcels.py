@@ -56,5 +56,5 @@ def _ref(schedule: Schedule, place: dict[Node, int], node: Node) -> Ref:
     if node in place:
         return Ref(entry.label, step=place[node])
     if entry.task.is_origin and not entry.task.is_linked:
-        return Ref(entry.label, carried=schedule.given[node.task][node.at])
+        return Ref(entry.label, carried=schedule.origin_artifacts[node.task][node.at])
     return Ref(entry.label, artifact=entry.artifact)

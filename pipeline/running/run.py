@@ -12,12 +12,12 @@ from functools import partial
 from kinetree.errors import ClusterError, LateNodeError
 from kinetree.pipeline.graph_cache import import_functions
 from kinetree.pipeline.node import Node
-from kinetree.pipeline.planning.entry import DONE, Entry
+from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running import sight as seeing
 from kinetree.pipeline.running.events import Watch
 from kinetree.pipeline.running.execute import Result, forget_reads
-from kinetree.pipeline.running.fates import beyond_repair, refusal, refuse_rings, refuse_to_wait_for, tell_losses, twin
+from kinetree.pipeline.running.fates import refuse_rings, refuse_to_wait_for, twin
 from kinetree.pipeline.running.interrupts import interruptible
 from kinetree.pipeline.running.jobs import OPEN_AT_LEAST, Job, Jobs, Single, fairest
 from kinetree.pipeline.running.launch import Future, Launcher
@@ -25,6 +25,7 @@ from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.running.parcels import Demand, steps_of
 from kinetree.pipeline.running.sight import Sight
 from kinetree.pipeline.running.suspects import Suspects, finished
+from kinetree.pipeline.running.telling import take_back_lost, tell
 from kinetree.pipeline.storage.store import Store
 
 LOOK_AGAIN = 0.1
@@ -56,17 +57,6 @@ def run_all(jobs: Jobs, store: Store, launch: Launcher) -> None:
         raise
     finally:
         loop.sight.end(store)
-
-
-def take_back_lost(job: Job, store: Store) -> bool:
-    """What somebody removed from the store after it was seen there is to be computed again; True if there was any."""
-    done = [e for e in job.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
-    lost = seeing.missing(store, {(e.key or "", e.artifact or "") for e in done})
-    for entry in done:
-        if (entry.key, entry.artifact) in lost:
-            job.schedule.lose(entry, "it is missing")
-    tell_losses(job)
-    return bool(lost)
 
 
 @dataclass
@@ -205,16 +195,16 @@ class _Loop:
         self._tell_all(job, [first], [known])  # those behind it settle as far as they have records
         suspect = next((entry for entry in rest if entry.state == "stale"), None)
         if suspect is not None and not self._suspects.lose(job, suspect, rest, error, self.store):
-            self._tell(job, suspect, failure)
+            tell(job, suspect, failure)
 
     def _tell_all(self, job: Job, parcel: list[Entry], results: list[Result]) -> None:
         twins = self._twins.pop(parcel[0].key or "", [])
         job.out -= 1
         for entry, result in zip(parcel, results, strict=True):
-            self._tell(job, entry, result)
+            tell(job, entry, result)
         for other, node in twins:
             other.out -= 1
-            self._tell(other, other.schedule.entries[node], twin(results[0]))
+            tell(other, other.schedule.entries[node], twin(results[0]))
 
     def _all_seen(self, number: int, parcel: list[Entry], results: list[Result], future: Future) -> bool:
         """Whether what a worker says it stored is there for this process too; where not, it is looked for again soon.
@@ -222,8 +212,7 @@ class _Loop:
         raises : StoreError where it was not there for too long
         """
         for entry, result in zip(parcel, results, strict=True):
-            is_stored = result.status in ("ran", "fresh")
-            if is_stored and not seeing.sees(self.store, result.key, result.artifact):
+            if result.status in ("ran", "fresh") and not seeing.sees(self.store, result.key, result.artifact):
                 since = self._unseen.setdefault(number, time.monotonic())
                 if time.monotonic() - since > seeing.SEEN_WITHIN:
                     raise seeing.unseen(self.store, entry.label, result.record)
@@ -259,37 +248,3 @@ class _Loop:
     def _note(self, number: int, future: Future) -> None:
         """Called from whatever thread the executor likes."""
         self._done.put((number, future))
-
-    def _tell(self, job: Job, entry: Entry, result: Result) -> None:
-        schedule = job.schedule
-        if result.status in ("ran", "fresh"):
-            if entry.state in DONE:
-                return
-            before = len(schedule.entries)
-            fresh = schedule.complete(entry.node, result.key, result.artifact, result.record, ran=result.status == "ran")
-            if len(schedule.entries) != before:
-                job.watch.layout(schedule.entries.values())
-            if result.record is not None:
-                job.needs.learn(result.record)
-            job.watch.finish(entry, result)
-            job.watch.fresh(fresh)
-            job.watch.skip(schedule.skipped_late())
-            tell_losses(job)
-        elif result.status == "failed":
-            skipped = schedule.fail(entry.node, result.message)
-            job.watch.fail(entry, result, [schedule.entries[n] for n in skipped])
-        elif result.status == "damaged":
-            self._mend(job, entry, result)
-        elif result.status == "undone":
-            schedule.put_back(entry.node)
-        else:
-            raise refusal(result)
-
-    def _mend(self, job: Job, entry: Entry, result: Result) -> None:
-        """An input could not be read: whoever made it makes it again, then this node runs."""
-        redone = job.schedule.mend(entry.node, result.artifact, result.message)
-        if redone is None:
-            self._tell(job, entry, beyond_repair(result.artifact, result.message))
-            return
-        for maker, was in redone:
-            job.watch.damaged(maker, was, result.message)

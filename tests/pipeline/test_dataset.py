@@ -63,8 +63,9 @@ def test_a_worker_process_that_imports_the_script_leaves_nothing_behind(lab, mon
     monkeypatch.setattr(current_process(), "_inheriting", True, raising=False)
     before = sorted(lab.file.parent.rglob("*"))
     dataset = lab.dataset()
-    with pytest.raises(ConfigError, match="started by a worker process"):
-        dataset.run()
+    for start in (dataset.run, dataset.report):
+        with pytest.raises(ConfigError, match="started by a worker process"):
+            start()
     assert [path for path in sorted(lab.results.rglob("*")) if path not in before and "store" not in path.parts] == []
 
 

@@ -52,6 +52,8 @@ def test_only_a_script_that_never_asks_for_its_name_is_blamed(tmp_path, monkeypa
     assert unguarded_script() == ""
     script.write_text("run()")
     assert unguarded_script() == str(script)
+    script.write_text('"""No __name__."""\nlog(__name__)  # __name__\nrun()')
+    assert unguarded_script() == str(script), "a word in a comment is no condition"
     script.write_text('if __name__ == "__main__":\n    run()')
     assert unguarded_script() == ""
     monkeypatch.delattr(main, "__file__")
