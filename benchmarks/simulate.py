@@ -32,7 +32,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from amdahl import AT_WORKER, OF_NODE, OF_PARCEL, Jobs, longest_path, makespan, recorded
+from amdahl import recorded
+from scheduled_run import AT_WORKER, OF_NODE, OF_PARCEL, Jobs, longest_path, makespan
 
 from kinetree.pipeline.dataset.dataset import Dataset
 from kinetree.pipeline.inspect import Pipeline

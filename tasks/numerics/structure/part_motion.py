@@ -30,14 +30,14 @@ def misfit(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: In
     label   : (vertex,) part
     returns : (vertex,) mesh unit²; 0 where no frame has a weight
     """
-    e = np.zeros(len(label))
-    for v in range(len(label)):
-        mass = 0.0
-        for f in range(x.shape[0]):
+    e, mass = np.zeros(len(label)), np.zeros(len(label))
+    for f in range(x.shape[0]):
+        for v in range(len(label)):
             e[v] += weight[f, v] * squared_distance(V, x, R, t, v, f, label[v])
-            mass += weight[f, v]
-        if mass > 0.0:
-            e[v] /= mass
+            mass[v] += weight[f, v]
+    for v in range(len(label)):
+        if mass[v] > 0.0:
+            e[v] /= mass[v]
     return e
 
 
@@ -153,14 +153,14 @@ def _weigh(
     V: Floats, x: Floats, weight: Floats, member: Ints, count: int, p: int, R: Floats, t: Floats, floor: float, sure: Floats
 ) -> None:
     """Writes (member,) weights of a part's vertices by their residuals under its motion."""
-    e = np.zeros(count)
-    for k in range(count):
-        v = member[k]
-        mass = 1e-6
-        for f in range(x.shape[0]):
+    e, mass = np.zeros(count), np.full(count, 1e-6)
+    for f in range(x.shape[0]):
+        for k in range(count):
+            v = member[k]
             e[k] += weight[f, v] * squared_distance(V, x, R, t, v, f, p)
-            mass += weight[f, v]
-        e[k] /= mass
+            mass[k] += weight[f, v]
+    for k in range(count):
+        e[k] /= mass[k]
     scale = max(median_of(e, count), floor)
     for k in range(count):
         sure[k] = (scale / (scale + e[k])) ** 2

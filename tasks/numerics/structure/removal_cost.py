@@ -52,14 +52,21 @@ def removal_cost(
     """
     frames, count = x.shape[0], len(other)
     loss, mass = np.zeros(frames), np.zeros(frames)
-    r = np.empty((count + 1, frames, 3))
+    r, turned, sure = np.empty((count + 1, frames, 3)), np.empty((frames, 3)), np.empty(frames)
     E = np.empty((count + 1, count + 1))
     own_square = np.empty((len(spans), len(member)))
+    here, turn, shift = np.empty((frames, 3)), np.empty((count + 1, frames, 3, 3)), np.empty((count + 1, frames, 3))
+    for a in range(count + 1):
+        p = other[a] if a < count else part
+        turn[a], shift[a] = R[:, p], t[:, p]
     for k in range(len(member)):
         v = member[k]
-        for a in range(count):
-            _residuals(V, N, x, weight, v, other[a], part, R, t, slip, r[a])
-        _residuals(V, N, x, weight, v, part, part, R, t, slip, r[count])
+        _turned_normals(N, weight, v, turn[count], turned, sure)
+        for f in range(frames):
+            for c in range(3):
+                here[f, c] = x[f, v, c]
+        for a in range(count + 1):
+            _residuals(V[v], turned, here, sure, turn[a], shift[a], slip, r[a])
         _products(r, E)
         best = _best_single(E, touches)
         i, j, w, without_part = _best_blend(E, 0, count)
@@ -116,22 +123,34 @@ def candidates(near: Ints, size: Floats, part: int) -> tuple[Ints, int]:
 
 
 @compiled
+def _turned_normals(N: Floats, weight: Floats, v: int, turn: Floats, turned: Floats, sure: Floats) -> None:
+    """Writes (frame, xyz) the normal of a vertex as its part turns it, turn (frame, 3, 3), and (frame,) √w."""
+    for f in range(len(turned)):
+        sure[f] = np.sqrt(weight[f, v])
+        for i in range(3):
+            turned[f, i] = turn[f, i, 0] * N[v, 0] + turn[f, i, 1] * N[v, 1] + turn[f, i, 2] * N[v, 2]
+
+
+@compiled
 def _residuals(
-    V: Floats, N: Floats, x: Floats, weight: Floats, v: int, p: int, home: int, R: Floats, t: Floats, slip: float, out: Floats
+    q: Floats, turned: Floats, here: Floats, sure: Floats, turn: Floats, shift: Floats, slip: float, out: Floats
 ) -> None:
-    """Writes (frame, xyz) √w times the residual of a vertex under part p, less of it along the surface as `home` turns it."""
-    for f in range(x.shape[0]):
-        w = np.sqrt(weight[f, v])
+    """Writes (frame, xyz) √w times the residual of a vertex under a part, less of it along the surface.
+
+    q, here      : (xyz,) in the reference · (frame, xyz) in the frames, mesh unit
+    turned, sure : see `_turned_normals`
+    turn, shift  : (frame, 3, 3) · (frame, xyz) the part's motion
+    """
+    for f in range(len(here)):
+        w = sure[f]
         across = 0.0
         for i in range(3):
-            r = t[f, p, i] - x[f, v, i] + R[f, p, i, 0] * V[v, 0] + R[f, p, i, 1] * V[v, 1] + R[f, p, i, 2] * V[v, 2]
-            n = R[f, home, i, 0] * N[v, 0] + R[f, home, i, 1] * N[v, 1] + R[f, home, i, 2] * N[v, 2]
+            r = shift[f, i] - here[f, i] + turn[f, i, 0] * q[0] + turn[f, i, 1] * q[1] + turn[f, i, 2] * q[2]
             out[f, i] = w * slip * r
-            across += n * r
+            across += turned[f, i] * r
         if slip < 1.0:
             for i in range(3):
-                n = R[f, home, i, 0] * N[v, 0] + R[f, home, i, 1] * N[v, 1] + R[f, home, i, 2] * N[v, 2]
-                out[f, i] += w * (1.0 - slip) * across * n
+                out[f, i] += w * (1.0 - slip) * across * turned[f, i]
 
 
 @compiled
@@ -146,13 +165,18 @@ def _mean_square(r: Floats, weight: Floats, v: int, begin: int, end: int) -> flo
 
 @compiled
 def _products(r: Floats, E: Floats) -> None:
-    """Writes the lower triangle of E (candidate, candidate), products of residuals summed over frames."""
+    """Writes the lower triangle of E (candidate, candidate), products of residuals summed over frames, four sums at a time."""
     for a in range(len(r)):
-        for b in range(a + 1):
-            total = 0.0
+        for b in range(0, a + 1, 4):
+            c, d, e = min(b + 1, a), min(b + 2, a), min(b + 3, a)
+            of_b, of_c, of_d, of_e = 0.0, 0.0, 0.0, 0.0
             for f in range(r.shape[1]):
-                total += r[a, f, 0] * r[b, f, 0] + r[a, f, 1] * r[b, f, 1] + r[a, f, 2] * r[b, f, 2]
-            E[a, b] = total
+                i, j, k = r[a, f, 0], r[a, f, 1], r[a, f, 2]
+                of_b += i * r[b, f, 0] + j * r[b, f, 1] + k * r[b, f, 2]
+                of_c += i * r[c, f, 0] + j * r[c, f, 1] + k * r[c, f, 2]
+                of_d += i * r[d, f, 0] + j * r[d, f, 1] + k * r[d, f, 2]
+                of_e += i * r[e, f, 0] + j * r[e, f, 1] + k * r[e, f, 2]
+            E[a, b], E[a, c], E[a, d], E[a, e] = of_b, of_c, of_d, of_e
 
 
 @compiled
