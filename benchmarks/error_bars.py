@@ -7,9 +7,10 @@
 Bodies are those of `benchmarks/accuracy.py`, with --fixed of them of fixed connectivity, and those that an earlier call of
 `benchmarks/robustness.py --work FOLDER` left, with noise, holes, missing frames and clothes. The constants are fitted to even
 seeds, of every run with one cut and with several, and printed as `ErrorBarsSettings` has them; those of joints with a surface
-offset lie halfway from the shipped law of joints without one. The least error and the bound are fitted to bodies of fixed
-connectivity too. Spoilt bodies count for several cuts alone. The tables judge the shipped constants, and the
-fitted ones, on odd seeds and on the recorded sequences of FOLDER (NAME.npz beside NAME.truth.json), to which nothing is fitted.
+offset lie halfway from the shipped law of joints without one, and their bound is one that each figure keeps. The least error
+and the bound are fitted to bodies of fixed connectivity too. Spoilt bodies count for several cuts alone. The tables judge the
+shipped constants, and the fitted ones, on odd seeds and on the recorded sequences of FOLDER (NAME.npz beside NAME.truth.json),
+to which nothing is fitted.
 A joint's error is the mean distance from its true joint; of a spurious joint, from the nearest. Columns: joints; share that
 keeps the bound of 90 %, and of the errors in single frames; area under the curve of telling joints within 2.5 % of the height
 by the expected error, and the range of nine tenths of it over bodies drawn anew; rank correlation with the error; and, by
@@ -57,8 +58,8 @@ def fitted_law(
     The least error is the smallest with which the bound holds on both kinds of bodies.
 
     anew, fixed    : bodies surfaced anew in every frame, to which exponents are fitted · of fixed connectivity
-    without_offset : the law of joints without a surface offset; given, the law is of those that have one, and its exponents
-                     lie halfway from that law's to those that fit best
+    without_offset : the law of joints without a surface offset; given, the law is of those that have one, its exponents
+                     lie halfway from that law's to those that fit best, and each figure keeps its bound
     """
 
     def table(runs: Sequence[Joints]) -> tuple[Floats, Floats]:
@@ -67,7 +68,7 @@ def fitted_law(
         error = [(r.mean / r.features.size / w)[k] for r, w, k in zip(runs, widened, used, strict=True)]
         rows = np.concatenate([r.features.logarithms(r.cuts > 1)[k] for r, k in zip(runs, used, strict=True)])
         if without_offset is None:
-            rows[:, -1] = 0.0
+            rows[:, -2:] = 0.0
         return rows, np.concatenate(error)
 
     rows, error = table(anew)
@@ -83,6 +84,10 @@ def fitted_law(
         law = law._replace(bound=float(np.quantile(error / levels(rows, law), BOUND)))
         if all((e <= law.bound * levels(r, law)).mean() >= KEEP for r, e in kinds):
             break
+    if without_offset is not None:
+        figures = {r.body.partition("-")[0] for r in anew}
+        each = [table([r for r in anew if r.body.partition("-")[0] == figure]) for figure in figures]
+        law = law._replace(bound=max(float(np.quantile(e / levels(rows, law), BOUND)) for rows, e in each))
     return law
 
 

@@ -32,6 +32,9 @@ class ErrorBars(Artifact):
     """Root mean square of what the motions of the joint's two parts leave unexplained."""
     surface_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square distance from where halves of the frames' surfaces alone have it; NaN also where they do not say."""
+    turning_resistance: Annotated[Floats, Array("float64", JOINT, finite=False)]
+    """How firmly the surface of its parts resists turning about it: 0 where one is round about an axis through the joint, at
+    most 1/3; NaN also where its parts have no vertices."""
     agreeing: Annotated[Ints, Array("int32", JOINT)]
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]

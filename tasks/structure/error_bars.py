@@ -9,11 +9,12 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import error_bars as numerics
+from kinetree.tasks.numerics.structure.turning_resistance import turning_resistance
 
 
 @task()
 def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
-    """Expects an error of every joint, from drift, spread, residual, turning, bone, surface offset and confidence (ours)."""
+    """Expects an error of every joint, from how it moves, where cuts and surfaces have it, and its parts' shape (ours)."""
     features = joint_features(skeleton, kinematic_tree)
     found = numerics.error_bars(features, kinematic_tree.cuts)
     turning = np.array([kind == "joint" for kind in skeleton.kinds])
@@ -32,6 +33,7 @@ def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
         spread=of_joints(features.spread),
         residual=of_joints(features.residual),
         surface_offset=of_joints(features.offset),
+        turning_resistance=of_joints(features.resistance),
         agreeing=kinematic_tree.agreeing,
         support=np.where(turning, skeleton.support, 0),
     )
@@ -50,14 +52,17 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
     return ErrorBars(
         joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
         in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
-        surface_offset=unknown, agreeing=none, support=none,
+        surface_offset=unknown, turning_resistance=unknown, agreeing=none, support=none,
     )  # fmt: skip
 
 
 def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numerics.JointFeatures:
     """What is known of all joints, root and leaves among them."""
     tree = kinematic_tree
-    size = float(np.sqrt(surface_areas(skeleton.vertices, skeleton.faces).sum()))
+    V, F, label = np.array(skeleton.vertices), np.array(skeleton.faces, np.int64), np.array(skeleton.label, np.int64)
+    resistance = turning_resistance(V, F, label, np.array(skeleton.parents), np.array(skeleton.rest))
+    size = float(np.sqrt(surface_areas(V, F).sum()))
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
-    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, np.array(skeleton.confidence), size)
+    confidence = np.array(skeleton.confidence)
+    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, confidence, size)

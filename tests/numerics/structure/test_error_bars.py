@@ -6,20 +6,21 @@ import pytest
 from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
 
 SETTINGS = ErrorBarsSettings(
-    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 2.0),
-    PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.0, 2.5),
-    PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 3.0),
+    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 0.0, 2.0),
+    PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.0, 2.5),
+    PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
     2.0,
 )
 
 
 def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
-    told = {
+    evidence = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
-        "degrees": np.full(3, 40.0), "confidence": np.ones((5, 3)), **changed,
+        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
-    return JointFeatures(**{n: value if n in ("degrees", "confidence") else scale * value for n, value in told.items()})
+    unscaled = ("degrees", "resistance", "confidence")
+    return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
 
 
 def test_errors_scale_with_the_body_and_the_bound_with_the_error() -> None:
@@ -69,6 +70,17 @@ def test_a_joint_farther_from_its_place_on_the_surfaces_is_worse_and_one_without
     assert alone[0] == pytest.approx(alone[1]), "with one cut the law knows no offset"
 
 
+def test_a_joint_off_the_axes_of_its_parts_is_worse_and_one_without_parts_is_worst() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01), "offset": np.full(3, 0.01)}
+    for settings in (SETTINGS, ErrorBarsSettings()):
+        expected = error_bars(features(resistance=np.array([0.001, 0.1, np.nan]), **same), 4, settings).expected
+        assert 1.3 * expected[0] < expected[1] < expected[2]
+    free = error_bars(features(resistance=np.array([0.0, 1e-6, 1e-4]), **same), 4, SETTINGS).expected
+    assert free == pytest.approx(free[2])
+    without = error_bars(features(resistance=np.array([0.001, 0.1, np.nan]), **{**same, "offset": np.full(3, np.nan)}), 4)
+    assert without.expected == pytest.approx(without.expected[0])
+
+
 def test_the_error_is_larger_in_frames_without_confidence_and_its_mean_is_that_of_the_joint() -> None:
     confidence = np.ones((5, 3))
     confidence[1, 0] = 0.0
@@ -96,11 +108,12 @@ def test_no_error_is_below_the_least() -> None:
 
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
-    drift, spread, residual, length, offset = np.exp(rng.normal(-5.0, 1.0, (5, 200)))
+    drift, spread, residual, length, offset, resistance = np.exp(rng.normal(-5.0, 1.0, (6, 200)))
+    resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
-    rows = JointFeatures(drift, spread, residual, degrees, length, offset, sure, 1.0).logarithms(True)
-    law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3]
+    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, sure, 1.0).logarithms(True)
+    law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
-    for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3)):
+    for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3)):
         other = [value if k == wrong else exponent for k, exponent in enumerate(law)]
         assert fitted(rows, np.exp(rows @ other))[wrong] == 0.0
