@@ -56,6 +56,11 @@ class MovingSkin(NamedTuple):
         """(frame, vertex) squared distance between the skin and where its parts carry it, mesh unit²."""
         return _squares(self.V, self.x, self.R, self.t, self.W)
 
+    def bone_residual(self) -> Floats:
+        """(frame,) root mean square of what is left unexplained where the skin follows the last part, mesh unit."""
+        mass = self.area * self.W[:, -1]
+        return np.asarray(np.sqrt(self.squares() @ mass / max(mass.sum(), 1e-300)))
+
     def least_explained(self, width: float) -> tuple[Floats, Floats]:
         """(frame, 3, 3) · (frame, xyz) the rigid motion of the skin around the vertex that the parts explain least.
 
@@ -85,6 +90,27 @@ def refitted(skin: MovingSkin) -> MovingSkin:
     R, t = skin.R.copy(), skin.t.copy()
     _refit(skin.V, skin.x, skin.W, skin.area, R, t)
     return skin._replace(R=R, t=t)
+
+
+def refitted_about(skin: MovingSkin, joint: Floats) -> MovingSkin:
+    """The same as `refitted`, its joints with the first parts kept together: each counts as much as the skin that follows it.
+
+    joint : (side, xyz) with the first, second … part, in the reference, mesh unit
+    """
+    sides = len(joint)
+    x = (skin.R[:, :sides] @ joint[None, :, :, None])[..., 0] + skin.t[:, :sides]
+    W = np.zeros((sides, skin.W.shape[1]))
+    W[:, -1] = 1.0
+    firm = np.full(sides, float(skin.area @ skin.W[:, -1] ** 2))
+    whole = refitted(
+        skin._replace(
+            V=np.concatenate([skin.V, joint]),
+            x=np.concatenate([skin.x, x], axis=1),
+            area=np.concatenate([skin.area, firm]),
+            W=np.concatenate([skin.W, W]),
+        )
+    )
+    return skin._replace(R=whole.R, t=whole.t)
 
 
 @compiled

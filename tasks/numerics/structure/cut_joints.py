@@ -3,6 +3,7 @@
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.loose_parts import tightened
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints
 
@@ -22,7 +23,10 @@ def cut_tree(
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
     found = tree_joints(body, cut, leaves, confidence, evidence, settings=settings)
-    return _with_bones(body, found, confidence, settings)
+    if not _looks_for_bones(confidence, settings):
+        return found
+    noise = settings.noise * body.size
+    return tightened(body, inserted_bones(body, found, noise), noise)
 
 
 def cut_joints(
@@ -35,15 +39,14 @@ def cut_joints(
     leaves, confidence : as in `cut_tree`
     returns            : (frame, joint, xyz) without such bones · (frame, joint, xyz) with them, mesh unit
     """
-    posed = body._replace(V=cut.V)
-    found = tree_joints(posed, cut, leaves, confidence, settings=settings)
-    whole = _with_bones(posed, found, confidence, settings)
+    posed, noise = body._replace(V=cut.V), settings.noise * body.size
+    whole = found = tree_joints(posed, cut, leaves, confidence, settings=settings)
+    if _looks_for_bones(confidence, settings):
+        whole = tightened(posed, inserted_bones(posed, found, noise), noise)
+        found = tightened(posed, found, noise)
     return found.motion.carried(found.rest[1:]), whole.motion.carried(whole.rest[1:])
 
 
-def _with_bones(
-    body: MovingSurface, found: TreeJoints, confidence: Floats | None, settings: KinematicTreeSettings
-) -> TreeJoints:
-    if confidence is not None or not settings.hidden_bones:
-        return found
-    return inserted_bones(body, found, settings.noise * body.size)
+def _looks_for_bones(confidence: Floats | None, settings: KinematicTreeSettings) -> bool:
+    """Errors of an alignment look like bones that no cut can find, so that every vertex must have been followed."""
+    return confidence is None and settings.hidden_bones

@@ -174,7 +174,7 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: 
     sample = near[np.linspace(0, len(near) - 1, min(chosen.most_vertices, len(near))).astype(np.int64)]
     some = slice(None, None, -(-len(skin.x) // chosen.most_frames))
     few = skin.of(sample, parts, some).weighed(hold)
-    half = _half_way(skin, between)
+    half = half_way(skin, between)
     starts = [(half[0][some], half[1][some]), few.least_explained(0.4 * between.radius)]
     found = min(
         (blended_bone(few.with_bone(*start, 0.5), hold, chosen.rounds) for start in starts),
@@ -183,26 +183,28 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: 
     sampled = refitted(skin.of(sample, parts, slice(None)).with_bone(*half, 0.0)._replace(W=found.W))
     whole = skin.of(near, parts, slice(None)).with_bone(sampled.R[:, -1], sampled.t[:, -1], 0.0).weighed(hold)
     own = whole.W[:, -1]
-    mass = whole.area * own
-    residual = np.sqrt(whole.squares() @ mass / max(mass.sum(), 1e-300))
-    joints = _joints(whole, between, residual, chosen)
+    residual = whole.bone_residual()
+    joints = blend_joints(whole, np.full(2, between.radius), residual, chosen.prior)
     degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], spans) for k in (0, 1)])
     follows = (own > 0.0) & (own >= np.minimum(whole.W[:, :-1].max(axis=1), chosen.follower * own.max()))
     motion = whole.R[:, -1], whole.t[:, -1]
-    return HiddenBone(*motion, joints.rest, joints.drift, degrees, near[follows], float(mass.sum()), residual)
+    return HiddenBone(*motion, joints.rest, joints.drift, degrees, near[follows], float(whole.area @ own), residual)
 
 
-def _joints(fit: MovingSkin, between: Border, residual: Floats, chosen: HiddenBonesSettings) -> Joints:
-    """About which points the bone turns against either part: held amid the skin that follows both, by how well it fits."""
+def blend_joints(fit: MovingSkin, radius: Floats, residual: Floats, prior: RotationCentresSettings) -> Joints:
+    """About which points the last part turns against the first two: held amid the skin that follows both, by how well it fits.
+
+    radius   : (side,) of the borders with the first and the second part, mesh unit
+    residual : (frame,) what the motion of the last part leaves unexplained, mesh unit
+    """
     last = fit.R.shape[1] - 1
     both = fit.area[:, None] * ((fit.W[:, :2] * fit.W[:, -1:]) ** 2 + 1e-12)
     centre = both.T @ fit.V / both.sum(axis=0)[:, None]
     level = np.full(fit.R.shape[:2], (residual**4).mean() ** 0.25)  # what few frames show counts
-    pair, radius = np.array([[0, last], [1, last]]), np.full(2, between.radius)
-    return rotation_centres(fit.R, fit.t, pair, centre, radius, level, None, chosen.prior)
+    return rotation_centres(fit.R, fit.t, np.array([[0, last], [1, last]]), centre, radius, level, None, prior)
 
 
-def _half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:
+def half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:
     """(frame, 3, 3) · (frame, xyz) the motion half-way between the two parts, about their joint."""
     a, b = between.above, between.part
     turn = Rotation.from_matrix(skin.R[:, a].transpose(0, 2, 1) @ skin.R[:, b]).as_rotvec()
