@@ -16,7 +16,7 @@ def cut_tree(
     evidence: FrameEvidence | None,
     settings: KinematicTreeSettings,
 ) -> TreeJoints:
-    """The tree of a cut; where every vertex was followed with the bones that no cut can find.
+    """The tree of a cut; where every vertex was followed with the bones that no cut can find, and with loose parts moved anew.
 
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
