@@ -7,7 +7,7 @@ from kinetree.schemas.array import Array, Floats, Index, Params
 from kinetree.schemas.dims import END_VERTEX, FRAME, XYZ
 from kinetree.schemas.structure.first_tree import JointTree
 
-LAID_TOGETHER = 5
+LAID_TOGETHER = 3
 """Frames on which one task lays parts, at most."""
 
 
@@ -15,7 +15,7 @@ class ExtendedTreeParams(Params):
     """Where joints are placed."""
 
     surface_joints: bool = True
-    """Whether joints within limbs are moved to where the frames' surfaces have them, if halves of the frames agree."""
+    """Whether joints are moved to where the frames' surfaces have them, if halves of the frames agree."""
 
 
 class ExtendedTree(JointTree):

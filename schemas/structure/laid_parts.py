@@ -3,11 +3,11 @@
 from typing import Annotated
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
-from kinetree.schemas.dims import FRAME, FREEDOM, OTHER_FREEDOM, PART, ROW, XYZ
+from kinetree.schemas.dims import BORDER_SHAPE, FRAME, FREEDOM, HINGE, HINGE_PLACE, OTHER_FREEDOM, PART, ROW, XYZ
 
 
 class LaidParts(Artifact):
-    """Parts laid by themselves on the surfaces of a few frames."""
+    """Parts laid on the surfaces of a few frames, by themselves, and in pairs with a hinge."""
 
     frame: Annotated[Ints, Array("int32", FRAME)]
     """These frames, counted from 0 among those of the first tree."""
@@ -21,3 +21,9 @@ class LaidParts(Artifact):
     """How firmly the surface holds the part against a turn about the origin and a shift."""
     square: Annotated[Floats, Array("float64", FRAME, PART, unit="length²")]
     """Mean squared distance of the part from the surface."""
+    hinge_joint: Annotated[Ints, Array("int32", HINGE)]
+    """Joints of the first tree whose two parts are laid with a hinge, ascending."""
+    hinge_end: Annotated[Floats, Array("float64", HINGE, XYZ, unit="length")]
+    """Where the bone beyond such a joint ends in the reference mesh, if no joint follows."""
+    hinge_square: Annotated[Floats, Array("float64", FRAME, HINGE, BORDER_SHAPE, HINGE_PLACE, unit="length²")]
+    """Mean squared distance of both parts from the surface, by shape of their border and place of the hinge along the limb."""

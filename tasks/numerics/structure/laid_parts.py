@@ -9,6 +9,7 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, hinge_costs
 from kinetree.tasks.numerics.structure.hinged_piece import laid_as_one, sampled_piece
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFitSettings, PiecePose, shift_stiffness
 
@@ -37,6 +38,7 @@ class LaidParts(NamedTuple):
     rotation, translation : (laid, part, 3, 3) · (laid, part, xyz) from the reference, mesh unit
     stiffness             : (laid, part, 6, 6) of the fit about the origin, see `shift_stiffness`
     square                : (laid, part) mean squared distance from the surface, mesh unit²
+    hinges                : what parts leave of these surfaces in pairs, with a hinge at several places
     """
 
     frame: Ints
@@ -45,6 +47,7 @@ class LaidParts(NamedTuple):
     translation: Floats
     stiffness: Floats
     square: Floats
+    hinges: HingeCosts
 
 
 def laid_frames(count: int, settings: LaidPartsSettings | None = None) -> Ints:
@@ -57,7 +60,7 @@ def laid_frames(count: int, settings: LaidPartsSettings | None = None) -> Ints:
 def laid_parts(
     V: Floats, F: Ints, area: Floats, tree: FirstTree, surfaces: Mapping[int, Target], settings: LaidPartsSettings | None = None
 ) -> LaidParts:
-    """All parts with enough vertices, each by itself from where it is aligned.
+    """All parts with enough vertices, each by itself from where it is aligned; and pairs of them with a hinge.
 
     V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
     surfaces   : by place among the frames, prepared surfaces
@@ -67,10 +70,11 @@ def laid_parts(
         starts = {p: PiecePose(tree.R[f, p], tree.t[f, p], np.eye(3)) for p in pieces}
         rows.append([_on_surface(piece, starts[p], target) for p, piece in pieces.items()])
     shapes = (3, 3), (3,), (6, 6), ()
-    fits = (
+    R, t, stiffness, square = (
         np.array([[fit[k] for fit in row] for row in rows]).reshape(len(rows), len(pieces), *n) for k, n in enumerate(shapes)
     )
-    return LaidParts(np.array(list(surfaces), np.int64), np.array(list(pieces), np.int64), *fits)
+    hinges = hinge_costs(V, F, area, tree, surfaces)
+    return LaidParts(np.array(list(surfaces), np.int64), np.array(list(pieces), np.int64), R, t, stiffness, square, hinges)
 
 
 def _pieces(V: Floats, F: Ints, area: Floats, tree: FirstTree, chosen: LaidPartsSettings) -> dict[int, Piece]:

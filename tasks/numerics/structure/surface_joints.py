@@ -1,4 +1,4 @@
-"""Joints within limbs, moved to where the frames' own surfaces have them (ours).
+"""Joints moved to where the frames' own surfaces have them (ours).
 
 An alignment carries the surface near a border along with one of the two parts, in all frames alike, so that every cut puts the
 joint at the same wrong place. The two parts are therefore laid on the surfaces by themselves. A tube may slide along its axis
@@ -7,8 +7,9 @@ and says nothing there: each part counts in a direction as firmly as its fit hol
     c = argmin Σ_f w_f e_fᵀ (S_f / n)⁻¹ e_f + |c − c₀|² / (ρ r)²,   e_f = (I − R_aᵀ R_b) c − R_aᵀ (t_b − t_a)
 
 with c₀ the joint as it is, r the radius of its border, and S_f = Σ over both parts of σ² K⁻¹, K the stiffness of the part's fit
-against a shift of the joint, its rotation free. A joint is moved only where halves of the frames move it alike. With a wide ρ
-the surfaces place c almost alone; how far halves of the frames then put it from the joint says how well that one is placed.
+against a shift of the joint, its rotation free. A joint within a limb is moved only where halves of the frames move it alike;
+any other, and one that stays, goes along its limb to where the surfaces bend, see `hinge_places`. With a wide ρ the surfaces
+place c almost alone; how far halves of the frames then put it from the joint says how well that one is placed.
 """
 
 from typing import NamedTuple
@@ -18,6 +19,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
+from kinetree.tasks.numerics.structure.hinge_places import hinge_shifts
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings
 
 SINGULAR = 1e-9
@@ -50,7 +52,7 @@ class SurfaceJointsSettings(NamedTuple):
 class SurfaceJoints(NamedTuple):
     """Joints as the frames' surfaces have them.
 
-    rest   : (part, xyz) in the reference, those within limbs moved where the frames agree on it, mesh unit
+    rest   : (part, xyz) in the reference, moved where the frames agree on it, mesh unit
     offset : (part,) root mean square distance of each joint from where halves of the surfaces alone have it, mesh unit; NaN
              where too few frames show both parts
     """
@@ -80,15 +82,15 @@ class _Pull(NamedTuple):
 def surface_joints(
     tree: FirstTree, laid: LaidParts, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None
 ) -> SurfaceJoints:
-    """Joints within limbs where the frames agree on them, and how far all are from where the surfaces have them.
+    """Joints where the frames agree on them, and how far all are from where the surfaces have them.
 
     rest : (part, xyz) the joints in the reference, mesh unit
     seen : (frame, part) share of its surface that is certain, 0 to 1
     """
     chosen, may_move = settings or SurfaceJointsSettings(), within_limbs(tree.parents)
-    moved, offset = rest.copy(), np.full(len(rest), np.nan)
-    parts = {part: _Laid(*(a[:, k] for a in laid[2:])) for k, part in enumerate(laid.joint.tolist())}
-    share = seen[laid.frame]
+    share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
+    shifts = hinge_shifts(tree, laid.hinges, rest, share)
+    parts = {part: _Laid(*(a[:, k] for a in laid[2:6])) for k, part in enumerate(laid.joint.tolist())}
     for joint, above in enumerate(tree.parents.tolist()):
         if joint in parts and above in parts:
             pull = _pull(parts[above], parts[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
@@ -96,6 +98,7 @@ def surface_joints(
             if may_move[joint]:
                 moved[joint] = _agreed(pull, rest[joint], chosen.spread * radius, chosen)
             if _often_shown(pull):
+                moved[joint] += shifts[joint] * (moved[joint] == rest[joint]).all()
                 places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
                 offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
     return SurfaceJoints(moved, offset)

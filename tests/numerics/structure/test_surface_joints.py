@@ -1,4 +1,4 @@
-"""Joints within limbs go where the frames' surfaces have them, and stay where these do not agree."""
+"""Joints go where the frames' surfaces have them, and stay where these do not agree."""
 
 from collections.abc import Callable
 from typing import Any
@@ -23,7 +23,7 @@ HERE = np.zeros(3)
 def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
     mesh_at: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
-    shift: Floats = HERE,
+    shift: Floats = HERE, hinged: bool = True,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and the body is shifted."""
     surface, found = three_parts(frames, scale)
@@ -31,9 +31,11 @@ def on_surfaces(
     rest[1:, :2], rest[1, 2], rest[2] = 0.0, 0.0, scale * (np.array([0.0, 0.0, END]) + off)
     meshes, size = mesh_at or Frames(turning(), 0.02, scale), surface.size
     tree = in_tree_order(found, 3)
-    tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift), rest + shift
+    tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift, rest=tree.rest + shift), rest + shift
     surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, meshes(f)) for f in range(frames))}
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
+    if not hinged:
+        laid = laid._replace(hinges=laid.hinges._replace(joint=laid.hinges.joint[:0], end=laid.hinges.end[:0]))
     return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings)
 
 
@@ -95,7 +97,7 @@ def test_frames_that_do_not_show_the_parts_hardly_move_a_joint() -> None:
 @pytest.mark.parametrize("scale", [1.0, 40.0])
 def test_a_joint_that_stays_off_is_as_far_from_its_place_on_the_surfaces_and_one_that_lies_right_is_near(scale: float) -> None:
     stay = SurfaceJointsSettings(agree=0.0)
-    (_, off), (_, right) = (on_surfaces(share * OFF, scale=scale, settings=stay) for share in (1.0, 0.0))
+    (_, off), (_, right) = (on_surfaces(share * OFF, scale=scale, settings=stay, hinged=False) for share in (1.0, 0.0))
     assert 0.6 * OFF[2] < off.offset[2] / scale < 1.2 * OFF[2]
     assert right.offset[2] / scale < 0.1
 
@@ -103,6 +105,13 @@ def test_a_joint_that_stays_off_is_as_far_from_its_place_on_the_surfaces_and_one
 def test_a_joint_that_is_moved_has_the_offset_that_is_left() -> None:
     before, found = on_surfaces()
     assert found.offset[2] < 0.5 * OFF[2] < np.linalg.norm(before[2] - found.rest[2]) + found.offset[2]
+
+
+def test_a_joint_that_its_parts_leave_where_it_is_goes_along_its_limb_to_where_the_surfaces_bend() -> None:
+    stay = SurfaceJointsSettings(agree=0.0)
+    (before, alone), (_, hinged) = (on_surfaces(settings=stay, hinged=hinged) for hinged in (False, True))
+    np.testing.assert_array_equal(alone.rest, before)
+    np.testing.assert_allclose(hinged.rest[2], [0.0, 0.0, END], atol=0.1)
 
 
 def test_joints_that_may_not_move_have_an_offset_too_and_the_root_has_none() -> None:

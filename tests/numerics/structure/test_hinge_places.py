@@ -1,0 +1,99 @@
+"""Border and joint go together to where the frames' surfaces bend the limb, if halves of the frames agree on the place."""
+
+import numpy as np
+import pytest
+from smeared import END, Frames, three_parts, turning
+
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
+from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, HingePlacesSettings, hinge_costs, hinge_shifts, limb_axis
+
+FRAMES = 16
+"""Frames of the tube."""
+ALL = np.ones((FRAMES, 3))
+"""Every part is seen in every frame."""
+
+
+def costs_of(off: float, scale: float = 1.0, noise: float = 0.02) -> tuple[FirstTree, HingeCosts]:
+    """A tube whose last part was cut off so far beyond its joint, in radii of the tube, which bends elsewhere in the frames."""
+    surface, found = three_parts(FRAMES, scale)
+    tree = in_tree_order(found, 3)
+    rest, label = tree.rest.copy(), tree.label.copy()
+    rest[1], rest[2] = 0.0, scale * np.array([0.0, 0.0, END + off])
+    label[(label > 0) & (surface.V[:, 2] > rest[2, 2])] = 2
+    label[(label == 2) & (surface.V[:, 2] <= rest[2, 2])] = 1
+    W = np.eye(3)[label]
+    tree = tree._replace(rest=rest, label=label, W=W)
+    meshes = Frames(turning()[:FRAMES], noise, scale)
+    surfaces = {f: Target.of(*meshes(f), surface.size) for f in range(FRAMES)}
+    return tree, hinge_costs(surface.V, surface.F, surface.area, tree, surfaces)
+
+
+def shift_of(tree: FirstTree, costs: HingeCosts, seen: Floats = ALL) -> Floats:
+    """(xyz,) way of the last joint."""
+    return np.asarray(hinge_shifts(tree, costs, tree.rest, seen)[2])
+
+
+@pytest.mark.parametrize("off", [0.6, -0.6])
+def test_a_joint_whose_border_was_cut_beside_the_bend_goes_to_the_bend(off: float) -> None:
+    way = shift_of(*costs_of(off))
+    np.testing.assert_allclose(way, [0.0, 0.0, -off], atol=0.15)
+
+
+def test_the_same_on_a_body_of_another_size() -> None:
+    one, two = shift_of(*costs_of(0.6)), shift_of(*costs_of(0.6, scale=40.0))
+    np.testing.assert_allclose(40.0 * one, two, atol=1.0)
+
+
+def test_a_joint_that_lies_right_hardly_moves() -> None:
+    assert np.linalg.norm(shift_of(*costs_of(0.0))) < 0.1
+
+
+def test_the_way_is_counted_from_where_other_cuts_put_the_joint() -> None:
+    tree, costs = costs_of(0.6)
+    rest = tree.rest.copy()
+    rest[2, 2] -= 0.2
+    way = hinge_shifts(tree, costs, rest, ALL)[2]
+    np.testing.assert_allclose(rest[2] + way, tree.rest[2] + shift_of(tree, costs), atol=1e-9)
+
+
+@pytest.mark.parametrize("period", [1, 4], ids=["each second frame", "each second quarter"])
+def test_a_joint_stays_where_halves_of_the_frames_bend_the_limb_at_different_places(period: int) -> None:
+    tree, costs = costs_of(0.6)
+    other = np.arange(FRAMES) // period % 2 == 1
+    square = np.where(other[:, None, None, None], costs.square[..., ::-1], costs.square)
+    np.testing.assert_array_equal(shift_of(tree, costs._replace(square=square)), 0.0)
+
+
+def test_a_joint_stays_where_two_shapes_of_its_border_bend_the_limb_at_different_places() -> None:
+    tree, costs = costs_of(0.6)
+    square = costs.square.copy()
+    square[:, :, 1] = square[:, :, 1, ::-1]
+    np.testing.assert_array_equal(shift_of(tree, costs._replace(square=square)), 0.0)
+
+
+def test_frames_that_do_not_show_the_parts_hardly_count() -> None:
+    tree, costs = costs_of(0.6)
+    square, seen = costs.square.copy(), ALL.copy()
+    square[:3], seen[:3, 2] = square[:3, :, :, ::-1], 0.0
+    np.testing.assert_allclose(shift_of(tree, costs._replace(square=square), seen), shift_of(tree, costs), atol=0.1)
+
+
+def test_a_limb_has_an_axis_only_where_its_bones_are_long_and_straight() -> None:
+    tree, chosen = costs_of(0.0)[0], HingePlacesSettings()
+    end = np.array([0.0, 0.0, 6.0])
+    np.testing.assert_allclose(limb_axis(tree, tree.rest, 2, end, chosen), [0.0, 0.0, 1.0], atol=1e-9)
+    assert limb_axis(tree, tree.rest, 2, np.array([6.0, 0.0, END]), chosen) is None, "a right angle"
+    assert limb_axis(tree, tree.rest, 2, np.array([0.0, 0.0, END + 0.5]), chosen) is None, "half a radius"
+
+
+def test_joints_of_short_parts_are_not_laid() -> None:
+    surface, found = three_parts(FRAMES)
+    tree = in_tree_order(found, 3)
+    meshes = Frames(turning()[:FRAMES])
+    costs = hinge_costs(
+        surface.V, surface.F, surface.area, tree._replace(radius=10.0 * tree.radius), {0: Target.of(*meshes(0), surface.size)}
+    )
+    assert len(costs.joint) == 0
+    assert costs.square.shape == (1, 0, 2, len(HingePlacesSettings().places))
