@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError, UnknownNodeError
 from kinetree.pipeline.identity.key import code_parts, keep_code
+from kinetree.pipeline.signature import Argument
 from kinetree.pipeline.suggest import nearest
-from kinetree.pipeline.task import Argument, Space, Task, space
+from kinetree.pipeline.task import Space, Task, space
 from kinetree.schemas.array import Artifact, Params
 
 if TYPE_CHECKING:  # a graph that is kept in order does without

@@ -18,7 +18,8 @@ from kinetree.errors import ClusterError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.identity import kept
 from kinetree.pipeline.identity.key import CODE_ROOTS, code_state, is_code_as_read, is_own_code, source_of
-from kinetree.pipeline.task import Argument, Task, load
+from kinetree.pipeline.signature import Argument
+from kinetree.pipeline.task import Task, load
 from kinetree.schemas.array import Artifact, Params
 
 DECLARING = ("task", "graph", "graph_cache")

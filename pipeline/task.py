@@ -3,21 +3,13 @@
     @task(over="frame")
     def geodesics(mesh: Mesh, params: GeodesicsParams) -> Geodesics:
 
-The argument types are the edges, the return type is what the task writes, `params` is the only configuration it sees,
-`over` is its fan-out: a path of dimensions from the outermost in, "" (once), "frame", "interval/cone", … . How an
-argument's type reads:
-
-    X                    the artifact of the same index (a task over interval/frame that asks for a Mesh gets its frame's)
-    tuple[X, ...]        every X below this index, in order
-    Mapping[int, X]      the same by member number, for a task to which the numbers matter
+The argument types are the edges (`pipeline/signature.py` says how they read), the return type is what the task writes, `params`
+is the only configuration it sees, `over` is its fan-out: a path of dimensions from the outermost in, "" (once), "frame",
+"interval/cone", … .
 
 A task that names an artifact class as `along` goes along the traversal which that artifact orders, and may read at the
 previous member of it: its own artifact, or what other tasks made there. Such edges are no part of the order of tasks, so a
 task may read at the previous member what is made from its own artifact (a pass that learns from the pass before).
-
-    X | None                     X at this index with the previous member in place of this one; None where the traversal starts
-    Previous[tuple[X, ...]]      every X below that index, in order; empty where the traversal starts
-    Previous[Mapping[int, X]]    the same by member number
 
 A task that names an artifact class as `among` gathers only the members that this artifact selects. The selection itself is in
 no key: what was gathered is, by its data.
@@ -32,39 +24,19 @@ import importlib
 import inspect
 import re
 import sys
-import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Generic, Literal, ParamSpec, TypeVar, Union
+from typing import Any, Generic, ParamSpec, TypeVar
 
 from kinetree.errors import GraphError
+from kinetree.pipeline.signature import Argument, argument_of, artifact_of
+from kinetree.pipeline.signature import Previous as Previous
 from kinetree.schemas.array import Artifact, Index, Params
 
 P = ParamSpec("P")
 R = TypeVar("R")
-T = TypeVar("T")
 Space = tuple[str, ...]
-Form = Literal["one", "tuple", "mapping"]
-
-
-class AtPrevious:
-    """Marks an argument that is read at the previous member of the task's traversal."""
-
-
-Previous = Annotated[T, AtPrevious]
-"""Previous[tuple[X, ...]]: every X below the index that has the previous member; empty where the traversal starts."""
-
-
-@dataclass(frozen=True)
-class Argument:
-    """One edge: the argument's name, the artifact class it reads and how many of them."""
-
-    name: str
-    artifact: type[Artifact]
-    form: Form
-    previous: bool = False
-    """Whether it is read at the previous member of the traversal, and lacking where that starts."""
 
 
 @dataclass(frozen=True)
@@ -233,7 +205,7 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
     where = f"{inspect.getsourcefile(function)}:{function.__code__.co_firstlineno}"
     place = f"{function.__name__} ({where})"
     hints = typing.get_type_hints(function, include_extras=True)
-    returns = _artifact_of(hints.pop("return", None), place, is_origin=is_origin)
+    returns = artifact_of(hints.pop("return", None), place, is_origin=is_origin)
     params: type[Params] | None = None
     asks_index = False
     arguments: list[Argument] = []
@@ -250,7 +222,7 @@ def _declared(function: Callable[P, R], over: str, along: type[Artifact] | None,
                 raise GraphError(f"{place}: index must be annotated with Index, got {hint!r}")
             asks_index = True
         elif not (is_origin and name == "files"):
-            arguments.append(_argument(name, hint, returns, place))
+            arguments.append(argument_of(name, hint, returns, place))
     if is_origin and (arguments or asks_index):
         raise GraphError(f"{place}: an origin takes params and files alone, got {arguments[0].name if arguments else 'index'}")
     if is_origin and (params is None or "files" not in inspect.signature(function).parameters):
@@ -282,45 +254,3 @@ def _refuse_bad_traversal(task: Task[..., Any], place: str) -> None:
         raise GraphError(
             f"{place}: goes along {task.along.__name__}, which orders {task.along.orders}, but runs over {'/'.join(task.over)}"
         )
-
-
-def _argument(name: str, hint: Any, returns: type[Artifact], place: str) -> Argument:
-    if isinstance(hint, type) and issubclass(hint, Artifact):
-        return Argument(name, hint, "one")
-    outer, inner = typing.get_origin(hint), typing.get_args(hint)
-    if outer in (Union, types.UnionType) and len(inner) == 2 and type(None) in inner:
-        (other,) = (t for t in inner if t is not type(None))
-        if _is_artifact(other):
-            return Argument(name, other, "one", previous=True)
-    is_previous = outer is Annotated and inner[1:] == (AtPrevious,)
-    gathered = _gathered(inner[0] if is_previous else hint)
-    if gathered is None:
-        raise GraphError(
-            f"{place}: argument {name} must be an Artifact, tuple[Artifact, ...] or Mapping[int, Artifact], or, at the previous"
-            f" member of a traversal, {returns.__name__} | None, Previous[tuple[Artifact, ...]] or"
-            f" Previous[Mapping[int, Artifact]]; got {hint!r}"
-        )
-    artifact, form = gathered
-    return Argument(name, artifact, form, previous=is_previous)
-
-
-def _gathered(hint: Any) -> tuple[type[Artifact], Form] | None:
-    """The artifact class and the form of an argument that gathers many; None for any other."""
-    outer, inner = typing.get_origin(hint), typing.get_args(hint)
-    if outer is tuple and len(inner) == 2 and inner[1] is Ellipsis and _is_artifact(inner[0]):
-        return inner[0], "tuple"
-    if outer is Mapping and inner[0] is int and _is_artifact(inner[1]):
-        return inner[1], "mapping"
-    return None
-
-
-def _artifact_of(hint: Any, place: str, *, is_origin: bool) -> type[Artifact]:
-    if is_origin and typing.get_origin(hint) is Mapping:
-        hint = typing.get_args(hint)[1]
-    if not _is_artifact(hint):
-        raise GraphError(f"{place}: the return type must be an Artifact, got {hint!r}")
-    return typing.cast("type[Artifact]", hint)
-
-
-def _is_artifact(hint: Any) -> bool:
-    return isinstance(hint, type) and issubclass(hint, Artifact)

@@ -6,8 +6,8 @@ from typing import Literal
 from kinetree.pipeline.graph import AnyTask
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.reason import Reason
+from kinetree.pipeline.signature import Argument
 from kinetree.pipeline.storage.store import Record
-from kinetree.pipeline.task import Argument
 
 State = Literal["waits", "stale", "running", "fresh", "ran", "failed", "skipped"]
 DONE: tuple[State, ...] = ("fresh", "ran")

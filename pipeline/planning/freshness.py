@@ -9,9 +9,9 @@ from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.planning.reason import Reason, Recall, Work, differences, never_ran
+from kinetree.pipeline.signature import Argument
 from kinetree.pipeline.storage.inventory import Holder, inventory
 from kinetree.pipeline.storage.store import Record, Store
-from kinetree.pipeline.task import Argument
 from kinetree.schemas.array import Params
 
 Entries = Mapping[Node, Entry]

@@ -8,7 +8,8 @@ from typing import Protocol, TypeVar
 from kinetree.errors import GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.node import Node, label, project
-from kinetree.pipeline.task import Argument, Space
+from kinetree.pipeline.signature import Argument
+from kinetree.pipeline.task import Space
 from kinetree.schemas.array import Artifact, Index
 
 T = TypeVar("T")

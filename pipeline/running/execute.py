@@ -20,9 +20,10 @@ from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.running.memory import measured
 from kinetree.pipeline.running.sight import Sight
 from kinetree.pipeline.running.threads import blas, limited, simd
+from kinetree.pipeline.signature import Form
 from kinetree.pipeline.storage.remote import brought
 from kinetree.pipeline.storage.store import Record, Store
-from kinetree.pipeline.task import Form, Task, load
+from kinetree.pipeline.task import Task, load
 from kinetree.schemas.array import Artifact, Index
 
 LIBRARIES = ("kinetree", "numpy", "scipy", "numba", "trimesh", "zarr", "dask", "pydantic")

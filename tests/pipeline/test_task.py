@@ -7,8 +7,9 @@ from typing import Annotated, ClassVar, Optional
 import pytest
 
 from kinetree.errors import GraphError
+from kinetree.pipeline.signature import Argument
 from kinetree.pipeline.storage.files import Files
-from kinetree.pipeline.task import Argument, Previous, load, origin, space, task
+from kinetree.pipeline.task import Previous, load, origin, space, task
 from kinetree.schemas.array import Artifact, Index, Params
 
 
