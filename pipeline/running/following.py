@@ -54,7 +54,7 @@ def followed(client: Any, compute: Compute, starts: Starts | None = None, *, is_
 async def _drop_events(client: Any, topic: str) -> None:
     """Has the scheduler forget the events of a run, which it would keep as long as it lives."""
 
-    def drop(topic: str, dask_scheduler: Any) -> None:  # travels as text, so that a scheduler needs nothing of ours
+    def drop(topic: str, dask_scheduler: Any) -> None:  # travels by value, so that a scheduler needs nothing of ours
         dask_scheduler._broker._topics.pop(topic, None)
 
     await client.run_on_scheduler(drop, topic)

@@ -18,6 +18,7 @@ REPLACE_SECONDS = 30.0
 """Without any worker of our own, after which new ones are started: several times what a start takes on a busy machine."""
 STARTS = 3
 """How often workers are started, none of which has come, before the run ends."""
+COMPARES = (ast.Compare, ast.Match)
 GONE = ("failed", "closed")
 """States of dask's that nothing follows."""
 
@@ -46,7 +47,7 @@ class Starts:
 
 
 def unguarded_script() -> str:
-    """The file of this program, where workers import it and no condition of its text asks for `__name__`; else "".
+    """The file of this program, where workers import it and nothing in its text compares `__name__`; else "".
 
     Python's workers import no `__main__.py` of a package (`python -m PACKAGE`).
     """
@@ -59,8 +60,8 @@ def unguarded_script() -> str:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):  # what cannot be read is not blamed
         return ""
-    conditions = [node.test for node in ast.walk(tree) if isinstance(node, ast.If)]
-    names = {name.id for test in conditions for name in ast.walk(test) if isinstance(name, ast.Name)}
+    compared = [node.subject if isinstance(node, ast.Match) else node for node in ast.walk(tree) if isinstance(node, COMPARES)]
+    names = {name.id for node in compared for name in ast.walk(node) if isinstance(name, ast.Name)}
     return "" if "__name__" in names else str(file)
 
 

@@ -54,8 +54,15 @@ def test_only_a_script_that_never_asks_for_its_name_is_blamed(tmp_path, monkeypa
     assert unguarded_script() == str(script)
     script.write_text('"""No __name__."""\nlog(__name__)  # __name__\nrun()')
     assert unguarded_script() == str(script), "a word in a comment is no condition"
-    script.write_text('if __name__ == "__main__":\n    run()')
-    assert unguarded_script() == ""
+    for guard in (
+        'if __name__ == "__main__":\n    run()',
+        '__name__ == "__main__" and run()',
+        'run() if __name__ == "__main__" else None',
+        'match __name__:\n    case "__main__":\n        run()',
+        'def is_main():\n    return __name__ == "__main__"\nif is_main():\n    run()',
+    ):
+        script.write_text(guard)
+        assert unguarded_script() == "", guard
     monkeypatch.delattr(main, "__file__")
     assert unguarded_script() == ""
 
