@@ -114,6 +114,13 @@ def test_a_joint_that_its_parts_leave_where_it_is_goes_along_its_limb_to_where_t
     np.testing.assert_allclose(hinged.rest[2], [0.0, 0.0, END], atol=0.1)
 
 
+def test_a_joint_that_goes_along_its_limb_has_the_offset_of_where_it_goes() -> None:
+    stay = SurfaceJointsSettings(agree=0.0)
+    (before, alone), (_, hinged) = (on_surfaces(settings=stay, hinged=hinged) for hinged in (False, True))
+    assert np.linalg.norm(hinged.rest[2] - before[2]) > 0.5 * OFF[2]
+    assert hinged.offset[2] < 0.5 * alone.offset[2]
+
+
 def test_joints_that_may_not_move_have_an_offset_too_and_the_root_has_none() -> None:
     before, found = on_surfaces()
     assert found.rest[1].tolist() == before[1].tolist()
