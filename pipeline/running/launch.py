@@ -59,10 +59,13 @@ class Future(Protocol):
         """Takes it back where it has not begun."""
 
     def seconds(self) -> float:
-        """How long it has been computed; 0 where it has not begun, or nobody knows."""
+        """How long it has been computed; 0 where it has not begun, has ended, or nobody knows."""
 
-    def give_up(self) -> str:
-        """Nobody waits for it any longer; what computes it is ended where that can be. Says in words what becomes of it."""
+    def give_up(self) -> str | None:
+        """Nobody waits for it any longer; what computes it is ended where that can be. Says in words what becomes of it.
+
+        Nothing is given up, and None is the answer, where it has ended meanwhile: its results are there.
+        """
 
 
 def _nothing() -> None:

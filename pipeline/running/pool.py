@@ -39,11 +39,13 @@ class Running:
         self.future.cancel()
 
     def seconds(self) -> float:
-        """How long it has been running; 0 where it has not begun."""
-        return 0.0 if self.began is None else time.monotonic() - self.began
+        """How long it has been running; 0 where it has not begun, or has ended."""
+        return 0.0 if self.began is None or self.future.done() else time.monotonic() - self.began
 
-    def give_up(self) -> str:
+    def give_up(self) -> str | None:
         """Nobody waits for it any longer; its thread cannot be ended, another takes its place."""
+        if self.future.done():
+            return None
         self.is_given_up = True
         self.pool.add()
         return "its thread cannot be ended and goes on until it returns or this process ends"

@@ -162,18 +162,21 @@ class _Loop:
 
     def _give_up_late(self) -> bool:
         """Nobody waits any longer for nodes that take longer than their task allows; True if there was any."""
-        late = [(number, limit) for number, limit in self._limits.items() if self.out[number].seconds() > limit]
+        late, given_up = [(n, limit) for n, limit in self._limits.items() if self.out[n].seconds() > limit], False
         for number, limit in late:
             future = self.out[number]
             job, parcel = self._parcels[number]
             refuse_to_wait_for(parcel[0], limit, is_elsewhere=self.launch.is_elsewhere)
             what = future.give_up()
+            if what is None:
+                continue
+            given_up = True
             self._forget(number)
             tries = self._suspects.losses(job, parcel[0]) + 1
             times = f", each of {tries} times that it was tried" if tries > 1 else ""
             cause = f"it takes longer than the {limit:g} s that its task allows{times}; {what}"
             self._lose(job, parcel, LateNodeError(cause))
-        return bool(late)
+        return given_up
 
     def _lose(self, job: Job, parcel: list[Entry], error: Exception) -> None:
         """Nothing came back of a parcel: what has a record is done, and the first node without one is tried again or fails.

@@ -111,9 +111,11 @@ class Remote:
         began, _ = self.workers.began.get(self.future.key, (math.inf, ""))
         return max(0.0, time.monotonic() - began)
 
-    def give_up(self) -> str:
+    def give_up(self) -> str | None:
         """Nobody waits for it any longer; the process of its worker is ended and started anew, if a nanny looks after it."""
-        _, worker = self.workers.began[self.future.key]
+        _, worker = self.workers.began.get(self.future.key, (math.inf, ""))
+        if self.outcome.done() or not worker:  # the client's thread forgets what has ended
+            return None
         self.future.cancel()
         asyncio.run_coroutine_threadsafe(_restart(self.client, worker), self.client.loop.asyncio_loop)
         return f"worker {worker} is started anew, or goes on with it where no nanny looks after it"

@@ -11,6 +11,7 @@ from distributed import Client, LocalCluster
 from kinetree.errors import ClusterError, ConfigError, GraphError
 from kinetree.pipeline.running.memory import Needs, measured
 from kinetree.pipeline.running.pool import Pool
+from kinetree.pipeline.running.sent_parcels import Remote
 from kinetree.pipeline.settings.config import Compute
 from kinetree.pipeline.storage.store import Store
 from kinetree.pipeline.task import task
@@ -100,6 +101,35 @@ def test_a_worker_process_that_does_not_answer_is_ended_when_its_time_is_over(to
     assert (process.returncode, err) == (0, "")
     assert toys.executions().count("total-210") == 2
     assert toys.artifacts() == calm
+
+
+def test_a_node_that_ends_at_the_moment_in_which_it_is_late_is_done(toys, calm, monkeypatch):
+    seconds, stalled = Remote.seconds, toys.flags / "stalled-total-210"
+
+    def ended_meanwhile(remote):
+        if not seconds(remote) or not stalled.exists():
+            return 0.0
+        stalled.unlink()
+        while remote.future.key in remote.workers.began:
+            threading.Event().wait(0.001)
+        return 1000.0
+
+    monkeypatch.setattr(Remote, "seconds", ended_meanwhile)
+    toys.edit(TOTAL, "@task(timeout=100.0)\ndef total(")
+    toys.flag("stall-total-210")
+    with LocalCluster(n_workers=1, processes=False, dashboard_address=None) as cluster, Client(cluster) as client:
+        assert toys.run(client).told["status"] == "done"
+    assert toys.executions().count("total-210") == 1
+    assert toys.artifacts() == calm
+
+
+def test_a_thread_that_has_ended_is_not_given_up():
+    pool = Pool(1)
+    ended = pool.submit(str, 1)
+    assert ended.result() == "1"
+    assert ended.seconds() == 0
+    assert ended.give_up() is None
+    pool.close()
 
 
 def test_a_late_node_that_has_the_process_to_itself_ends_the_run_in_words(toys):
