@@ -44,11 +44,16 @@ def followed(client: Any, compute: Compute, starts: Starts | None = None, *, is_
     finally:
         following.cancel()
         with contextlib.suppress(Exception):  # a scheduler that is gone or runs no functions keeps the last thousand events
+            client.subscribe_topic(workers.topic, _ignored)  # a client never drops a handler, and with it what it refers to
             client.unsubscribe_topic(workers.topic)
             if not is_ours:
                 asyncio.run_coroutine_threadsafe(_drop_events(client, workers.topic), client.loop.asyncio_loop).result(
                     DROP_SECONDS
                 )
+
+
+def _ignored(_: object) -> None:
+    """An event that comes after the end of a run."""
 
 
 async def _drop_events(client: Any, topic: str) -> None:

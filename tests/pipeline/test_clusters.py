@@ -310,6 +310,13 @@ def test_nothing_of_a_run_stays_with_a_scheduler_of_somebody_else(toys):
         assert not [topic for topic in left if not topic.startswith(("tcp", "inproc", "scheduler", client.id))]
 
 
+def test_nothing_of_a_run_stays_with_a_client_of_somebody_else(toys):
+    with LocalCluster(**{**INSIDE, "n_workers": 1}) as cluster, Client(cluster) as client:
+        toys.run(client)
+        gc.collect()
+        assert not [one for one in gc.get_objects() if type(one) is LivingWorkers]
+
+
 def test_two_runs_of_one_client_at_once_have_their_own_results(toys, tmp_path):
     """The one that subscribes first waits in the middle until the other is over."""
     waits = toys.flag("wait-total-210")
