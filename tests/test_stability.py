@@ -3,10 +3,12 @@
 import importlib.util
 import sys
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+
+from kinetree.schemas.registration.alignment import Alignment
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 V = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, 9),) * 3), axis=-1).reshape(-1, 3)
@@ -23,10 +25,24 @@ def shaken() -> ModuleType:
     return module
 
 
-def test_a_shake_is_the_same_every_time_and_another_in_every_frame(shaken: ModuleType) -> None:
-    first, again, other = (shaken.waves(V, np.random.default_rng((1, frame)), 0.01) for frame in (0, 0, 1))
+def moved(shaken: ModuleType, monkeypatch: pytest.MonkeyPatch, shake: int, frame: int) -> np.ndarray:
+    """How far the task moves the vertices of a frame whose alignment is the reference itself."""
+    zero = np.zeros(len(V))
+    still = Alignment(vertices=V, residual=zero, stretch=zero + 1.0, confidence=zero + 1.0, uncovered=0.0)
+    monkeypatch.setattr(shaken, "aligned", lambda *_: still)
+    params = shaken.ShakenParams(shake=shake, share=0.01)
+    return np.asarray(shaken.alignment(None, SimpleNamespace(vertices=V), None, None, (), params, (frame,)).vertices - V)
+
+
+def test_a_shake_is_the_same_every_time_and_another_in_every_frame(shaken: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, again, *others = (moved(shaken, monkeypatch, *which) for which in ((1, 0), (1, 0), (1, 1), (2, 0)))
     assert np.array_equal(first, again)
-    assert np.linalg.norm(first - other, axis=1).mean() > 0.005
+    for other in others:
+        assert np.linalg.norm(first - other, axis=1).mean() > 0.005
+
+
+def test_no_shake_leaves_the_alignment_as_it_is(shaken: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not moved(shaken, monkeypatch, 0, 1).any()
 
 
 def test_a_shake_is_as_large_as_asked_for(shaken: ModuleType) -> None:
