@@ -18,6 +18,8 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from distributed import LocalCluster
+from pipeline.toy_clusters import NONE
 
 from kinetree.pipeline.identity.key import forget_code
 from kinetree.pipeline.inspect import Pipeline
@@ -228,3 +230,10 @@ def toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Toys]:
     toy.end()
     with contextlib.suppress(ImportError):
         toy.forget()
+
+
+@pytest.fixture
+def empty(toys: Toys) -> Iterator[LocalCluster]:
+    """A cluster that has no worker yet; its workers find the toys."""
+    with LocalCluster(**NONE) as cluster:
+        yield cluster
