@@ -10,9 +10,9 @@ class LaidParts(Artifact):
     """Parts laid on the surfaces of a few frames, by themselves, and in pairs with a hinge."""
 
     frame: Annotated[Ints, Array("int32", FRAME)]
-    """These frames, counted from 0 among those of the first tree."""
+    """These frames, counted from 0 among those of the extended tree."""
     joint: Annotated[Ints, Array("int32", PART)]
-    """Joints of the first tree about which the parts turn, ascending."""
+    """Joints of the extended tree about which the parts turn, ascending."""
     rotation: Annotated[Floats, Array("float64", FRAME, PART, ROW, XYZ)]
     """Of every part from the reference mesh to the frame's surface."""
     translation: Annotated[Floats, Array("float64", FRAME, PART, XYZ, unit="length")]
@@ -22,7 +22,7 @@ class LaidParts(Artifact):
     square: Annotated[Floats, Array("float64", FRAME, PART, unit="length²")]
     """Mean squared distance of the part from the surface."""
     hinge_joint: Annotated[Ints, Array("int32", HINGE)]
-    """Joints of the first tree whose two parts are laid with a hinge, ascending."""
+    """Joints of the extended tree whose two parts are laid with a hinge, ascending."""
     hinge_end: Annotated[Floats, Array("float64", HINGE, XYZ, unit="length")]
     """Where the bone beyond such a joint ends in the reference mesh, if no joint follows."""
     hinge_square: Annotated[Floats, Array("float64", FRAME, HINGE, BORDER_SHAPE, HINGE_PLACE, unit="length²")]

@@ -109,7 +109,7 @@ def kinematic_tree(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     further    : (frame, joint, xyz) of every further cut of the body, see `cut_joints`; joints of the tree are then the mean
                  over all cuts that have them
-    laid       : parts on the frames' surfaces, where joints within limbs are moved to; None moves none
+    laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     """
     V, x, area, tree, label = body.V, body.x, body.area, first.parents, first.label
@@ -120,7 +120,7 @@ def kinematic_tree(
     share = confident_share(label, area, confidence, len(x), len(tree))
     on_surface = SurfaceJoints(agreed.rest, np.full(len(tree), np.nan))
     if laid is not None:
-        on_surface = surface_joints(first, laid, agreed.rest, share)
+        on_surface = surface_joints(first, laid, agreed.rest, share, takes=body.takes)
     rest = on_surface.rest
     off = first.drift if rest is first.rest else first.drift_at(rest)
     poses = frame_poses(

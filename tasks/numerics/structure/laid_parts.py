@@ -9,7 +9,8 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, hinge_costs
+from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
+from kinetree.tasks.numerics.structure.hinge_places import HingeCosts
 from kinetree.tasks.numerics.structure.hinged_piece import laid_as_one, sampled_piece
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFitSettings, PiecePose, shift_stiffness
 

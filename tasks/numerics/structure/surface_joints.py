@@ -12,6 +12,7 @@ any other, and one that stays, goes along its limb to where the surfaces bend, s
 place c almost alone; how far halves of the frames then put it from the joint says how well that one is placed.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
 from kinetree.tasks.numerics.structure.hinge_places import hinge_shifts
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
@@ -80,16 +82,19 @@ class _Pull(NamedTuple):
 
 
 def surface_joints(
-    tree: FirstTree, laid: LaidParts, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None
-) -> SurfaceJoints:
+    tree: FirstTree, laid: LaidParts, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None,
+    takes: Sequence[slice] | None = None,
+) -> SurfaceJoints:  # fmt: skip
     """Joints where the frames agree on them, and how far all are from where the surfaces have them.
 
-    rest : (part, xyz) the joints in the reference, mesh unit
-    seen : (frame, part) share of its surface that is certain, 0 to 1
+    rest  : (part, xyz) the joints in the reference, mesh unit
+    seen  : (frame, part) share of its surface that is certain, 0 to 1
+    takes : positions of the frames of each take, in order; None takes all as one
     """
     chosen, may_move = settings or SurfaceJointsSettings(), within_limbs(tree.parents)
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
-    shifts = hinge_shifts(tree, laid.hinges, rest, share)
+    spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
+    shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)
     parts = {part: _Laid(*(a[:, k] for a in laid[2:6])) for k, part in enumerate(laid.joint.tolist())}
     for joint, above in enumerate(tree.parents.tolist()):
         if joint in parts and above in parts:

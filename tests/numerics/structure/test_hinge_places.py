@@ -7,7 +7,8 @@ from smeared import END, Frames, three_parts, turning
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, HingePlacesSettings, hinge_costs, hinge_shifts, limb_axis
+from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
+from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, HingePlacesSettings, hinge_shifts, limb_axis
 
 FRAMES = 16
 """Frames of the tube."""
@@ -30,9 +31,15 @@ def costs_of(off: float, scale: float = 1.0, noise: float = 0.02) -> tuple[First
     return tree, hinge_costs(surface.V, surface.F, surface.area, tree, surfaces)
 
 
-def shift_of(tree: FirstTree, costs: HingeCosts, seen: Floats = ALL) -> Floats:
+def shift_of(tree: FirstTree, costs: HingeCosts, certain: Floats = ALL) -> Floats:
     """(xyz,) way of the last joint."""
-    return np.asarray(hinge_shifts(tree, costs, tree.rest, seen)[2])
+    return np.asarray(hinge_shifts(tree, costs, tree.rest, certain)[2])
+
+
+def least_at(costs: HingeCosts, place: float, gain: float) -> HingeCosts:
+    """In all frames the costs of a parabola that is least at a place, in radii, and there less than at the joint by a share."""
+    row = 1.0 - gain + gain * (HingePlacesSettings().places / place - 1.0) ** 2
+    return costs._replace(square=np.broadcast_to(row, costs.square.shape))
 
 
 @pytest.mark.parametrize("off", [0.6, -0.6])
@@ -97,3 +104,38 @@ def test_joints_of_short_parts_are_not_laid() -> None:
     )
     assert len(costs.joint) == 0
     assert costs.square.shape == (1, 0, 2, len(HingePlacesSettings().places))
+
+
+@pytest.mark.parametrize(("gain", "way"), [(0.03, 0.0), (0.05, 0.5)])
+def test_a_joint_moves_only_where_the_best_place_leaves_clearly_less(gain: float, way: float) -> None:
+    tree, costs = costs_of(0.0)
+    np.testing.assert_allclose(shift_of(tree, least_at(costs, 0.5, gain))[2], way * tree.radius[2], atol=1e-9)
+
+
+def test_a_joint_stays_where_the_least_cost_is_at_the_end_of_the_places() -> None:
+    tree, costs = costs_of(0.0)
+    anyhow = HingePlacesSettings(share=9.0)
+    inside, beyond = (hinge_shifts(tree, least_at(costs, at, 0.5), tree.rest, ALL, (), anyhow) for at in (2.5, 3.5))
+    assert inside[2].any()
+    np.testing.assert_array_equal(beyond[2], 0.0)
+
+
+def test_joints_do_not_go_farther_than_half_of_their_shorter_bone() -> None:
+    tree, costs = costs_of(0.0)
+    rest = tree.rest.copy()
+    rest[1, 2] = rest[2, 2] - 1.5 * tree.radius[2]
+    short = tree._replace(rest=rest)
+    assert not shift_of(short, least_at(costs, -0.8, 0.5)).any()
+    assert shift_of(short, least_at(costs, -0.7, 0.5)).any()
+
+
+def test_a_bend_in_one_of_two_takes_moves_the_joint() -> None:
+    tree, costs = costs_of(0.0)
+    square = np.ones(costs.square.shape)
+    square[:8] = 100.0 * least_at(costs, -0.5, 0.02).square[:8]
+    square[8:] = least_at(costs, 0.5, 0.5).square[8:]
+    both = costs._replace(square=square)
+    first = np.arange(FRAMES) < 8
+    spans = [np.ones(FRAMES, np.bool_), first, ~first]
+    assert not shift_of(tree, both).any(), "over all frames little is gained"
+    np.testing.assert_allclose(hinge_shifts(tree, both, tree.rest, ALL, spans)[2], [0.0, 0.0, 0.5 * tree.radius[2]], atol=1e-9)
