@@ -20,16 +20,14 @@ def is_whole(store: Store, maker: Entry, artifact: str) -> bool:
     return True
 
 
-def makers_of(store: Store, entries: Mapping[Node, Entry], reader: Entry, artifact: str, what: str) -> list[Node]:
-    """The nodes that make an artifact which a node could not read; none where another graph makes it, after it was removed.
+def makers_of(entries: Mapping[Node, Entry], reader: Entry, artifact: str, what: str) -> list[Node]:
+    """The nodes that make an artifact which a node could not read; none where another graph makes it.
 
     raises : StoreError where nobody makes it
     """
     made = {node: entry.task for node, entry in entries.items() if entry.artifact == artifact}
     makers = [node for node, task in made.items() if not task.is_origin]
-    if not makers and any(task.is_linked for task in made.values()):
-        store.discard(artifact)
-    elif not makers:
+    if not makers and not any(task.is_linked for task in made.values()):
         raise StoreError(f"{reader.label}: artifact {artifact[:12]} {what} and nothing here makes it")
     return makers
 

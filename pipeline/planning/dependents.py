@@ -15,7 +15,7 @@ class Dependents:
 
     def __init__(self, entries: Mapping[Node, Entry], unlisted: Collection[Node]) -> None:
         self._entries, self._unlisted = entries, unlisted
-        self.by_node: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
+        self._by_node: defaultdict[Node, dict[Node, None]] = defaultdict(dict)
         """In the order in which they were linked."""
 
     def wait(self, entry: Entry, nodes: Iterable[Node]) -> None:
@@ -23,12 +23,22 @@ class Dependents:
         wanted = list(nodes)
         entry.waits = {n for n in wanted if n not in self._entries or self._entries[n].state not in DONE}
         for node in wanted:
-            self.by_node[node][entry.node] = None
+            self._by_node[node][entry.node] = None
+
+    def wait_also(self, entry: Entry, nodes: Collection[Node]) -> None:
+        """A node waits for these nodes beside what it waits for already."""
+        entry.waits.update(nodes)
+        for node in nodes:
+            self._by_node[node][entry.node] = None
+
+    def of(self, node: Node) -> tuple[Node, ...]:
+        """Those that read this node or are laid out by it."""
+        return tuple(self._by_node.get(node, ()))
 
     def released(self, node: Node) -> list[Node]:
         """The dependents that waited for nothing but this node, which is done."""
         released = []
-        for dependent in self.by_node[node]:
+        for dependent in self._by_node[node]:
             entry = self._entries[dependent]
             entry.waits.discard(node)
             if not entry.waits and dependent not in self._unlisted and entry.state == "waits":
@@ -40,7 +50,7 @@ class Dependents:
         skipped: list[Node] = []
         queue = deque([node])
         while queue:
-            for dependent in self.by_node[queue.popleft()]:
+            for dependent in self._by_node[queue.popleft()]:
                 entry = self._entries[dependent]
                 if entry.state not in ("skipped", "failed"):
                     entry.state, entry.cause = "skipped", self._failure(node)

@@ -27,7 +27,7 @@ from kinetree.schemas.array import Artifact, Params
 
 
 class Schedule:
-    """The nodes of one graph over one sequence; nobody else changes their entries.
+    """The nodes of one graph over one sequence; it and its `Dependents` alone change their entries.
 
     A run takes nodes with `ready`, sends them with `send` and tells what became of each with `complete`, `fail`, `put_back`
     or `mend`.
@@ -111,7 +111,7 @@ class Schedule:
         if entry.damaged is not None:
             discard_damaged(self.store, entry, entry.damaged)
             entry.damaged = None
-        parcel = [entry] if is_alone else together(entry, self.graph, self.entries, self._dependents.by_node, self._unlisted)
+        parcel = [entry] if is_alone else together(entry, self.graph, self.entries, self._dependents.of, self._unlisted)
         for member in parcel:
             member.state = "running"
         return parcel
@@ -144,8 +144,9 @@ class Schedule:
         raises   : StoreError where no node makes it
         """
         entry = self.entries[node]
-        makers = makers_of(self.store, self.entries, entry, artifact, what)
+        makers = makers_of(self.entries, entry, artifact, what)
         if not makers:
+            self.store.discard(artifact)  # another graph makes it
             return None
         if entry.state == "skipped":
             return []
@@ -158,9 +159,7 @@ class Schedule:
         for maker, _ in redone:
             self._redo(maker.node, what)
         entry.state = "waits"
-        entry.waits.update(makers)
-        for other in makers:
-            self._dependents.by_node[other][node] = None
+        self._dependents.wait_also(entry, makers)
         if not makers:
             entry.state = "stale"
             self._ready.add(node)
@@ -187,7 +186,7 @@ class Schedule:
 
     def dependents(self, node: Node) -> Sequence[Node]:
         """The nodes that read this one or are laid out by it."""
-        return tuple(self._dependents.by_node[node])
+        return self._dependents.of(node)
 
     def _ask(self, node: Node, question: Callable[[Artifact], T]) -> T | None:
         """What an opener or a traversal answers, None while it is not there (or no longer readable)."""

@@ -1,6 +1,6 @@
 """Which nodes travel together as one piece of work: those of one member, and a stretch of a chain."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.node import Node, project
@@ -16,7 +16,7 @@ def together(
     first: Entry,
     graph: Graph,
     entries: Mapping[Node, Entry],
-    dependents: Mapping[Node, Collection[Node]],
+    dependents: Callable[[Node], Sequence[Node]],
     unlisted: Collection[Node],
 ) -> list[Entry]:
     """A ready node and the nodes that need nothing else: the next ones of its own chain, or else all of its own member.
@@ -37,7 +37,7 @@ def together(
         return parcel
 
     def waiting(member: Entry) -> Iterator[Entry]:
-        for node in dependents.get(member.node, ()):
+        for node in dependents(member.node):
             other = entries[node]
             if other.state == "waits" and node not in inside and node not in unlisted and other.waits <= inside:
                 yield other
