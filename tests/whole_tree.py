@@ -46,7 +46,8 @@ def joints_at_ends(
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
     """The joints at ends, judged in runs of frames as tasks judge them."""
-    frames, count = EndFrames.of(tree, body.area, confidence, cache(surface)), len(body.x)
+    count = len(body.x)
+    frames = EndFrames.of(tree, body.area, np.arange(count), confidence, cache(surface))
     rings, runs = end_rings(body.V, body.F, body.area, tree), []
     for run in judged_runs(count, body.takes, settings):
         fits: list[Fits] = [{} for _ in rings]

@@ -14,8 +14,8 @@ class EndRings(Artifact):
 
     frame: Annotated[Ints, Array("int32", FRAME)]
     """These frames, counted from 0 among those of the first tree."""
-    shown: Annotated[Bools, Array("bool", FRAME, RING)]
-    """Whether the frame shows the ring's part; where it does not, nothing else is said."""
+    visible: Annotated[Bools, Array("bool", FRAME, RING)]
+    """Whether the frame shows the ring's part; where it does not, the other values are 0 or the identity."""
     one: Annotated[Floats, Array("float64", FRAME, RING, unit="length²")]
     """Mean squared distance from the surface as one piece."""
     two: Annotated[Floats, Array("float64", FRAME, RING, unit="length²")]

@@ -22,11 +22,10 @@ def end_rings(
 ) -> EndRings:
     """Lays the last parts of limbs on the frames' surfaces, as one piece and with a hinge at several rings (ours)."""
     V, F, area = area_of(reference)
-    tree, frames = restored(first_tree), [first_tree.frames.index(f) for f in mesh]
+    tree, frame = restored(first_tree), np.array([first_tree.frames.index(f) for f in mesh])
     rings = numerics.end_rings(V, F, area, tree)
-    confidence = np.zeros((len(first_tree.frames), len(V)))
-    confidence[frames] = [a.confidence for a in alignment.values()]
+    confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
     surface = cache(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
     fits: list[numerics.Fits] = [{} for _ in rings]
-    numerics.lay_rings(numerics.EndFrames.of(tree, area, confidence, surface), np.array(frames), rings, fits)
-    return EndRings(**numerics.EndRings.of(np.array(frames), fits)._asdict())
+    numerics.lay_rings(numerics.EndFrames.of(tree, area, frame, confidence, surface), frame, rings, fits)
+    return EndRings(**numerics.EndRings.of(frame, fits)._asdict())

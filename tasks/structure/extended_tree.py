@@ -66,6 +66,6 @@ def _ends(
     runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
     surface = lru_cache(maxsize=READY)(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
-    seen = rings_numerics.EndFrames.of(tree, area, confidence, surface)
+    frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
     rings = rings_numerics.end_rings(V, F, area, tree)
-    return end_joints(seen, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(first_tree.frames))
+    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(first_tree.frames))

@@ -17,5 +17,5 @@ def runs() -> tuple[EndRings, ...]:
 def test_runs_of_frames_together_are_all_frames_and_have_the_same_rings() -> None:
     laid = runs()
     assert np.concatenate([run.frame for run in laid]).tolist() == list(range(24))
-    assert len({run.shown.shape[1] for run in laid}) == 1
-    assert all(run.shown.all() and (run.two < run.one).mean() > 0.8 for run in laid)
+    assert len({run.visible.shape[1] for run in laid}) == 1
+    assert all(run.visible.all() and (run.two < run.one).mean() > 0.8 for run in laid)

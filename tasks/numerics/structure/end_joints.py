@@ -54,7 +54,7 @@ class EndJoint(NamedTuple):
     R, t     : (frame, 2, 3, 3) · (frame, 2, xyz) of the nearer piece and of that beyond, from the reference; of the whole part
                where it is not seen
     residual : (frame,) root mean square distance from the surface, mesh unit
-    shown    : (frame,) whether the frame's surface shows the part
+    visible  : (frame,) whether the frame's surface shows the part
     score    : see `ring_evidence`
     """
 
@@ -62,17 +62,17 @@ class EndJoint(NamedTuple):
     R: Floats
     t: Floats
     residual: Floats
-    shown: Flags
+    visible: Flags
     score: float
 
 
-class _Laid(NamedTuple):
+class _RingFits(NamedTuple):
     """A ring, and how its part lies in the frames so far."""
 
     ring: EndRing
     fits: Fits
 
-    def within(self, span: Ints) -> "_Laid":
+    def within(self, span: Ints) -> "_RingFits":
         """The same with the frames from the first to before the last of a span alone."""
         return self._replace(fits={f: fit for f, fit in self.fits.items() if span[0] <= f < span[1]})
 
@@ -89,9 +89,9 @@ def end_joints(
     judged : by ring, how its part lies in the frames of `judged_frames`
     takes  : positions of the frames of each take, in order; None takes all as one
     """
-    chosen, count = settings or EndJointsSettings(), len(frames.shown)
+    chosen, count = settings or EndJointsSettings(), len(frames.tree.R)
     at, pairs = judged_frames(count, takes, chosen.most_frames)
-    laid = [_Laid(ring, fits) for ring, fits in zip(rings, judged, strict=True)]
+    laid = [_RingFits(ring, fits) for ring, fits in zip(rings, judged, strict=True)]
     evident = _evident(frames, laid, pairs, score_spans(count, takes), chosen)
     own = [one for one, _ in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
@@ -108,8 +108,8 @@ def judged_runs(count: int, takes: Sequence[slice] | None, settings: EndJointsSe
 
 
 def _evident(
-    frames: EndFrames, laid: Sequence[_Laid], pairs: Ints, spans: Ints, chosen: EndJointsSettings
-) -> list[tuple[_Laid, float]]:
+    frames: EndFrames, laid: Sequence[_RingFits], pairs: Ints, spans: Ints, chosen: EndJointsSettings
+) -> list[tuple[_RingFits, float]]:
     """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score.
 
     A part's rings are judged over all frames, or over those of the take in which one of them shows most.
@@ -132,7 +132,7 @@ def _is_joint(ring: EndRing, shown: RingEvidence, chosen: EndJointsSettings) -> 
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice
 
 
-def _judged(frames: EndFrames, laid: Sequence[_Laid], pairs: Ints, span: Ints, least: float) -> list[RingEvidence]:
+def _judged(frames: EndFrames, laid: Sequence[_RingFits], pairs: Ints, span: Ints, least: float) -> list[RingEvidence]:
     """What every ring shows in the frames of a span; its hinge is held where it scores enough even against one piece."""
     within, tree = [one.within(span) for one in laid], frames.tree
     above = [tree.R[:, tree.parents[one.ring.cut.part]] for one in laid]
@@ -141,12 +141,12 @@ def _judged(frames: EndFrames, laid: Sequence[_Laid], pairs: Ints, span: Ints, l
         for R, one in zip(above, within, strict=True)
     ]
     likely = [k for k, shown in enumerate(evidence) if shown.score >= least]
-    for k, steady in zip(likely, _held(frames, [within[k] for k in likely]), strict=True):
+    for k, steady in zip(likely, _left_at_mean_turn(frames, [within[k] for k in likely]), strict=True):
         evidence[k] = ring_evidence(above[k], within[k].fits, steady, pairs)
     return evidence
 
 
-def _held(frames: EndFrames, laid: Sequence[_Laid]) -> list[dict[int, float]]:
+def _left_at_mean_turn(frames: EndFrames, laid: Sequence[_RingFits]) -> list[dict[int, float]]:
     """By ring and frame, what is left of the part with the hinge held at its mean turn, mesh unit²."""
     mean = [Rotation.from_matrix([fit.pose.Q for fit in one.fits.values()]).mean().as_matrix() for one in laid]
     left: list[dict[int, float]] = [{} for _ in laid]
@@ -159,12 +159,12 @@ def _held(frames: EndFrames, laid: Sequence[_Laid]) -> list[dict[int, float]]:
     return left
 
 
-def _joint(tree: FirstTree, laid: _Laid, score: float) -> EndJoint:
+def _joint(tree: FirstTree, laid: _RingFits, score: float) -> EndJoint:
     """The motion of the pieces on both sides of a ring in all frames."""
     cut = laid.ring.cut
     R, t = (np.repeat(a[:, cut.part, None], 2, axis=1) for a in (tree.R, tree.t))
-    residual, shown = tree.unexplained[:, cut.part].copy(), np.zeros(len(R), np.bool_)
+    residual, visible = tree.unexplained[:, cut.part].copy(), np.zeros(len(R), np.bool_)
     for f, hinged in laid.fits.items():
-        shown[f], residual[f] = True, np.sqrt(hinged.two)
+        visible[f], residual[f] = True, np.sqrt(hinged.two)
         R[f], t[f] = motions(hinged.pose, cut.centre)
-    return EndJoint(cut, R, t, residual, shown, score)
+    return EndJoint(cut, R, t, residual, visible, score)

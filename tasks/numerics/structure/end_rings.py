@@ -1,6 +1,6 @@
 """The last parts of limbs on the frames' surfaces, with a hinge at rings across them (ours, see `end_joints`)."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,13 +29,13 @@ class EndRings(NamedTuple):
     """How the parts of rings lie in some frames; nothing is said of a ring whose part a frame does not show.
 
     frame    : (frame,) places among all frames, ascending
-    shown    : (frame, ring) whether the frame shows the ring's part
+    visible  : (frame, ring) whether the frame shows the ring's part
     one, two : (frame, ring) see `HingedFit`, mesh unit²
     rotation, translation, turn : (frame, ring, 3, 3) · (frame, ring, xyz) · (frame, ring, 3, 3) see `PiecePose`, mesh unit
     """
 
     frame: Ints
-    shown: Flags
+    visible: Flags
     one: Floats
     two: Floats
     rotation: Floats
@@ -54,7 +54,7 @@ class EndRings(NamedTuple):
             for row, f in enumerate(frame.tolist()):
                 if f in own:
                     fit = own[f]
-                    out.shown[row, k], out.one[row, k], out.two[row, k] = True, fit.one, fit.two
+                    out.visible[row, k], out.one[row, k], out.two[row, k] = True, fit.one, fit.two
                     out.rotation[row, k], out.translation[row, k], out.turn[row, k] = fit.pose
         return out
 
@@ -68,7 +68,7 @@ class EndRings(NamedTuple):
         """By ring and frame."""
         frames = self.frame.tolist()
         return [
-            {f: self._fit(row, k) for row, f in enumerate(frames) if self.shown[row, k]} for k in range(self.shown.shape[1])
+            {f: self._fit(row, k) for row, f in enumerate(frames) if self.visible[row, k]} for k in range(self.visible.shape[1])
         ]
 
     def _fit(self, row: int, k: int) -> HingedFit:
@@ -77,25 +77,27 @@ class EndRings(NamedTuple):
 
 
 class EndFrames(NamedTuple):
-    """A tree, which frames show its parts, and the frames' surfaces.
+    """A tree, which of its parts some frames show, and the frames' surfaces.
 
-    shown   : (frame, part)
-    surface : gives a frame's surface, prepared, by its place among the frames
+    visible : by a frame's place among all frames, (part,) whether it shows the part
+    surface : gives a frame's surface, prepared, by its place among all frames
     """
 
     tree: FirstTree
-    shown: Flags
+    visible: Mapping[int, Flags]
     surface: Callable[[int], Target]
 
     @staticmethod
-    def of(tree: FirstTree, area: Floats, confidence: Floats, surface: Callable[[int], Target]) -> "EndFrames":
+    def of(tree: FirstTree, area: Floats, frame: Ints, confidence: Floats, surface: Callable[[int], Target]) -> "EndFrames":
         """Frames show a part where most of it and of the part above is certain.
 
-        area, confidence : (vertex,) any unit · (frame, vertex) 0 to 1
+        area       : (vertex,) any unit
+        frame      : (frame,) places of these frames among all
+        confidence : (frame, vertex) in these frames, 0 to 1
         """
         share = confident_share(tree.label, area, confidence, len(confidence), len(tree.parents))
-        shown = np.minimum(share, share[:, np.maximum(tree.parents, 0)]) >= FramePosesSettings().seen
-        return EndFrames(tree, shown, surface)
+        visible = np.minimum(share, share[:, np.maximum(tree.parents, 0)]) >= FramePosesSettings().seen
+        return EndFrames(tree, dict(zip(frame.tolist(), visible, strict=True)), surface)
 
     def goal(self, f: int, ring: EndRing) -> Floats:
         """(xyz,) where the rest of the body has the joint of a ring's part, mesh unit."""
@@ -105,7 +107,7 @@ class EndFrames(NamedTuple):
     def showing(self, which: Iterable[int], rings: Sequence[EndRing]) -> Iterator[tuple[int, Target, list[int]]]:
         """Frames that show some of the rings' parts, their surfaces, and which rings these are."""
         for f in map(int, which):
-            there = [k for k, ring in enumerate(rings) if self.shown[f, ring.cut.part]]
+            there = [k for k, ring in enumerate(rings) if self.visible[f][ring.cut.part]]
             if there:
                 yield f, self.surface(f), there
 

@@ -57,7 +57,7 @@ def moved_ends(body: MovingSurface, tree: FirstTree, ends: Sequence[EndJoint]) -
     x = body.x.copy()
     for end in ends:
         v, weight = end.cut.own, tree.W[end.cut.own, end.cut.part]
-        for f in np.flatnonzero(end.shown):
+        for f in np.flatnonzero(end.visible):
             x[f, v] = on_pieces(body.V[v], x[f, v], weight, end.cut.share, end.R[f], end.t[f])
     return x
 

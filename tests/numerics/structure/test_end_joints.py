@@ -33,7 +33,7 @@ def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJ
 def test_joint_that_is_not_in_the_aligned_vertices_is_found(noise: float) -> None:
     (joint,) = joints_at(25.0, noise)
     np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
-    assert joint.shown.all()
+    assert joint.visible.all()
 
 
 def test_the_piece_beyond_moves_as_in_the_frames() -> None:
@@ -74,14 +74,14 @@ def test_in_frames_that_do_not_show_it_the_piece_goes_with_its_part() -> None:
     confidence = np.ones(surface.x.shape[:2])
     confidence[10:13, surface.V[:, 2] > 0.0] = 0.1
     (joint,) = joints_at_ends(surface, in_tree_order(tree, 2), confidence, Frames(turning()).prepared(surface.size))
-    assert np.flatnonzero(~joint.shown).tolist() == [10, 11, 12]
+    assert np.flatnonzero(~joint.visible).tolist() == [10, 11, 12]
     for piece in (0, 1):
         np.testing.assert_array_equal(joint.R[10:13, piece], tree.R[10:13, joint.cut.part])
 
 
 def test_a_long_take_is_judged_in_some_frames_and_posed_in_all() -> None:
     (joint,) = joints_at(25.0, settings=EndJointsSettings(most_frames=12))
-    assert joint.shown.all()
+    assert joint.visible.all()
 
 
 @pytest.mark.parametrize(("degrees", "noise"), [(4.0, 0.02), (6.0, 0.04)])

@@ -14,8 +14,9 @@ def laid(which: list[int], hidden: tuple[int, ...] = ()) -> tuple[list[EndRing],
     confidence[np.ix_(hidden, body.V[:, 2] > 0.0)] = 0.1
     rings = end_rings(body.V, body.F, body.area, tree)
     fits: list[Fits] = [{} for _ in rings]
-    frames = EndFrames.of(tree, body.area, confidence, Frames(turning()).prepared(body.size))
-    lay_rings(frames, np.array(which), rings, fits)
+    frame = np.array(which)
+    frames = EndFrames.of(tree, body.area, frame, confidence[frame], Frames(turning()).prepared(body.size))
+    lay_rings(frames, frame, rings, fits)
     return rings, fits
 
 
@@ -36,7 +37,7 @@ def test_what_is_stored_by_frame_is_read_again_by_ring() -> None:
         parts.append(EndRings.of(np.array(which), [{f: own[f] for f in which if f in own} for own in whole]))
     again = EndRings.joined(parts)
     assert again.frame.tolist() == [3, 4, 5]
-    assert again.shown[:, 0].tolist() == [True, False, True]
+    assert again.visible[:, 0].tolist() == [True, False, True]
     for own, other in zip(whole, again.fits, strict=True):
         assert list(own) == list(other) == [3, 5]
         for f, fit in own.items():
