@@ -34,9 +34,9 @@ class Joints(NamedTuple):
 
 def joints_of(case: Case, work: Path, sets: Sequence[str]) -> Joints | None:
     """Runs a sequence as far as needed; None where nothing can be said."""
-    told = {"output": str(work / f"{case.name}-default"), "store": str(work / "store"), **case.blocks}
+    blocks = {"output": str(work / f"{case.name}-default"), "store": str(work / "store"), **case.blocks}
     try:
-        pipeline = Pipeline.of(told, sets=sets)
+        pipeline = Pipeline.of(blocks, sets=sets)
         pipeline.run(until=["evaluation"])
         return judged(body_of(case.name), pipeline.inspect(until=["evaluation"]))
     except KinetreeError as error:
@@ -55,8 +55,8 @@ def spoilt(work: Path) -> Iterator[Case]:
         label = f"{row['clip']}-{row['kind']}-{row['level']:g}"
         if not row["refused"] and row["kind"] != "bodies":
             clip = work / "clips" / label
-            told = {"source": {"input": str(clip)}, "truth": {"file": str(clip / "truth.json")}, "store": str(work / "store")}
-            yield Case(label, f"spoilt {row['clip'].partition('-')[0]}", {**told, "output": str(work / "runs" / label)})
+            blocks = {"source": {"input": str(clip)}, "truth": {"file": str(clip / "truth.json")}, "store": str(work / "store")}
+            yield Case(label, f"spoilt {row['clip'].partition('-')[0]}", {**blocks, "output": str(work / "runs" / label)})
 
 
 def judged(body: str, there: Snapshot) -> Joints:

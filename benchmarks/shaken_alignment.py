@@ -38,11 +38,11 @@ def alignment(
     index: Index,
 ) -> Alignment:
     """The alignment of a frame, moved a little."""
-    found = aligned(mesh, reference, deformation_graph, recovery, refit)
+    unshaken = aligned(mesh, reference, deformation_graph, recovery, refit)
     if params.shake == 0:
-        return found
+        return unshaken
     away = waves(np.array(reference.vertices), np.random.default_rng((params.shake, index[0])), params.share)
-    return found.model_copy(update={"vertices": found.vertices + away})
+    return unshaken.model_copy(update={"vertices": unshaken.vertices + away})
 
 
 def waves(V: Floats, rng: np.random.Generator, share: float) -> Floats:

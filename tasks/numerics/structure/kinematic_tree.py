@@ -116,11 +116,11 @@ def kinematic_tree(
     if first.ends:
         x = x.copy()
         x[:, first.at_ends] = first.end_x
-    agreed = _agreed(first, further, body.size)
+    consensus = _consensus(first, further, body.size)
     share = confident_share(label, area, confidence, len(x), len(tree))
-    on_surface = SurfaceJoints(agreed.rest, np.full(len(tree), np.nan))
+    on_surface = SurfaceJoints(consensus.rest, np.full(len(tree), np.nan))
     if laid is not None:
-        on_surface = surface_joints(first, laid, agreed.rest, share, takes=body.takes)
+        on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
     rest = on_surface.rest
     off = first.drift if rest is first.rest else first.drift_at(rest)
     poses = frame_poses(
@@ -132,10 +132,10 @@ def kinematic_tree(
     ends = end_effectors(V, body.F, label, tree, leaves)
     spans = score_spans(len(x), body.takes)
     made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans)
-    return made, _derivation(first, agreed, on_surface.offset, made, order)
+    return made, _derivation(first, consensus, on_surface.offset, made, order)
 
 
-def _agreed(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
+def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
     """Joints of the first cut as all cuts place them; the root as it is."""
     count = len(first.rest)
     if not further:

@@ -63,7 +63,7 @@ class SurfaceJoints(NamedTuple):
     offset: Floats
 
 
-class _Laid(NamedTuple):
+class _PartFits(NamedTuple):
     """A part in the frames: R (frame, 3, 3), t (frame, xyz), stiffness (frame, 6, 6) about the origin, square (frame,)."""
 
     R: Floats
@@ -95,13 +95,13 @@ def surface_joints(
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
     spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
     shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)
-    parts = {part: _Laid(*(a[:, k] for a in laid[2:6])) for k, part in enumerate(laid.joint.tolist())}
+    parts = {part: _PartFits(*(a[:, k] for a in laid[2:6])) for k, part in enumerate(laid.joint.tolist())}
     for joint, above in enumerate(tree.parents.tolist()):
         if joint in parts and above in parts:
             pull = _pull(parts[above], parts[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
             radius = float(tree.radius[joint])
             if may_move[joint]:
-                moved[joint] = _agreed(pull, rest[joint], chosen.spread * radius, chosen)
+                moved[joint] = _moved_joint(pull, rest[joint], chosen.spread * radius, chosen)
             if _often_shown(pull):
                 moved[joint] += shifts[joint] * (moved[joint] == rest[joint]).all()
                 places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
@@ -124,7 +124,7 @@ def _often_shown(pull: _Pull) -> bool:
     return int((pull.seen >= FramePosesSettings().seen).sum()) >= LaidPartsSettings().least_frames
 
 
-def _pull(above: _Laid, own: _Laid, c: Floats, seen: Floats, chosen: SurfaceJointsSettings) -> _Pull:
+def _pull(above: _PartFits, own: _PartFits, c: Floats, seen: Floats, chosen: SurfaceJointsSettings) -> _Pull:
     """The equations of a joint at c in all frames, in the axes of the part above."""
     back = above.R.transpose(0, 2, 1)
     loose = np.zeros_like(back)
@@ -136,7 +136,7 @@ def _pull(above: _Laid, own: _Laid, c: Floats, seen: Floats, chosen: SurfaceJoin
     return _Pull(M, d, np.asarray(Q, np.float64), seen)
 
 
-def _joint_stiffness(laid: _Laid, c: Floats) -> Floats:
+def _joint_stiffness(laid: _PartFits, c: Floats) -> Floats:
     """(frame, 3, 3) how firmly the fits hold a part's point c, its rotation free."""
     y = np.einsum("fxy,y->fx", laid.R, c) + laid.t
     about = np.tile(np.eye(6), (len(y), 1, 1))
@@ -150,7 +150,7 @@ def _joint_stiffness(laid: _Laid, c: Floats) -> Floats:
     return np.asarray(shift - both.transpose(0, 2, 1) @ free + SINGULAR * np.eye(3))
 
 
-def _agreed(pull: _Pull, c: Floats, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
+def _moved_joint(pull: _Pull, c: Floats, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
     """(xyz,) the joint moved, or as it is where halves of the frames disagree."""
     way = _centre(pull, c, sigma, chosen) - c
     one, other = _of_halves(pull, c, sigma, chosen)
