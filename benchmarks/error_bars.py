@@ -39,6 +39,7 @@ from kinetree.tasks.numerics.structure.error_bars import (
     fitted,
     levels,
 )
+from kinetree.tasks.numerics.structure.laid_parts import LaidPartsSettings
 
 CLOSE = 0.025
 """Error of a joint that is placed well, share of the height."""
@@ -58,8 +59,9 @@ def fitted_law(
     The least error is the smallest with which the bound holds on both kinds of bodies.
 
     anew, fixed    : bodies surfaced anew in every frame, to which exponents are fitted · of fixed connectivity
-    without_offset : the law of joints without a surface offset; given, the law is of those that have one, its exponents
-                     lie halfway from that law's to those that fit best, and each figure keeps its bound
+    without_offset : the law of joints without a surface offset; given, the law is of those that have one, at least one of
+                     them among these runs, its exponents lie halfway from that law's to those that fit best, and each
+                     figure keeps its bound
     """
 
     def table(runs: Sequence[Joints]) -> tuple[Floats, Floats]:
@@ -87,7 +89,7 @@ def fitted_law(
     if without_offset is not None:
         figures = {r.body.partition("-")[0] for r in anew}
         each = [table([r for r in anew if r.body.partition("-")[0] == figure]) for figure in figures]
-        law = law._replace(bound=max(float(np.quantile(e / levels(rows, law), BOUND)) for rows, e in each))
+        law = law._replace(bound=max(float(np.quantile(e / levels(rows, law), BOUND)) for rows, e in each if len(e)))
     return law
 
 
@@ -174,6 +176,11 @@ def main() -> None:
     parser.add_argument("--data", type=Path)
     parser.add_argument("--work", type=Path)
     asked = parser.parse_args()
+    if asked.seeds and asked.frames < (least := LaidPartsSettings().least_frames):
+        parser.error(
+            f"--frames {asked.frames}: constants are fitted to joints that have a surface offset, which need {least} frames;"
+            f" give --frames {least} or more, or --seeds 0 to judge the shipped constants alone"
+        )
     with tempfile.TemporaryDirectory() as folder:
         work = asked.work or Path(folder)
 
@@ -192,7 +199,8 @@ def main() -> None:
         learned = [[named(of, "even", fixed) for fixed in (False, True)] for of in (several, one)]
         uncertain = fitted_widening(learned[0][0])
         laws = [fitted_law(*runs, uncertain) for runs in learned]
-        on_surfaces = fitted_law(learned[0][0], (), uncertain, shipped.several_cuts)
+        has_offset = any(np.isfinite(run.features.offset).any() for run in learned[0][0])
+        on_surfaces = fitted_law(learned[0][0], (), uncertain, shipped.several_cuts) if has_offset else shipped.on_surfaces
         judged_by["fitted"] = ErrorBarsSettings(laws[0], on_surfaces, laws[1], uncertain)
         print(judged_by["fitted"])
     head = "| bodies | joints | bound | bound, in a frame | AUC | not within 2.5 % | rank | expected → error, % of the height |"
