@@ -11,7 +11,7 @@ FOLDER holds sequences as `accuracy.py` takes them; --every N takes each Nth fra
 alignments are computed once.
 
 Columns: joints found of those scored, mean error of those found in % of the height, spurious joints, as they are and for every
-shake; then mean ± standard deviation over the shakes, and in how many shakes each joint was lost that was lost in any.
+shake; then mean ± standard deviation over the shakes (by n − 1), and in how many shakes each joint was lost that was lost in any.
 """
 
 import argparse
@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from accuracy import Case, recorded
 from shaken_alignment import alignment
 
@@ -33,9 +34,9 @@ from kinetree.tasks.registration.alignment import alignment as aligned
 
 
 class Shaken(NamedTuple):
-    """What one shake leaves: found and scored joints, mean error in % of the height, spurious ones, names of those lost."""
+    """What one shake leaves: joints that match scored ones, scored joints, mean error in % of the height, spurious ones, names of those lost."""
 
-    found: int
+    matched: int
     scored: int
     percent: float
     spurious: int
@@ -69,16 +70,21 @@ def shaken(case: Case, every: int, shake: int, share: float, work: Path, sets: S
 def lines(name: str, rows: Sequence[Shaken]) -> Iterator[str]:
     """Rows of one sequence, the first as it is, and what they have in common."""
     for k, row in enumerate(rows):
-        yield f"{name:<12}{k or 'as it is':>9}  {row.found:>2} of {row.scored}  {row.percent:5.2f} %  {row.spurious:>2}"
+        yield f"{name:<12}{k or 'as it is':>9}  {row.matched:>2} of {row.scored}  {row.percent:5.2f} %  {row.spurious:>2}"
     figures = np.array([row[:4] for row in rows[1:]], float)
     if len(figures):
-        mean, deviation = figures.mean(axis=0), figures.std(axis=0)
-        found, _, percent, spurious = (f"{m:.2f} ± {d:.2f}" for m, d in zip(mean, deviation, strict=True))
-        yield f"{name:<12}{'mean':>9}  {found} of {rows[0].scored}, {percent} %, spurious {spurious}"
+        mean, deviation = figures.mean(axis=0), sample_deviation(figures)
+        matched, _, percent, spurious = (f"{m:.2f} ± {d:.2f}" for m, d in zip(mean, deviation, strict=True))
+        yield f"{name:<12}{'mean':>9}  {matched} of {rows[0].scored}, {percent} %, spurious {spurious}"
         lost = Counter(joint for row in rows[1:] for joint in row.lost)
         yield f"{name:<12}{'lost':>9}  " + ", ".join(
             f"{joint} {count} of {len(figures)}" for joint, count in lost.most_common()
         )
+
+
+def sample_deviation(figures: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """(column,) that of what the rows were drawn from, by n − 1; NaN of one row."""
+    return np.asarray(figures.std(axis=0, ddof=1)) if len(figures) > 1 else np.full(figures.shape[1], np.nan)
 
 
 def main() -> None:

@@ -1,7 +1,12 @@
-"""Laws of shaken alignments: a shake is repeatable, smooth, as large as asked for, and another one in every frame."""
+"""Laws of shaken alignments: a shake is repeatable, smooth, as large as asked for, and another one in every frame.
+
+And what is said of several of them.
+"""
 
 import importlib.util
+import math
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
@@ -9,6 +14,7 @@ import numpy as np
 import pytest
 
 from kinetree.schemas.registration.alignment import Alignment
+from kinetree.schemas.results.evaluation import JointScore, Summary
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 V = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, 9),) * 3), axis=-1).reshape(-1, 3)
@@ -23,6 +29,13 @@ def shaken() -> ModuleType:
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def stability() -> Iterator[ModuleType]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(FOLDER))
+        yield importlib.import_module("stability")
 
 
 def moved(shaken: ModuleType, monkeypatch: pytest.MonkeyPatch, shake: int, frame: int) -> np.ndarray:
@@ -59,3 +72,36 @@ def test_a_shake_is_smooth(shaken: ModuleType) -> None:
     here, beside = V, V + [0.01, 0.0, 0.0]
     moved = [np.stack([shaken.waves(x, np.random.default_rng(k), 0.01) for k in range(50)]) for x in (here, beside)]
     assert np.abs(moved[1] - moved[0]).max() < 0.5 * np.abs(moved[0]).max()
+
+
+def test_joints_of_a_shake_are_counted_and_those_lost_are_named(stability: ModuleType) -> None:
+    joints = (JointScore(name="knee", scored=True, found="a"), JointScore(name="toe", scored=True), JointScore(name="jaw"))
+    summary = Summary(scored=2, found=1, spurious=3, percent=1.5)
+    assert stability.Shaken.of(SimpleNamespace(joints=joints, summary=summary)) == (1, 2, 1.5, 3, ("toe",))
+    nothing = stability.Shaken.of(SimpleNamespace(joints=joints[1:], summary=Summary(scored=1)))
+    assert (nothing.matched, math.isnan(nothing.percent)) == (0, True)
+
+
+def test_a_sequence_without_truth_is_refused_in_words(stability: ModuleType) -> None:
+    with pytest.raises(SystemExit, match="no truth is known of it"):
+        stability.Shaken.of(SimpleNamespace(joints=(), summary=None))
+
+
+def test_the_table_has_every_shake_the_deviation_of_a_sample_and_how_often_joints_are_lost(stability: ModuleType) -> None:
+    plain = stability.Shaken(3, 4, 1.0, 0, ("neck",))
+    shaken = [
+        stability.Shaken(2, 4, 1.0, 0, ("toe", "knee")),
+        stability.Shaken(4, 4, 2.0, 0, ()),
+        plain._replace(lost=("toe",)),
+    ]
+    first, *rows, mean, lost = stability.lines("wolf", [plain, *shaken])
+    assert " ".join(first.split()) == "wolf as it is 3 of 4 1.00 % 0"
+    assert [row.split()[1] for row in rows] == ["1", "2", "3"]
+    assert mean.split(maxsplit=2)[2] == "3.00 ± 1.00 of 4, 1.33 ± 0.58 %, spurious 0.00 ± 0.00"
+    assert lost.split(maxsplit=2)[2] == "toe 2 of 3, knee 1 of 3"
+
+
+def test_of_one_shake_the_deviation_is_not_known(stability: ModuleType) -> None:
+    plain = stability.Shaken(3, 4, 1.0, 0, ())
+    assert "3.00 ± nan of 4" in list(stability.lines("wolf", [plain, plain]))[2]
+    assert len(list(stability.lines("wolf", [plain]))) == 1
