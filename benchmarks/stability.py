@@ -11,7 +11,8 @@ FOLDER holds sequences as `accuracy.py` takes them; --every N takes each Nth fra
 alignments are computed once.
 
 Columns: joints found of those scored, mean error of those found in % of the height, spurious joints, as they are and for every
-shake; then mean ± standard deviation over the shakes (by n − 1), and in how many shakes each joint was lost that was lost in any.
+shake; then mean ± standard deviation of a sample (by n − 1) over the shakes, and in how many shakes each joint was lost that was
+lost in any.
 """
 
 import argparse
@@ -34,7 +35,7 @@ from kinetree.tasks.registration.alignment import alignment as aligned
 
 
 class Shaken(NamedTuple):
-    """What one shake leaves: joints that match scored ones, scored joints, mean error in % of the height, spurious ones, names of those lost."""
+    """What one shake leaves: matched and scored joints, mean error in % of the height, spurious ones, names of those lost."""
 
     matched: int
     scored: int
