@@ -65,20 +65,11 @@ def removal_cost(
         for f in range(frames):
             for c in range(3):
                 here[f, c] = x[f, v, c]
+            mass[f] += area[v] * weight[f, v]
         for a in range(count + 1):
             _residuals(V[v], turned, here, sure, turn[a], shift[a], slip, r[a])
         _products(r, E)
-        best = _best_single(E, touches)
-        i, j, w, without_part = _best_blend(E, 0, count)
-        m, n, u, with_part = _best_blend(E, count, count + 1)
-        if without_part < with_part:
-            m, n, u = i, j, w
-        for f in range(frames):
-            for c in range(3):
-                with_it = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
-                blend = w * r[i, f, c] + (1.0 - w) * r[j, f, c]
-                loss[f] += area[v] * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - with_it * with_it)
-            mass[f] += area[v] * weight[f, v]
+        _add_loss(r, E, touches, bone, area[v], loss)
         for s in range(len(spans)):
             own_square[s, k] = _mean_square(r[count], weight, v, spans[s, 0], spans[s, 1])
     largest = 0.0
@@ -177,6 +168,25 @@ def _products(r: Floats, E: Floats) -> None:
                 of_d += i * r[d, f, 0] + j * r[d, f, 1] + k * r[d, f, 2]
                 of_e += i * r[e, f, 0] + j * r[e, f, 1] + k * r[e, f, 2]
             E[a, b], E[a, c], E[a, d], E[a, e] = of_b, of_c, of_d, of_e
+
+
+@compiled
+def _add_loss(r: Floats, E: Floats, touches: int, bone: float, area: float, loss: Floats) -> None:
+    """Adds (frame,) the squared residual of a vertex, times area, that the part takes away, see `removal_cost`.
+
+    r, E : (candidate, frame, xyz) residuals, the part's own last · (candidate, candidate) see `_products`
+    """
+    count = len(r) - 1
+    best = _best_single(E, touches)
+    i, j, w, without_part = _best_blend(E, 0, count)
+    m, n, u, with_part = _best_blend(E, count, count + 1)
+    if without_part < with_part:
+        m, n, u = i, j, w
+    for f in range(len(loss)):
+        for c in range(3):
+            with_it = u * r[m, f, c] + (1.0 - u) * r[n, f, c]
+            blend = w * r[i, f, c] + (1.0 - w) * r[j, f, c]
+            loss[f] += area * (bone * r[best, f, c] ** 2 + (1.0 - bone) * blend * blend - with_it * with_it)
 
 
 @compiled
