@@ -17,7 +17,7 @@ from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import restored
-from kinetree.tasks.structure.laid_parts import joined
+from kinetree.tasks.structure.arguments.laid_parts import joined
 
 
 @task(among=Sequence, block=KinematicTreeParams)

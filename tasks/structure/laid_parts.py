@@ -10,7 +10,6 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.tasks.numerics.structure import laid_parts as numerics
-from kinetree.tasks.numerics.structure.hinge_places import HingeCosts
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
 
@@ -24,14 +23,3 @@ def laid_parts(reference: Reference, extended_tree: ExtendedTree, mesh: Mapping[
     laid = numerics.laid_parts(V, F, area, restored(extended_tree), surfaces)._asdict()
     hinges = laid.pop("hinges")
     return LaidParts(**laid, hinge_joint=hinges.joint, hinge_end=hinges.end, hinge_square=hinges.square)
-
-
-def joined(laid: tuple[LaidParts, ...]) -> numerics.LaidParts | None:
-    """All frames together, as the numerics take them; None where no part was laid."""
-    if not laid:
-        return None
-    first, of_frames = laid[0], ("frame", "rotation", "translation", "stiffness", "square")
-    rows = {name: np.concatenate([getattr(run, name) for run in laid]) for name in of_frames}
-    square = np.concatenate([run.hinge_square for run in laid])
-    hinges = HingeCosts(np.array(first.hinge_joint), np.array(first.hinge_end), square)
-    return numerics.LaidParts(joint=np.array(first.joint), **rows, hinges=hinges)

@@ -5,8 +5,9 @@ from aligned_body import extended, tube
 
 from kinetree.schemas.structure.kinematic_tree import FirstTreeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
+from kinetree.tasks.structure.arguments.laid_parts import joined
 from kinetree.tasks.structure.first_tree import first_tree
-from kinetree.tasks.structure.laid_parts import joined, laid_parts
+from kinetree.tasks.structure.laid_parts import laid_parts
 
 
 def runs() -> list[LaidParts]:
