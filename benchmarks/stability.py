@@ -11,8 +11,7 @@ FOLDER holds sequences as `accuracy.py` takes them; --every N takes each Nth fra
 alignments are computed once.
 
 Columns: joints found of those scored, mean error of those found in % of the height, spurious joints, as they are and for every
-shake; then mean ± standard deviation of a sample (by n − 1) over the shakes, and in how many shakes each joint was lost that was
-lost in any.
+shake; then mean ± standard deviation of a sample (by n − 1), and in how many shakes each joint was lost that was lost in any.
 """
 
 import argparse
