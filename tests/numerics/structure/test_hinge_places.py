@@ -139,3 +139,17 @@ def test_a_bend_in_one_of_two_takes_moves_the_joint() -> None:
     spans = [np.ones(FRAMES, np.bool_), first, ~first]
     assert not shift_of(tree, both).any(), "over all frames little is gained"
     np.testing.assert_allclose(hinge_shifts(tree, both, tree.rest, ALL, spans)[2], [0.0, 0.0, 0.5 * tree.radius[2]], atol=1e-9)
+
+
+def test_one_noisy_frame_repeated_moves_no_joint() -> None:
+    surface, found = three_parts(24)
+    tree, still = in_tree_order(found, 3), np.tile(np.eye(3), (24, 3, 1, 1))
+    rest = tree.rest.copy()
+    rest[1], rest[2] = 0.0, [0.0, 0.0, END]
+    tree = tree._replace(rest=rest, R=still, t=np.zeros((24, 3, 3)))
+    V, F = Frames(still)(0)
+    target = Target.of(V + np.random.default_rng(5).normal(0.0, 0.02, V.shape), F, surface.size)
+    costs = hinge_costs(surface.V, surface.F, surface.area, tree, dict.fromkeys(range(24), target))
+    always = HingePlacesSettings(gain=0.0)
+    assert hinge_shifts(tree, costs, rest, np.ones((24, 3)), (), always).any(), "noise alone would move one"
+    np.testing.assert_array_equal(hinge_shifts(tree, costs, rest, np.ones((24, 3))), 0.0)
