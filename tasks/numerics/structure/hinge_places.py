@@ -34,7 +34,7 @@ class HingePlacesSettings(NamedTuple):
     to 0.7 those gain alike."""
     gain: float = 0.04
     """How much less the best place leaves than the joint, share of that, at least: places about a joint that does not bend
-    differ by up to 0.04, by noise. From 0.02 to 0.04 those bodies gain alike; at 0 more, by joints that move for noise."""
+    differ by noise, mostly below 0.04. From 0.02 to 0.04 those bodies gain alike; at 0 more, as joints move for noise."""
     share: float = 0.5
     """Way of a joint, share of the shorter of its bones, at most: so joints cannot pass each other, also where both move. No
     joint of those goes farther than 0.2."""
