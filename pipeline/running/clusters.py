@@ -7,11 +7,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from distributed import Client, performance_report
+from distributed import Client, Security, performance_report
+from distributed.comm.core import FatalCommClosedError
 
 from kinetree.errors import ClusterError, ConfigError
 from kinetree.errors.small_text import small_json, small_text
-from kinetree.pipeline.running.connections import closed, secured
+from kinetree.pipeline.running.connections import closed, refuse_unfit, secured
 from kinetree.pipeline.running.own_cluster import Configured, local
 from kinetree.pipeline.running.own_workers import Starts
 from kinetree.pipeline.running.quiet import quiet
@@ -49,17 +50,23 @@ def connected(
 
 @contextlib.contextmanager
 def at(compute: Compute) -> Iterator[Client]:
-    """A scheduler that somebody else runs; raises ClusterError where nobody answers."""
+    """A scheduler that somebody else runs; raises ClusterError where nobody answers, ConfigError where TLS refuses."""
     asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
     try:
         address = compute.scheduler or _left_address(Path(str(compute.scheduler_file)))
-        client = Client(address, timeout=CONNECT_SECONDS, **secured(compute, asked))
+        security = secured(compute, asked).get("security") or Security()
+        refuse_unfit(address, security, asked)
+        client = Client(address, timeout=CONNECT_SECONDS, security=security)
     except (ValueError, KeyError, TypeError) as error:
         raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
+    except FatalCommClosedError as error:
+        why = error.__cause__ or error
+        raise ConfigError(f"{asked}: the certificates of the two sides do not fit ({why}); see compute.security") from None
     except (OSError, TimeoutError) as error:
         raise ClusterError(
             f"{asked}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
-            " check the address and that the scheduler runs (dask scheduler), or leave the option out"
+            " check the address (tls:// where it is secured) and that the scheduler runs (dask scheduler), or leave the"
+            " option out"
         ) from error
     with closed(client):
         yield client

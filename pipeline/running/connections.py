@@ -1,17 +1,22 @@
 """How connections to dask's scheduler and workers are secured, and closed."""
 
 import contextlib
+import ssl
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from distributed import Security
+from distributed.comm import parse_address
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.settings.config import Compute
 
 _FILES = ("_file", "_cert", "_key")
 """How the arguments of distributed.Security end that name files."""
+_ENCRYPTED = ("tls", "wss")
+_CLIENT = "tls_ca_file, tls_client_cert, tls_client_key"
+"""The arguments of distributed.Security that a client needs."""
 
 
 @contextlib.contextmanager
@@ -34,10 +39,7 @@ def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
         return {}
     if wanted == "temporary":
         if scheduler:
-            raise ConfigError(
-                f"compute.security temporary: {scheduler} has certificates of its own; name them: tls_ca_file, tls_client_cert,"
-                " tls_client_key"
-            )
+            raise ConfigError(f"compute.security temporary: {scheduler} has certificates of its own; name them: {_CLIENT}")
         try:
             return {"security": Security.temporary()}
         except ImportError:
@@ -48,3 +50,21 @@ def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
         return {"security": Security(require_encryption=True, **wanted)}
     except (TypeError, ValueError) as error:
         raise ConfigError(f"compute.security: {error}") from None
+
+
+def refuse_unfit(address: str, security: Security, asked: str) -> None:
+    """Raises ConfigError where a client can say without asking anybody that it cannot connect like this.
+
+    asked : how the configuration names the scheduler
+    """
+    scheme, _ = parse_address(address)
+    if security.require_encryption and scheme not in _ENCRYPTED:
+        raise ConfigError(f"{asked}: {address} is not encrypted, but encryption is asked for; expected tls://host:8786")
+    if scheme not in _ENCRYPTED:
+        return
+    try:
+        context = security.get_connection_args("client")["ssl_context"]
+    except (ssl.SSLError, OSError) as error:
+        raise ConfigError(f"compute.security: the certificates cannot be loaded ({error}); expected PEM: {_CLIENT}") from None
+    if context is None:
+        raise ConfigError(f"{asked}: {address} is secured by TLS; name certificates in compute.security: {_CLIENT}")

@@ -149,7 +149,7 @@ class _Loop:
         try:
             results: list[Result] = future.result()
         except CancelledError:
-            raise ClusterError("the scheduler cancelled the work; was it stopped? Run again to go on") from None
+            raise ClusterError("the scheduler lost the work; was it stopped or started anew? Run again to go on") from None
         except ClusterError:
             raise
         except Exception as error:  # the workers died under it, or none can even load the work

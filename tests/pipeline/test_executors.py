@@ -1,7 +1,13 @@
 """Wherever nodes are computed the results are the same bytes; workers may die, stale ones are refused."""
 
+import contextlib
 import gc
 import json
+import os
+import signal
+import socket
+import subprocess
+import sys
 
 import pytest
 from distributed import Client, LocalCluster
@@ -136,9 +142,45 @@ def test_a_scheduler_that_goes_away_ends_the_run_in_words(toys):
         assert [run["status"] for run in toys.pipeline().runs()] == ["running"]
     _, err = process.communicate(timeout=60)
     assert process.returncode == 3
-    assert err.strip() == "toy: the scheduler cancelled the work; was it stopped? Run again to go on"
+    assert err.strip() == "toy: the scheduler lost the work; was it stopped or started anew? Run again to go on"
     (toys.flags / "wait-total-210").unlink()
     assert not {"points", "smooth"} & set(toys.run().counts)
+
+
+def test_a_scheduler_that_is_started_anew_at_its_address_ends_the_run_and_serves_the_next(toys, tmp_path):
+    file, waits = tmp_path / "scheduler.json", toys.flag("wait-total-210")
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = str(free.getsockname()[1])
+    where = ("--host", "127.0.0.1", "--port", port, "--no-dashboard", "--scheduler-file", str(file))
+    with begun("scheduler", *where) as first, begun("worker", f"tcp://127.0.0.1:{port}", "--no-dashboard"):
+        process = toys.start("run", str(toys.yaml()), "--scheduler-file", str(file), "--quiet")
+        toys.until((toys.flags / "waiting-total-210").exists, "total begins", process, first)
+        first.kill()
+        first.wait()
+        with begun("scheduler", *where), begun("worker", f"tcp://127.0.0.1:{port}", "--no-dashboard"):
+            _, err = process.communicate(timeout=60)
+            assert process.returncode == 3
+            assert err.strip() == "toy: the scheduler lost the work; was it stopped or started anew? Run again to go on"
+            waits.unlink()
+            toys.clear()
+            again = toys.command("run", str(toys.yaml()), "--scheduler-file", str(file), "--wait-workers", "1,60", "--quiet")
+    assert (again.returncode, again.stderr) == (0, "")
+    assert not [name for name in toys.executions() if name.startswith(("points", "smooth"))]
+
+
+@contextlib.contextmanager
+def begun(command, *options):
+    """A command of dask's own, as somebody runs it, ended with the block."""
+    module = f"distributed.cli.dask_{command}"
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    try:
+        yield process
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
 
 def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):

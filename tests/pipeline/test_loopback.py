@@ -1,6 +1,7 @@
 """The trust boundary: what this machine's workers listen on, and TLS where it is asked for."""
 
 import ipaddress
+import json
 import os
 import socket
 from collections.abc import Iterator
@@ -72,18 +73,68 @@ def test_temporary_certificates_secure_the_workers_and_strangers_are_turned_away
             Client(address.replace("tls://", "tcp://"), timeout=2)
 
 
-def test_a_scheduler_with_certificates_is_reached_with_them(tmp_path):
-    kept = Security.temporary()
-    files = {}
-    for key in ("tls_ca_file", "tls_client_cert", "tls_client_key"):
-        (tmp_path / key).write_text(getattr(kept, key))
-        files[key] = str(tmp_path / key)
+@pytest.fixture
+def certificates(tmp_path):
+    """Those of two authorities, as files: the arguments of distributed.Security, and the authority of the first alone."""
+
+    def written(folder):
+        folder.mkdir()
+        made, files = Security.temporary(), {}
+        for key in ("tls_ca_file", "tls_client_cert", "tls_client_key"):
+            (folder / key).write_text(getattr(made, key))
+            files[key] = str(folder / key)
+        return made, files
+
+    made, right = written(tmp_path / "right")
+    broken = tmp_path / "broken.pem"
+    broken.write_text("no certificate")
+    _, strange = written(tmp_path / "strange")
+    authority = {"tls_ca_file": right["tls_ca_file"]}
+    half = {**right, "tls_ca_file": strange["tls_ca_file"]}
+    return made, {
+        "right": right,
+        "none": {},
+        "authority": authority,
+        "strange": strange,
+        "half": half,
+        "broken": {**right, "tls_client_cert": str(broken)},
+    }
+
+
+@pytest.fixture
+def secured(certificates):
+    """The address of a scheduler with certificates that has a worker."""
     where = {"processes": False, "dashboard_address": "127.0.0.1:0"}
-    with (
-        LocalCluster(n_workers=1, security=kept, **where) as cluster,
-        clusters.at(Compute(scheduler=cluster.scheduler_address, security=files)) as client,
-    ):
-        assert client.submit(abs, -1).result(timeout=60) == 1
+    with LocalCluster(n_workers=1, security=certificates[0], **where) as cluster:
+        yield cluster.scheduler_address
+
+
+def test_a_scheduler_with_certificates_is_reached_with_them(toys, certificates, secured, tmp_path):
+    file = tmp_path / "scheduler.json"
+    file.write_text(json.dumps({"address": secured}))
+    compute = {"scheduler_file": str(file), "security": certificates[1]["right"]}
+    assert toys.run(until=("smooth",), compute=compute).told["status"] == "done"
+
+
+@pytest.mark.parametrize(
+    ("files", "scheme", "words"),
+    [
+        (
+            "none",
+            "tls",
+            "is secured by TLS; name certificates in compute.security: tls_ca_file, tls_client_cert",
+        ),
+        ("authority", "tls", "is secured by TLS; name certificates in compute.security"),
+        ("right", "tcp", r"is not encrypted, but encryption is asked for; expected tls://host:8786"),
+        ("broken", "tls", "compute.security: the certificates cannot be loaded .*; expected PEM"),
+        ("strange", "tls", "the certificates of the two sides do not fit .*; see compute.security"),
+        ("half", "tls", "the certificates of the two sides do not fit .*; see compute.security"),
+    ],
+)
+def test_certificates_that_do_not_fit_are_the_users_to_mend(certificates, secured, files, scheme, words):
+    compute = Compute(scheduler=secured.replace("tls://", f"{scheme}://"), security=certificates[1][files])
+    with pytest.raises(ConfigError, match=words), clusters.at(compute):
+        pass
 
 
 @pytest.mark.parametrize(
