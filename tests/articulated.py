@@ -81,6 +81,17 @@ def chain(
     return moved(V, F, above - below, joints, np.arange(parts) - 1, turn)
 
 
+def and_at_rest(body: Known, frames: int) -> tuple[Known, list[slice]]:
+    """The same body in two more takes of so many frames in which it stays as in the reference · all three takes."""
+    first, rest = len(body.x), (body.V, np.broadcast_to(np.eye(3), body.R[0].shape), np.zeros(body.t[0].shape))
+    x, R, t = (
+        np.concatenate([a, np.broadcast_to(still, (2 * frames, *still.shape))])
+        for a, still in zip((body.x, body.R, body.t), rest, strict=True)
+    )
+    takes = [slice(0, first), slice(first, first + frames), slice(first + frames, first + 2 * frames)]
+    return body._replace(x=x, R=R, t=t), takes
+
+
 def neck(half: float = 0.9, blend: float = 2.4) -> Known:
     """A chain of three parts whose middle one, short and under soft skin, moves hardly a vertex alone."""
     return chain((-half, half), swings(24, 3, seed=3), blend=blend, along=60)

@@ -14,7 +14,12 @@ from scipy.spatial.transform import Rotation
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.blended_bone import MovingSkin, blended_bone, refitted
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
-from kinetree.tasks.numerics.structure.rotation_centres import Joints, RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.rotation_centres import (
+    Joints,
+    RotationCentresSettings,
+    rotation_centres,
+    widest_drift,
+)
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
@@ -79,7 +84,7 @@ class Border(NamedTuple):
     part, above : the two parts
     joint       : (xyz,) in the reference, mesh unit
     radius      : of the border, mesh unit
-    drift       : of the joint, mesh unit
+    drift       : of the joint in the take in which it drifts most, mesh unit
     """
 
     part: int
@@ -92,19 +97,21 @@ class Border(NamedTuple):
 class HiddenBone(NamedTuple):
     """A bone between two parts, as it moves, and its two joints.
 
-    R, t     : (frame, 3, 3) · (frame, xyz) from the reference
-    joint    : (side, xyz) about which it turns against the part above and the part below, in the reference, mesh unit
-    drift    : (side,) of these joints, mesh unit
-    degrees  : (side,) range by which it turns against either side
-    skin     : (follower,) vertices that follow it most, or nearly as much as any does
-    area     : of the skin, each vertex by its weight, mesh unit²
-    residual : (frame,) root mean square of what is left unexplained where the skin follows it, mesh unit
+    R, t         : (frame, 3, 3) · (frame, xyz) from the reference
+    joint        : (side, xyz) about which it turns against the part above and the part below, in the reference, mesh unit
+    drift        : (side,) of these joints, mesh unit
+    widest_drift : (side,) the same in the take in which they drift most
+    degrees      : (side,) range by which it turns against either side
+    skin         : (follower,) vertices that follow it most, or nearly as much as any does
+    area         : of the skin, each vertex by its weight, mesh unit²
+    residual     : (frame,) root mean square of what is left unexplained where the skin follows it, mesh unit
     """
 
     R: Floats
     t: Floats
     joint: Floats
     drift: Floats
+    widest_drift: Floats
     degrees: Floats
     skin: Ints
     area: float
@@ -115,7 +122,7 @@ class HiddenBone(NamedTuple):
         """(side,) displacement of the other joint that turning about each gives, in drifts of this one."""
         length = np.linalg.norm(self.joint[1] - self.joint[0])
         moved: Floats = 2.0 * length * np.sin(np.radians(self.degrees) / 2.0)
-        return moved / np.maximum(self.drift, 1e-6 * length + np.finfo(float).tiny)
+        return moved / np.maximum(self.widest_drift, 1e-6 * length + np.finfo(float).tiny)
 
 
 def hidden_bone(
@@ -142,7 +149,7 @@ def is_bone(bone: HiddenBone, between: Border, size: float, settings: HiddenBone
 
     size : root of the body's area, mesh unit
     """
-    chosen, worst = settings, float(bone.drift.max())
+    chosen, worst = settings, float(bone.widest_drift.max())
     needed = between.drift > chosen.drift * size or worst < chosen.less_drift * between.drift
     more = chosen.more_drift if between.drift > chosen.clear_drift * between.radius else 1.0
     length = float(np.linalg.norm(bone.joint[1] - bone.joint[0]))
@@ -185,10 +192,11 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: 
     own = whole.W[:, -1]
     residual = whole.bone_residual()
     joints = blend_joints(whole, np.full(2, between.radius), residual, chosen.prior)
+    widest = widest_blend_drift(whole, joints.rest, spans)
     degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], spans) for k in (0, 1)])
     follows = (own > 0.0) & (own >= np.minimum(whole.W[:, :-1].max(axis=1), chosen.follower * own.max()))
     motion = whole.R[:, -1], whole.t[:, -1]
-    return HiddenBone(*motion, joints.rest, joints.drift, degrees, near[follows], float(whole.area @ own), residual)
+    return HiddenBone(*motion, joints.rest, joints.drift, widest, degrees, near[follows], float(whole.area @ own), residual)
 
 
 def blend_joints(fit: MovingSkin, radius: Floats, residual: Floats, prior: RotationCentresSettings) -> Joints:
@@ -202,6 +210,12 @@ def blend_joints(fit: MovingSkin, radius: Floats, residual: Floats, prior: Rotat
     centre = both.T @ fit.V / both.sum(axis=0)[:, None]
     level = np.full(fit.R.shape[:2], (residual**4).mean() ** 0.25)  # what few frames show counts
     return rotation_centres(fit.R, fit.t, np.array([[0, last], [1, last]]), centre, radius, level, None, prior)
+
+
+def widest_blend_drift(fit: MovingSkin, joint: Floats, spans: Ints) -> Floats:
+    """(side,) drift of the joints of `blend_joints` (side, xyz) in the span (span, 2) in which they drift most, mesh unit."""
+    last = fit.R.shape[1] - 1
+    return widest_drift(fit.R, fit.t, np.array([[0, last], [1, last]]), joint, spans)
 
 
 def half_way(skin: MovingSkin, between: Border) -> tuple[Floats, Floats]:

@@ -41,7 +41,7 @@ def inserted_bones(
 
 def _one_each(own: Sequence[int], bones: dict[int, HiddenBone]) -> dict[int, HiddenBone]:
     """The same without the worse of two bones beside the same one, which stand for one bone between them."""
-    worse = {max(o, o + 1, key=lambda k: bones[k].drift.max()) for o in own if o in bones and o + 1 in bones}
+    worse = {max(o, o + 1, key=lambda k: bones[k].widest_drift.max()) for o in own if o in bones and o + 1 in bones}
     return {k: bone for k, bone in bones.items() if k not in worse}
 
 
@@ -51,9 +51,9 @@ def _hidden_at(
     """The bones at some joints, ascending, each by the place of the part below it."""
     skin = MovingSkin(body.V, body.x, body.area, found.W, found.R, found.t)
     tree, met = found.left.part_tree.tree, found.left.part_tree.borders
-    bones = {}
+    bones, drift = {}, found.widest_drift(body.takes)
     for k in joints:
-        between = Border(k, int(tree.parents[k]), found.rest[k], float(met.radius[tree.border[k]]), float(found.drift[k]))
+        between = Border(k, int(tree.parents[k]), found.rest[k], float(met.radius[tree.border[k]]), float(drift[k]))
         if (bone := hidden_bone(skin, between, chosen, body.takes)) is not None:
             bones[k] = bone
     return bones

@@ -5,15 +5,23 @@ joints drift. Weights of the skin and the motion of the part are found by turns 
 kept together: without, the motion of a part that no vertex follows alone runs away.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.blended_bone import MovingSkin, blended_bone, refitted, refitted_about
-from kinetree.tasks.numerics.structure.hidden_bones import Border, HiddenBonesSettings, blend_joints, half_way
+from kinetree.tasks.numerics.structure.hidden_bones import (
+    Border,
+    HiddenBonesSettings,
+    blend_joints,
+    half_way,
+    widest_blend_drift,
+)
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints, both_residuals
 
@@ -47,7 +55,7 @@ class Chain(NamedTuple):
     parts  : (3,) the part above, the part below, the part itself
     joint  : (side, xyz) with the part above and the part below, in the reference, mesh unit
     radius : (side,) of their borders, mesh unit
-    drift  : (side,) of the joints, mesh unit
+    drift  : (side,) of the joints in the take in which they drift most, mesh unit
     """
 
     parts: Ints
@@ -56,12 +64,12 @@ class Chain(NamedTuple):
     drift: Floats
 
     @classmethod
-    def of(cls, found: TreeJoints, part: int, below: int) -> "Chain":
-        """The part at a place of the tree, and the one below it."""
-        tree, places = found.left.part_tree.tree, np.array([part, below])
-        radius = found.left.part_tree.borders.radius[tree.border[places]]
+    def of(cls, joints: TreeJoints, part: int, below: int, takes: Sequence[slice] | None) -> "Chain":
+        """The part at a place of the tree, and the one below it; takes, see `score_spans`."""
+        tree, places = joints.left.part_tree.tree, np.array([part, below])
+        radius = joints.left.part_tree.borders.radius[tree.border[places]]
         parts = np.array([tree.parents[part], below, part])
-        return cls(parts, found.rest[places], radius, found.drift[places])
+        return cls(parts, joints.rest[places], radius, joints.widest_drift(takes)[places])
 
     def is_loose(self, chosen: LoosePartsSettings) -> bool:
         """Whether it is short and one of its joints drifts."""
@@ -85,28 +93,32 @@ class TightPart(NamedTuple):
     residual: Floats
 
 
-def tightened(body: MovingSurface, found: TreeJoints, noise: float, settings: LoosePartsSettings | None = None) -> TreeJoints:
+def tightened(body: MovingSurface, joints: TreeJoints, noise: float, settings: LoosePartsSettings | None = None) -> TreeJoints:
     """The same tree; loose parts between two others move anew, where their joints drift less then, but for hidden bones.
 
     body  : every vertex of it was followed
     noise : error of a vertex below which its motion says nothing of its skinning weights, mesh unit
     """
-    chosen, tree, before = settings or LoosePartsSettings(), found.left.part_tree.tree, found
+    chosen, tree, before = settings or LoosePartsSettings(), joints.left.part_tree.tree, joints
+    spans = score_spans(len(body.x), body.takes)
     for k in range(1, len(tree.order)):
-        below, is_hidden = np.flatnonzero(tree.parents == k), found.left.origin[tree.order[k]] == NO_PART
-        if is_hidden or len(below) != 1 or not (chain := Chain.of(found, k, int(below[0]))).is_loose(chosen):
+        below, is_hidden = np.flatnonzero(tree.parents == k), joints.left.origin[tree.order[k]] == NO_PART
+        if is_hidden or len(below) != 1 or not (chain := Chain.of(joints, k, int(below[0]), body.takes)).is_loose(chosen):
             continue
-        skin = MovingSkin(body.V, body.x, body.area, found.W, found.R, found.t)
-        if (part := tight_part(skin, chain, chosen)) is not None:
-            found = _moved(found, chain, part)
-    if found is before:
-        return found
-    seen = np.ones(body.x.shape[:2])
-    return found._replace(W=skinning(body.V, body.F, body.x, found.label, found.R, found.t, tree.parents, seen, noise))
+        skin = MovingSkin(body.V, body.x, body.area, joints.W, joints.R, joints.t)
+        if (part := tight_part(skin, chain, spans, chosen)) is not None:
+            joints = _moved(joints, chain, part)
+    if joints is before:
+        return joints
+    weight = np.ones(body.x.shape[:2])
+    return joints._replace(W=skinning(body.V, body.F, body.x, joints.label, joints.R, joints.t, tree.parents, weight, noise))
 
 
-def tight_part(skin: MovingSkin, chain: Chain, chosen: LoosePartsSettings) -> TightPart | None:
-    """The motion of a part that explains the skin best with both joints kept together; None where they drift all the same."""
+def tight_part(skin: MovingSkin, chain: Chain, spans: Ints, chosen: LoosePartsSettings) -> TightPart | None:
+    """The motion of a part that explains the skin best with both joints kept together; None where they drift all the same.
+
+    spans : (span, 2) frames over which the drift of joints is judged, see `score_spans`
+    """
     of, size, above_below = chosen.skin, float(np.sqrt(skin.area.sum())), chain.parts[:2]
     reach = of.reach * np.maximum(chain.radius, of.narrow * size)
     close = (np.linalg.norm(skin.V[:, None] - chain.joint, axis=2) < reach).any(axis=1)
@@ -126,7 +138,8 @@ def tight_part(skin: MovingSkin, chain: Chain, chosen: LoosePartsSettings) -> Ti
     residual = whole.bone_residual()
     new = blend_joints(whole, chain.radius, residual, of.prior)
     length = float(np.linalg.norm(new.rest[1] - new.rest[0]))
-    if new.drift.max() > chosen.less_drift * chain.drift.max() or length < chosen.shortest * chain.radius.min():
+    drift = widest_blend_drift(whole, new.rest, spans).max()
+    if drift > chosen.less_drift * chain.drift.max() or length < chosen.shortest * chain.radius.min():
         return None
     return TightPart(whole.R[:, -1], whole.t[:, -1], new.rest, new.drift, residual)
 
@@ -149,16 +162,16 @@ def _about_joints(fit: MovingSkin, radius: Floats, hold: float, chosen: LoosePar
     return fit.weighed(hold), joint
 
 
-def _moved(found: TreeJoints, chain: Chain, part: TightPart) -> TreeJoints:
+def _moved(joints: TreeJoints, chain: Chain, part: TightPart) -> TreeJoints:
     """The tree with the part's new motion and joints; skinning weights are the old ones."""
-    tree, parts, places = found.left.part_tree.tree, found.left.parts, chain.parts[[2, 1]]
+    tree, parts, places = joints.left.part_tree.tree, joints.left.parts, chain.parts[[2, 1]]
     own, number = places[0], tree.order[places[0]]
-    R, t, rest, drift = found.R.copy(), found.t.copy(), found.rest.copy(), found.drift.copy()
+    R, t, rest, drift = joints.R.copy(), joints.t.copy(), joints.rest.copy(), joints.drift.copy()
     R[:, own], t[:, own], rest[places], drift[places] = part.R, part.t, part.joint, part.drift
     by_number = parts.R.copy(), parts.t.copy(), parts.residual.copy()
     for array, new in zip(by_number, (part.R, part.t, part.residual), strict=True):
         array[:, number] = new
     moving = parts._replace(R=by_number[0], t=by_number[1], residual=by_number[2])
     both = both_residuals(moving.residual[:, tree.order], tree.parents)
-    left = found.left._replace(parts=moving)
-    return found._replace(left=left, R=R, t=t, rest=rest, drift=drift, residual=both)
+    left = joints.left._replace(parts=moving)
+    return joints._replace(left=left, R=R, t=t, rest=rest, drift=drift, residual=both)

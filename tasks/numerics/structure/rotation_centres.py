@@ -140,6 +140,14 @@ def drift(R: Floats, t: Floats, pair: Ints, centre: Floats, confidence: Floats |
     return np.sqrt(square)
 
 
+def widest_drift(R: Floats, t: Floats, pair: Ints, centre: Floats, spans: Ints) -> Floats:
+    """(border,) the largest `drift` over any of the spans (span, 2), see `score_spans`, mesh unit.
+
+    R, t, pair, centre : as in `drift`; every part is certain
+    """
+    return np.max([drift(R[begin:end], t[begin:end], pair, centre) for begin, end in spans], axis=0)
+
+
 def _certain(confidence: Floats | None, pair: Ints, frames: int) -> Floats:
     """(frame, border) weight of every frame: the confidence of the less certain of two parts."""
     if confidence is None:

@@ -1,5 +1,6 @@
 """The tree of the rigid parts that pruning leaves, and its joints, as one cut of the body gives them (2014, Sec. 6.3)."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,8 @@ from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurfa
 from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned
 from kinetree.tasks.numerics.structure.rigid_cores import core_motions
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
-from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres
+from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres, widest_drift
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.skinning import skinning
 
 NOISE = 0.002
@@ -92,6 +94,18 @@ class TreeJoints(NamedTuple):
         """Of the two parts at every joint but the root."""
         tree, seen = self.left.part_tree.tree, self.left.parts.confidence
         return JointMotion.of(self.R, self.t, tree.parents, None if seen is None else seen[:, tree.order])
+
+    def widest_drift(self, takes: Sequence[slice] | None) -> Floats:
+        """(part,) `drift` over all frames or within the take where it is largest, mesh unit; every vertex was followed.
+
+        takes : positions of the frames of each take; None takes all as one
+        """
+        spans = score_spans(len(self.R), takes)
+        if len(spans) == 1:
+            return self.drift
+        part = np.arange(1, len(self.rest))
+        pair = np.stack([part, self.left.part_tree.tree.parents[part]], axis=1)
+        return np.append(0.0, widest_drift(self.R, self.t, pair, self.rest[part], spans))
 
 
 def tree_joints(

@@ -77,9 +77,9 @@ def test_a_bone_grows_with_the_body() -> None:
     [
         ({"area": 0.01}, {}),
         ({"degrees": np.array([5.0, 40.0])}, {}),
-        ({"drift": np.array([0.0, 0.06])}, {"more_drift": 99.0}),
-        ({"drift": np.array([0.0, 0.2])}, {"steady": 9.0}),
-        ({"drift": np.array([0.0, 1.5])}, {"steady": 9.0, "more_drift": 99.0}),
+        ({"widest_drift": np.array([0.0, 0.06])}, {"more_drift": 99.0}),
+        ({"widest_drift": np.array([0.0, 0.2])}, {"steady": 9.0}),
+        ({"widest_drift": np.array([0.0, 1.5])}, {"steady": 9.0, "more_drift": 99.0}),
         ({"joint": np.array([[0, 0, 0], [0, 0, 0.5]])}, {}),
     ],
     ids=["area", "degrees", "steady", "more_drift", "ratio", "apart"],
@@ -115,7 +115,7 @@ def test_a_joint_that_does_not_drift_needs_no_second() -> None:
     bone = proposed(body)
     size = float(np.sqrt(body.area.sum()))
     assert bone is not None
-    bone = bone._replace(drift=np.full(2, 1e-4 * size))
+    bone = bone._replace(widest_drift=np.full(2, 1e-4 * size))
     for drift, needed in ((0.002, True), (0.001, True), (0.00015, False)):
         between = Border(1, 0, np.zeros(3), 1.0, drift * size)
         assert is_bone(bone, between, size, HiddenBonesSettings()) is needed
@@ -126,7 +126,7 @@ def test_where_the_one_joint_drifts_little_for_its_width_two_may_not_drift_more(
     bone = proposed(body)
     size = float(np.sqrt(body.area.sum()))
     assert bone is not None
-    bone, asked = bone._replace(drift=np.full(2, 0.003 * size)), HiddenBonesSettings(apart=0.0)
+    bone, asked = bone._replace(widest_drift=np.full(2, 0.003 * size)), HiddenBonesSettings(apart=0.0)
     for radius, is_one in ((0.02 * size, True), (0.1 * size, False)):
         assert is_bone(bone, Border(1, 0, np.zeros(3), radius, 0.002 * size), size, asked) is is_one
     assert is_bone(bone, Border(1, 0, np.zeros(3), 0.1 * size, 0.0035 * size), size, asked)

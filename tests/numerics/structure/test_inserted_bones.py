@@ -1,7 +1,7 @@
 """Hidden bones become parts of the tree."""
 
 import numpy as np
-from articulated import Known, chain, neck, neck_ends, swings
+from articulated import Known, and_at_rest, chain, neck, neck_ends, swings
 from shipped import TREE
 from whole_tree import whole_tree
 
@@ -75,6 +75,15 @@ def test_a_tree_without_hidden_bones_is_given_back() -> None:
     body = chain((0.0,), swings(24, 2, seed=3), blend=1.0)
     before, after = with_bones(body)
     assert after is before
+
+
+def test_takes_in_which_the_body_rests_do_not_hide_a_bone() -> None:
+    body, takes = and_at_rest(chain((-0.9, 0.9), swings(24, 3, 12.0, seed=3), blend=2.4, along=60), 24)
+    surface, joints = MovingSurface(body.V, body.F, body.x, body.area), neck_ends(body)
+    asked = HiddenBonesSettings(drift=0.03, less_drift=0.0)
+    assert inserted_bones(surface, joints, 0.002, asked) is joints, "over all frames its joint drifts little"
+    after = inserted_bones(surface._replace(takes=takes), joints, 0.002, asked)
+    np.testing.assert_allclose(after.rest[1:], body.joints[1:], atol=0.01)
 
 
 def test_the_finished_body_has_both_joints_where_they_are_in_every_frame() -> None:
