@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from kinetree.schemas.array import Array, Artifact, Params
-from kinetree.schemas.dims import BYTE
+from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params
+from kinetree.schemas.dims import BYTE, ROW, SAMPLE, XYZ
 
 
 class PlayedBodyParams(Params):
@@ -25,4 +25,12 @@ class PlayedBody(Artifact):
     omitted: tuple[str, ...]
     """What the page does not show, in sentences."""
     block: Annotated[NDArray[np.uint8], Array("uint8", BYTE)]
-    """The arrays one after the other, deflated."""
+    """The arrays one after the other, deflated; the stream is not ended, so that more can follow."""
+    size: int
+    """Of the arrays, bytes."""
+    checksum: int
+    """Adler-32 of the arrays."""
+    reference_vertex: Annotated[Ints, Array("int32", SAMPLE)]
+    """The vertices of the reference mesh that play."""
+    axes: Annotated[Floats, Array("float64", ROW, XYZ)]
+    """The axes of the view, as columns."""

@@ -7,7 +7,7 @@ from kinetree.schemas.array import Array, Floats, Index, Params
 from kinetree.schemas.dims import END_VERTEX, FRAME, XYZ
 from kinetree.schemas.structure.first_tree import JointTree
 
-LAID_TOGETHER = 3
+LAID_TOGETHER = 2
 """Frames on which one task lays parts, at most."""
 
 

@@ -18,6 +18,7 @@ from kinetree.schemas.results.played_body import PlayedBody
 from kinetree.schemas.results.report import Report, ReportParams
 from kinetree.schemas.results.skeleton_figures import SkeletonFigures
 from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.results.surface_error import SurfaceError
 from kinetree.schemas.results.topology_figures import TopologyFigures
 from kinetree.schemas.results.tree_figures import TreeFigures
 from kinetree.schemas.results.verdict import Verdict
@@ -26,9 +27,11 @@ from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.intervals import Intervals
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
+from kinetree.tasks.numerics.results.verdict import VerdictSettings
 from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, table
+from kinetree.tasks.results.page.trust import Trust, with_trust
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
 from kinetree.tasks.results.played_body import played_scene
 from kinetree.tasks.views.results import evaluation_remarks
@@ -60,6 +63,7 @@ def report(
     verdict: Verdict,
     error_bars: ErrorBars,
     played_body: PlayedBody,
+    surface_error: Mapping[int, SurfaceError],
     mesh: Mapping[int, Mesh],
     params: ReportParams,
     assumed_joints: AssumedJoints = NOTHING_ASSUMED,
@@ -78,7 +82,7 @@ def report(
         headline=headline(verdict),
         faults=faults(verdict),
         notes=notes(verdict, skeleton, sequence, intervals, leaves, frame_confidence, mesh),
-        scene=played_scene(played_body),
+        scene=with_trust(played_scene(played_body), skeleton, _trust(skeleton, surface_error, verdict, error_bars)),
         sections=[
             Section("joints", "Joints", joints),
             Section("structure", "Parts, tree and angles", structure),
@@ -89,6 +93,14 @@ def report(
         ],
     )
     return Report(text=np.frombuffer(document(page).encode(), dtype=np.uint8))
+
+
+def _trust(skeleton: Skeleton, surface_error: Mapping[int, SurfaceError], verdict: Verdict, bars: ErrorBars) -> Trust:
+    """What the player shows of how far the body can be relied on."""
+    error = {frame: np.asarray(e.distance) for frame, e in surface_error.items()}
+    size, share = float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0))), VerdictSettings().wrong
+    bound = np.asarray(bars.in_frame * (bars.bound / bars.expected)) if bars.cuts else None
+    return Trust(verdict.labels, error, share * size, share, verdict.state, bound)
 
 
 def _joints(

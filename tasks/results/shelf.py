@@ -43,7 +43,6 @@ from kinetree.tasks.results.verdict import verdict
 RESULTS = (
     truth,
     known_truth,
-    frame_truth,
     evaluation,
     complete_skeleton,
     assumed_joints,
@@ -61,6 +60,7 @@ RESULTS = (
     c3d,
     surface_error,
     verdict,
+    frame_truth,
     excerpt,
     coarse_mesh,
     topology_figures,

@@ -38,7 +38,8 @@ from kinetree.tasks.results.motion_figures import motion_figures
 from kinetree.tasks.results.named_figures import named_figures
 from kinetree.tasks.results.page.coarse import coarse_meshes
 from kinetree.tasks.results.page.document import Page, Section, document, table
-from kinetree.tasks.results.page.scene import Limits, Scene, Trust, scene
+from kinetree.tasks.results.page.scene import Limits, Scene, scene
+from kinetree.tasks.results.page.trust import Trust, with_trust
 from kinetree.tasks.results.played_body import played_body
 from kinetree.tasks.results.report import report
 from kinetree.tasks.results.skeleton_figures import skeleton_figures
@@ -66,14 +67,13 @@ def trusted(
     labels = ("trunk", "left shoulder", *body.names[2:])
     known = np.where(np.array(body.kinds) == "joint", np.where(np.arange(12) == 0, 1.5, 1.0)[:, None], np.nan)
     trust = Trust(labels, error, 1.0, 0.03, np.zeros((12, joints), np.int64), known if bounds else None)
-    return playing(body, trust=trust, assumed=assumed, colours=colours)
+    return with_trust(playing(body, assumed=assumed, colours=colours), body, trust)
 
 
 def playing(
     skeleton: Skeleton | None = None,
     limits: Limits | None = None,
     anew: bool = False,
-    trust: Trust | None = None,
     assumed: tuple[tuple[str, int, tuple[float, float, float]], ...] = (),
     colours: npt.NDArray[np.uint8] | None = None,
 ) -> Scene:
@@ -83,7 +83,7 @@ def playing(
     shown = {body.frames[t]: arguments["mesh"][body.frames[t]] for t in evenly_spread(len(body.frames), chosen.frames)}
     inputs = coarse_meshes(shown, arguments["projection"], chosen.input_vertices)
     leaves, intervals = arguments["leaves"], arguments["intervals"]
-    return scene(body, arguments["alignment"], inputs, leaves, intervals, chosen, trust=trust, assumed=assumed, colours=colours)
+    return scene(body, arguments["alignment"], inputs, leaves, intervals, chosen, assumed=assumed, colours=colours)
 
 
 def artifacts(skeleton: Skeleton | None = None, anew: bool = False) -> dict[str, Any]:

@@ -20,7 +20,8 @@ def test_page_reads_what_was_packed() -> None:
     assert scene.omitted == packed.omitted
 
 
-def test_it_waits_for_no_picture() -> None:
+def test_it_waits_for_no_picture_and_no_error() -> None:
     graph = METHODS["mesoscopic"]
     needed = graph.until(["played_body"]).by_name
-    assert not {"evaluation", "structure_figures", "motion_figures", "skeleton_figures"} & set(needed)
+    assert not {"structure_figures", "motion_figures", "skeleton_figures"} & set(needed)
+    assert not {"evaluation", "surface_error", "verdict", "error_bars"} & set(needed)

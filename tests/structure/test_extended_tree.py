@@ -35,7 +35,7 @@ def test_where_all_is_given_or_it_is_not_asked_the_tree_is_the_first(trust: floa
 def test_frames_that_parts_are_laid_on_are_a_few_at_a_time_and_none_where_all_is_given_or_it_is_not_asked() -> None:
     tree = tree_of_tube(0.99)
     runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
-    assert [len(run) for run in runs] == [3] * 8
+    assert [len(run) for run in runs] == [2] * 12
     assert [frame for run in runs for frame in run] == list(tree.frames)
     assert list(tree_of_tube(1.0).members("laid", ())) == []
     assert list(tree_of_tube(0.99, surface_joints=False).members("laid", ())) == []

@@ -1,13 +1,11 @@
 """The moving body as the page's player reads it: a description in JSON and one block of compressed arrays."""
 
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from kinetree.schemas.array import Floats
 from kinetree.schemas.registration.alignment import Alignment
@@ -20,10 +18,8 @@ from kinetree.tasks.numerics.geometry.decimation import decimated
 from kinetree.tasks.numerics.results.scene import Lattice
 from kinetree.tasks.results.formats.colours import KINDS, NOT_RIGID, PARTS, SURFACE_LEAF, part_palette
 from kinetree.tasks.results.formats.rig import carried
+from kinetree.tasks.results.page.packing import Packing
 from kinetree.tasks.results.plots.drawing import directions
-
-_LEVEL = 4
-"""Of deflation: of a body in 108 frames 5.53 MB in 0.17 s, where zlib's own level 6 makes 5.54 MB in 0.49 s."""
 
 
 @dataclass(frozen=True)
@@ -40,32 +36,23 @@ class Limits:
     input_vertices: int = 2500
 
 
-class Trust(NamedTuple):
-    """What a player shows of a result besides its motion.
+class Scene(NamedTuple):
+    """What the player reads: a description for JSON, the arrays in one compressed block, and sentences about omissions.
 
-    labels : (joint,) what people call the joints
-    error  : by source frame number, (vertex,) distance of the skinned mesh to the input, mesh unit
-    most   : the distance that has the last colour, mesh unit
-    share  : the same, share of the diagonal of the body's box
-    state  : (frame, joint) 0 trusted, 1 uncertain, 2 wrong
-    bound  : (frame, joint) distance from the true joint that nine joints of ten keep, mesh unit, NaN where it is not known;
-             None where no error is known
+    reference_vertex : (vertex,) the vertices of the reference mesh that play
+    axes             : (xyz, xyz) the view's axes as columns
     """
 
-    labels: tuple[str, ...]
-    error: Mapping[int, NDArray[np.floating]]
-    most: float
-    share: float
-    state: NDArray[np.integer]
-    bound: Floats | None = None
-
-
-class Scene(NamedTuple):
-    """What the player reads: a description for JSON, the arrays in one compressed block, and sentences about omissions."""
-
     description: dict[str, Any]
-    block: bytes
+    packing: Packing
     omitted: tuple[str, ...]
+    reference_vertex: Ints
+    axes: Floats
+
+    @property
+    def block(self) -> bytes:
+        """The arrays as the page contains them."""
+        return self.packing.ended()
 
 
 def scene(
@@ -77,7 +64,6 @@ def scene(
     limits: Limits,
     up: int = 1,
     axes: Floats | None = None,
-    trust: Trust | None = None,
     assumed: Sequence[tuple[str, int, tuple[float, float, float]]] = (),
     colours: NDArray[np.uint8] | None = None,
 ) -> Scene:
@@ -89,7 +75,6 @@ def scene(
     inputs     : by source frame number, the input meshes of the frames that play
     up         : axis that points up, see `view`
     axes       : directions of the view, as `view` gives them; None for those of these meshes
-    trust      : makes the skinned mesh, its error and the confidence of joints part of the scene
     assumed    : name of each joint that was not found, the joint at the outer end of its bone, and its place in the reference
     colours    : (vertex, rgb) of the input at every vertex of the reference mesh
     """
@@ -115,15 +100,13 @@ def scene(
     if assumed:
         bones, places = [skeleton.parents[child] for _, child, _ in assumed], np.array([place for _, _, place in assumed])
         arrays["assumed"] = (carried(skeleton, bones, places)[selected_frames] @ axes).astype(np.float32)
-    if trust is not None:
-        arrays |= _rig(skeleton, selected, selected_frames, axes) | _trusted(skeleton, selected, selected_frames, trust)
     if colours is not None:
         arrays["colours"] = colours[selected]
         arrays["input_colours"] = np.concatenate([_carried(colours, skeleton, m) for m in played])
-    layout, block = packed(arrays)
+    packing = Packing({}).followed_by(arrays)
     description = {
-        **_tree(skeleton, skeleton.names if trust is None else trust.labels),
-        "most": 0.0 if trust is None else trust.share,
+        **_tree(skeleton),
+        "most": 0.0,
         "frames": frames,
         "rate": (skeleton.fps or 25.0) * len(frames) / len(skeleton.frames),
         "reach": float(np.linalg.norm(high - low)),
@@ -133,9 +116,9 @@ def scene(
         "scale": lattice.scale,
         "intervals": _starts(intervals, frames),
         "assumed": [{"label": label, "child": child} for label, child, _ in assumed],
-        "arrays": layout,
+        "arrays": packing.layout,
     }
-    return Scene(description, block, _omitted(skeleton, played, len(selected), limits))
+    return Scene(description, packing, _omitted(skeleton, played, len(selected), limits), selected, axes)
 
 
 def _corners(*points: Floats) -> tuple[Floats, Floats]:
@@ -153,32 +136,7 @@ def _input(skeleton: Skeleton, played: Sequence[CoarseMesh]) -> dict[str, NDArra
     }
 
 
-def _rig(skeleton: Skeleton, selected: Ints, frames: Ints, axes: Floats) -> dict[str, NDArray[Any]]:
-    """The skinned mesh as the player poses it: selected vertices with their weights, and the rotations of all joints."""
-    turns = axes.T @ np.asarray(skeleton.rotation)[frames] @ axes
-    shape = turns.shape[:2]
-    return {
-        "rest_vertices": (np.asarray(skeleton.vertices)[selected] @ axes).astype(np.float32),
-        "rest": (np.asarray(skeleton.rest) @ axes).astype(np.float32),
-        "influence": np.asarray(skeleton.influence)[selected].astype(np.uint16),
-        "weight": np.asarray(skeleton.weight)[selected].astype(np.float32),
-        "turns": Rotation.from_matrix(turns.reshape(-1, 3, 3)).as_quat().reshape(*shape, 4).astype(np.float32),
-    }
-
-
-def _trusted(skeleton: Skeleton, selected: Ints, frames: Ints, trust: Trust) -> dict[str, NDArray[Any]]:
-    """Error, confidence and state as bytes; bounds where errors are known, 0 for joints without one."""
-    error = np.stack([trust.error[skeleton.frames[t]][selected] for t in frames]) / max(trust.most, 1e-300)
-    bound = {} if trust.bound is None else {"bound": np.nan_to_num(trust.bound[frames], nan=0.0).astype(np.float32)}
-    return {
-        "error": np.rint(255 * np.clip(error, 0.0, 1.0)).astype(np.uint8),
-        "confidence": np.rint(255 * np.clip(np.asarray(skeleton.confidence)[frames], 0.0, 1.0)).astype(np.uint8),
-        "state": np.asarray(trust.state)[frames].astype(np.uint8),
-        **bound,
-    }
-
-
-def _tree(skeleton: Skeleton, labels: tuple[str, ...]) -> dict[str, Any]:
+def _tree(skeleton: Skeleton) -> dict[str, Any]:
     """What stays the same in all frames: joints, the colours of parts and of kinds of joints, unit and frame rate."""
     return {
         "fps": skeleton.fps,
@@ -188,8 +146,8 @@ def _tree(skeleton: Skeleton, labels: tuple[str, ...]) -> dict[str, Any]:
         "surface_leaf": SURFACE_LEAF,
         "not_rigid": NOT_RIGID,
         "joints": [
-            {"name": name, "label": label, "parent": parent, "kind": kind}
-            for name, label, parent, kind in zip(skeleton.names, labels, skeleton.parents, skeleton.kinds, strict=True)
+            {"name": name, "label": name, "parent": parent, "kind": kind}
+            for name, parent, kind in zip(skeleton.names, skeleton.parents, skeleton.kinds, strict=True)
         ],
     }
 
@@ -208,23 +166,6 @@ def _carried(colours: NDArray[np.uint8], skeleton: Skeleton, mesh: CoarseMesh) -
     out = np.full((len(known), 3), 128, np.uint8)
     out[known] = colours[skeleton.faces[mesh.reference_face[known], mesh.reference_corner[known]]]
     return out
-
-
-def packed(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, dict[str, Any]], bytes]:
-    """The arrays in one block, which is deflated.
-
-    returns : dtype, shape and offset of each array by name, offsets being multiples of 4 bytes; and the block
-    """
-    layout: dict[str, dict[str, Any]] = {}
-    chunks: list[bytes] = []
-    offset = 0
-    for name, array in arrays.items():
-        raw = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes()
-        layout[name] = {"dtype": str(array.dtype), "shape": list(array.shape), "offset": offset}
-        raw += bytes(-len(raw) % 4)
-        chunks.append(raw)
-        offset += len(raw)
-    return layout, zlib.compress(b"".join(chunks), _LEVEL)
 
 
 def _offsets(counts: list[int]) -> NDArray[np.uint32]:
