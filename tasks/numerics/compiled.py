@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numba
 from numba.core.caching import UserProvidedCacheLocator
 
-from kinetree.tasks.numerics.kernel_cache import KernelCache
+from kinetree.tasks.numerics.kernel_cache import KernelCache, remove_abandoned
 from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -38,11 +38,11 @@ class SharedCacheLocator(UserProvidedCacheLocator):  # type: ignore[misc]
 
 def compiled(function: Function) -> Function:
     """Numba's `njit` without the lock and without checks for division by nought, kept where only this code can find it."""
-    folder = _kept_at(function.__module__)
+    folder = _code_folder(function.__module__)
     with _configured(CACHE_DIR=folder, CACHE_LOCATOR_CLASSES=LOCATOR):
-        dispatcher: Function = numba.njit(cache=bool(folder), nogil=True, error_model="numpy")(function)
+        dispatcher: Function = numba.njit(nogil=True, error_model="numpy")(function)
         if folder:
-            dispatcher._cache = KernelCache(function)  # type: ignore[attr-defined]
+            dispatcher._cache = KernelCache(function)  # type: ignore[attr-defined]  # njit(cache=True) makes numba's own
     return dispatcher
 
 
@@ -60,13 +60,14 @@ def _configured(**values: str) -> Iterator[None]:
 
 
 @cache
-def _kept_at(module: str) -> str:
+def _code_folder(module: str) -> str:
     """A folder of the user's own cache; "" where none can be written, and code is compiled anew in every process."""
     folder = kernel_folder() / _digest(module)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return ""
+    remove_abandoned(folder)
     return str(folder) if os.access(folder, os.W_OK) else ""
 
 

@@ -9,6 +9,7 @@ import hashlib
 import pickle
 import secrets
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from numba.core.caching import FunctionCache
 from numba.core.serialize import dumps
 
 CHECKSUM_BYTES = 16
+WRITING_SECONDS = 3600.0
+"""After which a file beside another is what a writer left that was killed; writing one takes milliseconds."""
 
 
 class KernelCache(FunctionCache):  # type: ignore[misc]
@@ -43,7 +46,7 @@ class KernelFiles:
         """Keeps data under a key, in place of what was there; raises OSError."""
         content = dumps((key, data))
         path = self._path(key)
-        beside = path.with_name(f"{path.name}.{secrets.token_hex(8)}")
+        beside = path.with_name(f"{path.name}.{secrets.token_hex(8)}")  # as `remove_abandoned` looks for them
         try:
             beside.write_bytes(_checksum(content) + content)
             beside.replace(path)
@@ -71,6 +74,15 @@ class KernelFiles:
         """Named by the text of the key, of which that of types need not be unique: the file has the key itself."""
         text = "\0".join((numba.__version__, sys.version, repr(key)))
         return self._folder / f"{self._name}.{hashlib.blake2b(text.encode(), digest_size=10).hexdigest()}.nbc"
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Removes what writers that were killed left below the folder of one state of the code."""
+    before = time.time() - WRITING_SECONDS
+    for path in folder.glob("*/*.nbc.*"):
+        with contextlib.suppress(OSError):  # somebody else removes it too, or may and we may not
+            if path.stat().st_mtime < before:
+                path.unlink()
 
 
 def _checksum(content: bytes) -> bytes:

@@ -63,8 +63,8 @@ def test_folder_that_cannot_be_written_means_no_keeping_and_no_failure(tmp_path:
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
-    home._kept_at.cache_clear()
+    home._code_folder.cache_clear()
     try:
         assert compiled(lambda x: x - 1)(3) == 2
     finally:
-        home._kept_at.cache_clear()
+        home._code_folder.cache_clear()

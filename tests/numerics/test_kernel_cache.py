@@ -1,5 +1,6 @@
 """Laws of compiled code on disk: whoever else writes, a key has its own data or none."""
 
+import os
 import subprocess
 import sys
 import threading
@@ -25,7 +26,7 @@ def doubled(x: Any) -> Any:
 @pytest.fixture
 def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(home, "_kept_at", home._kept_at.__wrapped__)
+    monkeypatch.setattr(home, "_code_folder", home._code_folder.__wrapped__)
     return tmp_path
 
 
@@ -56,6 +57,22 @@ def test_a_file_that_holds_another_key_or_is_short_is_none(tmp_path: Path) -> No
         assert files.load("key") is None
     files.flush()
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_writer_left_goes_and_what_is_being_written_stays(own_folder: Path) -> None:
+    compiled(doubled)(3)  # type: ignore[operator]
+    (kernel,) = (path for path in own_folder.rglob("*") if path.is_file())
+    kill = "os.kill(os.getpid(), signal.SIGKILL)"
+    script = (
+        "import os, signal\nfrom pathlib import Path\nfrom kinetree.tasks.numerics.kernel_cache import KernelFiles\n"
+        f"Path.replace = lambda *_: {kill}\nKernelFiles(Path({str(kernel.parent)!r}), 'f').save('key', 'data')"
+    )
+    for _ in range(2):
+        subprocess.run([sys.executable, "-P", "-c", script], check=False)
+    left, writing = set(kernel.parent.iterdir()) - {kernel}
+    os.utime(left, (1, 1))
+    compiled(doubled)
+    assert set(kernel.parent.iterdir()) == {kernel, writing}
 
 
 def test_every_compiled_function_has_a_file_for_each_of_its_types(own_folder: Path) -> None:
