@@ -283,8 +283,8 @@ class Pipeline:
             return
         from kinetree.pipeline.running.jobs import Job
         from kinetree.pipeline.running.launch import launcher
+        from kinetree.pipeline.running.losses import take_back_lost
         from kinetree.pipeline.running.run import run
-        from kinetree.pipeline.running.telling import take_back_lost
 
         is_whole, beside = False, self.beside if client is None and self.config.compute.is_here else None
         while not is_whole:

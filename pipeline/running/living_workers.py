@@ -50,9 +50,12 @@ class LivingWorkers:
     def hear_of_parcel(self, event: tuple[float, Mapping[str, Any]]) -> None:
         """A worker has begun a parcel, or is done with it."""
         _, message = event
+        outcome = self._outcomes.get(message["key"])
+        if outcome is None:  # the parcel is over
+            return
         if "results" not in message:
             self.began[message["key"]] = (time.monotonic(), message["worker"])
-        elif (outcome := self._outcomes.get(message["key"])) is not None:
+        else:
             outcome.set_result(pickle.loads(message["results"]))
 
     def expect(self, key: str) -> "Future[Any]":

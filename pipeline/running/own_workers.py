@@ -98,6 +98,8 @@ async def _look_after(cluster: Any, workers: int, starts: Starts) -> None:
             for name in gone:
                 cluster.workers.pop(name, None)
             cluster.scale(workers)
+        elif not is_empty and set(cluster.worker_spec) - set(cluster.workers):  # dask lets go of a nanny without a worker
+            cluster.scale(workers)
         elif empty > REPLACE_SECONDS * 2**times:  # longer each time: a busy machine may start them slowly
             empty, times = 0.0, times + 1
             cluster.scale(0)

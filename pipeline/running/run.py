@@ -21,11 +21,12 @@ from kinetree.pipeline.running.fates import refuse_rings, refuse_to_wait_for, tw
 from kinetree.pipeline.running.interrupts import interruptible
 from kinetree.pipeline.running.jobs import OPEN_AT_LEAST, Job, Jobs, Single, fairest
 from kinetree.pipeline.running.launch import Future, Launcher
+from kinetree.pipeline.running.losses import take_back_lost
 from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.running.parcels import Demand, steps_of
 from kinetree.pipeline.running.sight import Sight
 from kinetree.pipeline.running.suspects import Suspects, finished
-from kinetree.pipeline.running.telling import take_back_lost, tell
+from kinetree.pipeline.running.telling import tell
 from kinetree.pipeline.storage.store import Store
 
 LOOK_AGAIN = 0.1

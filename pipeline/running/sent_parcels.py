@@ -56,9 +56,15 @@ def computed(topic: str, tells: bool, *work: Any, _data_producer: bool = True) -
         asyncio.run_coroutine_threadsafe(worker.scheduler.log_event(topic=topic, msg=event), worker.loop.asyncio_loop).result()
     results = execute(*work)
     encoded = pickle.dumps(results)  # text of any kind, which msgpack refuses
-    if len(encoded) <= EVENT_BYTES:
+    if len(encoded) <= EVENT_BYTES and _is_wanted(worker, key):
         worker.log_event(topic, {"key": key, "results": encoded})
     return results
+
+
+def _is_wanted(worker: Any, key: str) -> bool:
+    """Whether the run still waits for a parcel; else the scheduler would keep the event for as long as it lives."""
+    parcel = worker.state.tasks.get(key)
+    return parcel is not None and parcel.state != "cancelled"
 
 
 @dataclass(frozen=True)

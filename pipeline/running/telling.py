@@ -1,11 +1,10 @@
 """Tells a schedule, and who listens to it, what became of its nodes."""
 
 from kinetree.pipeline.planning.entry import DONE, Entry
-from kinetree.pipeline.running import sight
 from kinetree.pipeline.running.execute import Result
 from kinetree.pipeline.running.fates import beyond_repair, refusal
 from kinetree.pipeline.running.jobs import Job
-from kinetree.pipeline.storage.store import Store
+from kinetree.pipeline.running.losses import tell_losses
 
 
 def tell(job: Job, entry: Entry, result: Result) -> None:
@@ -23,17 +22,6 @@ def tell(job: Job, entry: Entry, result: Result) -> None:
         raise refusal(result)
 
 
-def take_back_lost(job: Job, store: Store) -> bool:
-    """What somebody removed from the store after it was seen there is to be computed again; True if there was any."""
-    done = [e for e in job.schedule.entries.values() if e.state in DONE and not e.task.is_origin]
-    lost = sight.missing(store, {(e.key or "", e.artifact or "") for e in done})
-    for entry in done:
-        if (entry.key, entry.artifact) in lost:
-            job.schedule.lose(entry, "it is missing")
-    _tell_losses(job)
-    return bool(lost)
-
-
 def _complete(job: Job, entry: Entry, result: Result) -> None:
     schedule = job.schedule
     if entry.state in DONE:
@@ -47,7 +35,7 @@ def _complete(job: Job, entry: Entry, result: Result) -> None:
     job.watch.finish(entry, result)
     job.watch.fresh(fresh)
     job.watch.skip(schedule.skipped_late())
-    _tell_losses(job)
+    tell_losses(job)
 
 
 def _mend(job: Job, entry: Entry, result: Result) -> None:
@@ -58,12 +46,3 @@ def _mend(job: Job, entry: Entry, result: Result) -> None:
         return
     for maker, was in redone:
         job.watch.damaged(maker, was, result.message)
-
-
-def _tell_losses(job: Job) -> None:
-    """What could not be read while more of the graph was laid out, or was not there in the end."""
-    for loss in job.schedule.losses():
-        job.watch.damaged(loss.entry, loss.was, loss.what)
-        if loss.skipped is not None:
-            failed = beyond_repair(loss.entry.artifact or "", loss.what)
-            job.watch.fail(loss.entry, failed, [job.schedule.entries[n] for n in loss.skipped])

@@ -26,6 +26,16 @@ def test_scheduler_that_stopped_answering_ends_the_run_in_words():
         workers.check()
 
 
+def test_nothing_stays_of_a_parcel_whose_beginning_is_heard_of_when_it_is_over():
+    workers, begins = LivingWorkers(patience=0.0), (0.0, {"key": "parcel", "worker": "a"})
+    workers.expect("parcel")
+    workers.hear_of_parcel(begins)
+    assert workers.is_begun("parcel", "a")
+    workers.forget("parcel")
+    workers.hear_of_parcel(begins)
+    assert not workers.began
+
+
 def test_workers_with_less_memory_than_was_asked_for_end_the_run_in_words():
     workers = LivingWorkers(patience=0.0, memory=10**9)
     assert workers.ask("key", 2 * 10**9) == 10**9, "no more than one of them has"

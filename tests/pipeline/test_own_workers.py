@@ -118,6 +118,16 @@ def test_one_that_is_gone_is_replaced_while_others_live(toys):
         toys.until(lambda: gone not in cluster.workers.values() and len(cluster.scheduler.workers) == 2, "both are there again")
 
 
+def test_one_that_dask_has_let_go_of_is_replaced_while_others_live(toys):
+    """As it does some time after the worker of a nanny that is closed has gone."""
+    with launcher(TWO):
+        cluster = Client.current().cluster
+        toys.until(lambda: len(cluster.workers) == len(cluster.scheduler.workers) == 2, "both are there")
+        gone = cluster.workers.pop(next(iter(cluster.workers)))
+        cluster.sync(gone.close)
+        toys.until(lambda: len(cluster.workers) == len(cluster.scheduler.workers) == 2, "both are there again")
+
+
 def test_runs_at_the_same_time_have_each_their_own_configuration_and_leave_none():
     before = {key: dask.config.get(key) for key in (METHOD, ENVIRONMENT, "distributed.worker.profile.enabled")}
     trim = os.environ.get(TRIM)

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import gc
+import signal
 import time
 from pathlib import Path
 
@@ -73,6 +74,22 @@ def test_nothing_of_a_run_stays_with_a_scheduler_of_somebody_else(toys):
         toys.run(client)
         left = {topic for topic in cluster.scheduler.get_events() if topic not in before}
         assert not [topic for topic in left if not topic.startswith(("tcp", "inproc", "scheduler", client.id))]
+
+
+def test_what_an_interrupted_run_leaves_to_be_computed_leaves_nothing_with_the_scheduler(toys, empty):
+    empty.scale(1)
+    waits = toys.flag("wait-total-210")
+    process = toys.start("run", str(toys.yaml()), "--scheduler", empty.scheduler_address, "--quiet")
+    toys.until((toys.flags / "waiting-total-210").exists, "total begins", process)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    waits.unlink()
+    with Client(empty) as client:
+        assert client.submit(abs, -1).result(timeout=60) == 1, "the worker, which has one thread, is done with it"
+        topics = client.run_on_scheduler(lambda dask_scheduler: [*dask_scheduler.get_events()])
+    assert toys.artifacts()["total"], "what it had begun is stored"
+    assert not [topic for topic in topics if topic.startswith("parcels-")]
 
 
 def test_nothing_of_a_run_stays_with_a_client_of_somebody_else(toys):
