@@ -28,6 +28,7 @@ def whole_tree(
     further: Sequence[Cut] = (),
     surface: Callable[[int], Target] | None = None,
     has_second_ends: bool = False,
+    has_necks: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """The body, and how it came about; joints at ends are looked for where the frames' surfaces are given."""
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
@@ -35,7 +36,7 @@ def whole_tree(
         ends = joints_at_ends(body, first, confidence, surface)
         first = extended_tree(body, first, ends, confidence, NOISE * body.size) if ends else first
     joints = [cut_joints(body, other, leaves, confidence, settings)[first.has_bones] for other in further]
-    return kinematic_tree(body, first, leaves, confidence, further=joints, has_second_ends=has_second_ends)
+    return kinematic_tree(body, first, leaves, confidence, further=joints, has_second_ends=has_second_ends, has_necks=has_necks)
 
 
 def joints_at_ends(

@@ -50,7 +50,14 @@ class FirstTreeParams(JointParams, CutJointsParams):
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
 
 
-class KinematicTreeParams(ExtendedTreeParams, FirstTreeParams):
+class NeckParams(Params):
+    """Which joints shape alone gives."""
+
+    necks: bool = True
+    """Whether a tube between the last part of a limb and what carries it has a joint at both ends though one alone turns."""
+
+
+class KinematicTreeParams(NeckParams, ExtendedTreeParams, FirstTreeParams):
     """What counts as a joint, and where joints are looked for and placed."""
 
 
@@ -94,6 +101,8 @@ class KinematicTree(ArticulatedBody):
     is fixed, where the surfaces do not say, and for root and leaves."""
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
+    neck_joints: tuple[int, ...] = ()
+    """Joints that the shape alone shows, at the other end of a tube from one that turns; their turning is a guess."""
 
     @property
     def length_variation(self) -> Floats:

@@ -10,7 +10,7 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
+from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, NeckParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
@@ -28,6 +28,7 @@ def kinematic_tree(
     laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
+    params: NeckParams,
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
     frames, body, first = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
@@ -38,6 +39,7 @@ def kinematic_tree(
         body.confidence,
         further=[np.array(cut.joints_with_bones if first.has_bones else cut.joints) for cut in further_cut.values()],
         laid=joined(laid_parts),
+        has_necks=params.necks,
     )
     return KinematicTree(
         frames=frames,

@@ -54,7 +54,7 @@ def tree_of(
     )
     runs = [first.members("laid/frame", (k,)) for k in first.members("laid", ())]
     laid = tuple(laid_parts(reference, first, {f: mesh[f] for f in run}) for run in runs)
-    return kinematic_tree(reference, first, {}, laid, aligned, leaves)
+    return kinematic_tree(reference, first, {}, laid, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
@@ -15,6 +15,8 @@ from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, jo
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
+from kinetree.tasks.numerics.structure.necked_tree import PlacedJoints, necked_tree
+from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
@@ -75,6 +77,7 @@ class Derivation(NamedTuple):
     surface_offset : (joint,) root mean square distance from where halves of the frames' surfaces alone have it, mesh unit; NaN
                      where they were not asked or do not say, and where it is none
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
+    neck_joints    : joints that the shape alone shows, see `necks`
     """
 
     pair: Ints
@@ -90,6 +93,7 @@ class Derivation(NamedTuple):
     joint_residual: Floats
     surface_offset: Floats
     end_joints: tuple[int, ...] = ()
+    neck_joints: tuple[int, ...] = ()
 
 
 def kinematic_tree(
@@ -101,6 +105,7 @@ def kinematic_tree(
     further: Sequence[Floats] = (),
     laid: LaidParts | None = None,
     has_second_ends: bool = False,
+    has_necks: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """Places the joints of a tree and poses it in every frame; and how that came about.
 
@@ -111,17 +116,20 @@ def kinematic_tree(
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
+    has_necks       : whether bones are looked for that the shape alone shows, see `necks`
     """
-    V, x, area, tree, label = body.V, body.x, body.area, first.parents, first.label
+    V, area = body.V, body.area
     if first.ends:
-        x = x.copy()
+        x = body.x.copy()
         x[:, first.at_ends] = first.end_x
-    consensus = _consensus(first, further, body.size)
+        body = body._replace(x=x)
+    joints = _placed(body, first, confidence, further, laid)
+    hanging = list(necks(V, body.F, first.label, first.parents, joints.rest, first.radius)) if has_necks else []
+    is_neck = np.zeros(len(first.parents), np.bool_)
+    if hanging:
+        first, joints, is_neck = necked_tree(body, first, joints, hanging)
+    x, tree, label, rest = body.x, first.parents, first.label, joints.rest
     share = confident_share(label, area, confidence, len(x), len(tree))
-    on_surface = SurfaceJoints(consensus.rest, np.full(len(tree), np.nan))
-    if laid is not None:
-        on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
-    rest = on_surface.rest
     off = first.drift if rest is first.rest else first.drift_at(rest)
     poses = frame_poses(
         V, x, area, label, first.W, Motion(rest, first.R, first.t[:, 0].copy()), tree, confidence, takes=body.takes
@@ -132,7 +140,20 @@ def kinematic_tree(
     ends = end_effectors(V, body.F, label, tree, leaves)
     spans = score_spans(len(x), body.takes)
     made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans)
-    return made, _derivation(first, consensus, on_surface.offset, made, order)
+    return made, _derivation(first, joints, is_neck, made, order)
+
+
+def _placed(
+    body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None
+) -> PlacedJoints:
+    """The joints of the tree where all cuts have them, moved to the frames' surfaces."""
+    parts = len(first.parents)
+    consensus = _consensus(first, further, body.size)
+    on_surface = SurfaceJoints(consensus.rest, np.full(parts, np.nan))
+    if laid is not None:
+        share = confident_share(first.label, body.area, confidence, len(body.x), parts)
+        on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
+    return PlacedJoints(on_surface.rest, on_surface.offset, consensus.spread, consensus.agreeing)
 
 
 def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
@@ -189,11 +210,11 @@ def _assembled(
     return body, order
 
 
-def _derivation(first: FirstTree, agreed: JointConsensus, offset: Floats, body: KinematicTree, order: Ints) -> Derivation:
+def _derivation(first: FirstTree, placed_joints: PlacedJoints, is_neck: Flags, body: KinematicTree, order: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    offset : (part,) see `SurfaceJoints`
-    order  : (joint,) part in the tree's order, or beyond them an end effector
+    is_neck : (part,) whether the shape alone shows its joint
+    order   : (joint,) part in the tree's order, or beyond them an end effector
     """
     parts, joint = len(first.rest), np.argsort(order)
     length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), first.R, first.t)
@@ -203,9 +224,10 @@ def _derivation(first: FirstTree, agreed: JointConsensus, offset: Floats, body: 
         joint_of_part=np.where(first.place < 0, -1, joint[first.place]),
         free_length=length.mean(axis=0),
         free_deviation=length.std(axis=0),
-        spread=np.where(is_part, agreed.spread[part], np.nan),
-        agreeing=np.where(is_part, agreed.agreeing[part], 0),
+        spread=np.where(is_part, placed_joints.spread[part], np.nan),
+        agreeing=np.where(is_part, placed_joints.agreeing[part], 0),
         joint_residual=np.where(is_part, first.residual[part], 0.0),
-        surface_offset=np.where(is_part, offset[part], np.nan),
+        surface_offset=np.where(is_part, placed_joints.offset[part], np.nan),
         end_joints=tuple(joint[parts - first.ends : parts].tolist()),
+        neck_joints=tuple(sorted(joint[np.flatnonzero(is_neck)].tolist())),
     )

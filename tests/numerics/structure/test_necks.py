@@ -1,0 +1,53 @@
+"""A last part on a narrow tube has a joint at both ends of the tube."""
+
+import numpy as np
+import pytest
+from bottles import BOTTOM, TOP, bottle
+
+from kinetree.tasks.numerics.structure.necks import Neck, necks
+
+
+def necks_of(
+    trunk: float = 3.0, head: float = 1.8, joint: float = BOTTOM, others: tuple[float, ...] = (), scale: float = 1.0
+) -> list[Neck]:
+    """Of a body with these radii and a neck of radius 1; the head has its joint at one height, other parts theirs elsewhere."""
+    V, F = bottle(trunk, head)
+    label = (V[:, 2] > joint).astype(np.int64)
+    heights = np.array([0.0, joint, *others])
+    rest = np.stack([0.0 * heights, 0.0 * heights, heights], axis=1)
+    parents = np.array([-1, *[0] * (len(heights) - 1)])
+    return list(necks(scale * V, F, label, parents, scale * rest, scale * np.where(parents < 0, 0.0, 1.0)))
+
+
+@pytest.mark.parametrize(("joint", "free"), [(BOTTOM, TOP), (TOP, BOTTOM)])
+def test_the_end_without_a_joint_is_the_other_end_of_the_tube(joint: float, free: float) -> None:
+    (neck,) = necks_of(joint=joint)
+    assert (neck.part, neck.above) == (1, free == BOTTOM)
+    np.testing.assert_allclose(neck.centre, [0.0, 0.0, free], atol=0.4)
+    assert neck.radius == pytest.approx(1.0, rel=0.05)
+
+
+def test_the_skin_of_the_tube_follows_the_neck() -> None:
+    (neck,) = necks_of()
+    z = bottle(3.0, 1.8)[0][:, 2]
+    assert neck.share[np.abs(z - (BOTTOM + TOP) / 2) < 0.3].min() > 0.9
+    assert not neck.share[(z < BOTTOM - 1.0) | (z > TOP + 1.0)].any()
+
+
+def test_a_neck_does_not_depend_on_the_unit() -> None:
+    (one,), (large,) = necks_of(), necks_of(scale=1000.0)
+    np.testing.assert_allclose(large.centre, 1000.0 * one.centre, atol=1e-6)
+    np.testing.assert_allclose(large.share, one.share, atol=1e-9)
+
+
+@pytest.mark.parametrize(("trunk", "head"), [(3.0, 1.1), (1.3, 1.8), (1.0, 1.0)])
+def test_a_limb_that_is_not_narrower_than_both_sides_has_none(trunk: float, head: float) -> None:
+    assert necks_of(trunk, head) == []
+
+
+def test_a_tube_with_a_joint_at_both_ends_has_no_other() -> None:
+    assert necks_of(others=(TOP,)) == []
+
+
+def test_a_joint_that_is_at_neither_end_makes_no_neck() -> None:
+    assert necks_of(joint=BOTTOM - 1.4) == []
