@@ -42,7 +42,8 @@ class HiddenBonesSettings(NamedTuple):
     where flesh bends. Chosen on a dance and people of even seeds: true bones that need it lie at 0.054 and above, the false one
     at 0.033."""
     steady: float = 0.006
-    """Drift of either new joint, at most."""
+    """Drift of either new joint over all frames, at most: within the take in which it drifts most instead, two of three people
+    in several takes lose their necks."""
     apart: float = 0.9
     """Distance between the new joints in radii of the border, at least: a ring of flesh turns about one point."""
     area: float = 0.006
@@ -155,7 +156,8 @@ def is_bone(bone: HiddenBone, between: Border, size: float, settings: HiddenBone
     length = float(np.linalg.norm(bone.joint[1] - bone.joint[0]))
     return bool(
         needed
-        and worst < min(chosen.steady * size, more * between.drift)
+        and bone.drift.max() < chosen.steady * size
+        and worst < more * between.drift
         and length > chosen.apart * between.radius
         and bone.area > chosen.area * size**2
         and bone.degrees.min() > chosen.degrees
