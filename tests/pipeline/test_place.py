@@ -1,5 +1,6 @@
 """Laws of a place: all or nothing, whatever fails on the way, and every refusal of the disk in words a user can act on."""
 
+import builtins
 import contextlib
 import errno
 import os
@@ -133,7 +134,7 @@ def test_refused_read_names_store_file_and_remedy(place, monkeypatch):
     def refuse(path, *_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
 
-    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr(builtins, "open", refuse)
     monkeypatch.setattr(Path, "iterdir", refuse)
     with pytest.raises(StoreError, match=r"cannot read records/a: Permission denied; check its permissions"):
         place.get("records/a")

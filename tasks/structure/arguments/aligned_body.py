@@ -37,10 +37,11 @@ def aligned_body(reference: Reference, alignment: Mapping[int, Alignment], leave
     """What the numerics take of an aligned sequence."""
     V, F, aligned, at = reference.vertices, reference.faces, list(alignment.values()), leaves.frames.index(reference.frame)
     x, trust = np.stack([a.vertices for a in aligned]), np.stack([a.confidence for a in aligned])
+    confidence = limited_confidence(trust)  # residuals are not read where some are not certain
     return AlignedBody(
         MovingSurface(np.array(V), np.asarray(F, np.int64), x, surface_areas(V, F), take_spans(tuple(alignment))),
         trust,
-        limited_confidence(trust),
-        is_given(trust, np.stack([a.residual for a in aligned])),
+        confidence,
+        confidence is None and is_given(trust, np.stack([a.residual for a in aligned])),
         leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
     )
