@@ -75,6 +75,21 @@ def test_patch_that_slides_is_no_part() -> None:
     t, x = known.t.copy(), known.x.copy()
     t[:, 3] += slide
     x[:, patch] += slide[:, None]
-    found = of(known._replace(t=t, x=x))
+    found = of(known._replace(t=t, x=x), (int(np.flatnonzero(patch)[0]),))
     assert found.parts.R.shape[1] == 3
     assert found.dropped == (Dropped(3, SLIDING),)
+
+
+@pytest.mark.parametrize(("half_length", "has_leaf", "dropped"), [(2.5, False, (FLESH,)), (2.5, True, ()), (0.7, False, ())])
+def test_last_part_that_hardly_reaches_beyond_its_border_is_flesh_unless_it_has_a_leaf(
+    half_length: float, has_leaf: bool, dropped: tuple[str, ...]
+) -> None:
+    """A strip along the tube, 1.1 wide, and a square turn alike about their own middle."""
+    body = chain((-4.0,))
+    strip = (np.abs(body.V[:, 2]) < half_length) & (body.V[:, 0] > 0.8)
+    W = np.eye(3)[np.where(strip, 2, body.label)]
+    joints = np.vstack([body.joints, [0.9, 0.0, 0.0]])
+    known = moved(body.V, body.F, W, joints, np.array([-1, 0, 1]), swings(24, 3, 20))
+    middle = int(np.argmin(np.linalg.norm(known.V - [1.0, 0.0, 0.0], axis=1)))
+    found = of(known, (middle,) if has_leaf else ())
+    assert tuple(d.reason for d in found.dropped if d.part == 2) == dropped
