@@ -99,6 +99,10 @@ class KinematicTree(ArticulatedBody):
     surface_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square distance of each joint from where halves of the frames' surfaces alone have it; NaN where connectivity
     is fixed, where the surfaces do not say, and for root and leaves."""
+    border_radius: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance of the line between a joint's two parts from the middle of it; NaN for root and leaves."""
+    is_given: bool = False
+    """Whether the frames give the correspondence, as with fixed connectivity, so that no alignment moves a joint."""
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
     neck_joints: tuple[int, ...] = ()

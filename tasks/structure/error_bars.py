@@ -64,5 +64,6 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     size = float(np.sqrt(surface_areas(V, F).sum()))
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
+    radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
     confidence = np.array(skeleton.confidence)
-    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, confidence, size)
+    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, radius, confidence, size)

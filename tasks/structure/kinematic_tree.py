@@ -46,6 +46,7 @@ def kinematic_tree(
         vertices=reference.vertices,
         faces=reference.faces,
         cuts=1 + len(further_cut),
+        is_given=body.is_given,
         uncertain=np.zeros(len(frames), np.bool_) if body.is_given else needs_refinement(tree.confidence),
         **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
         **{**derivation._asdict(), "dropped": tuple((d.part, d.reason) for d in derivation.dropped)},

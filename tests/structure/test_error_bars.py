@@ -48,6 +48,17 @@ def test_cuts_that_are_farther_apart_are_a_larger_error_and_one_cut_says_nothing
     assert alone[0] == alone[1]
 
 
+def test_a_joint_whose_vertices_are_given_has_an_error_that_grows_with_the_radius_of_its_border() -> None:
+    skeleton_, tree = both(drift=0.0, spread=0.0, joint_residual=0.0, cuts=4)
+
+    def expected(radius: float, *, is_given: bool) -> float:
+        border = np.array([np.nan, radius, np.nan, radius, radius])
+        return float(error_bars(skeleton_, tree.model_copy(update={"border_radius": border, "is_given": is_given})).expected[1])
+
+    assert expected(80.0, is_given=True) == pytest.approx(2.0 * expected(40.0, is_given=True), rel=0.01)
+    assert expected(80.0, is_given=False) == expected(40.0, is_given=False)
+
+
 def test_other_methods_say_that_nothing_is_known() -> None:
     found = unknown_error_bars(both()[0])
     assert found.cuts == 0

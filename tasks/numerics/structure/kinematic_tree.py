@@ -76,6 +76,7 @@ class Derivation(NamedTuple):
     joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
     surface_offset : (joint,) root mean square distance from where halves of the frames' surfaces alone have it, mesh unit; NaN
                      where they were not asked or do not say, and where it is none
+    border_radius  : (joint,) of the border at the joint, mesh unit; NaN for the root and ends of bones
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
     """
@@ -92,6 +93,7 @@ class Derivation(NamedTuple):
     agreeing: Ints
     joint_residual: Floats
     surface_offset: Floats
+    border_radius: Floats
     end_joints: tuple[int, ...] = ()
     neck_joints: tuple[int, ...] = ()
 
@@ -228,6 +230,7 @@ def _derivation(first: FirstTree, placed_joints: PlacedJoints, is_neck: Flags, b
         agreeing=np.where(is_part, placed_joints.agreeing[part], 0),
         joint_residual=np.where(is_part, first.residual[part], 0.0),
         surface_offset=np.where(is_part, placed_joints.offset[part], np.nan),
+        border_radius=np.where(is_part & (part > 0), first.radius[part], np.nan),
         end_joints=tuple(joint[parts - first.ends : parts].tolist()),
         neck_joints=tuple(sorted(joint[np.flatnonzero(is_neck)].tolist())),
     )

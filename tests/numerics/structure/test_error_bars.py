@@ -9,6 +9,7 @@ SETTINGS = ErrorBarsSettings(
     PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 0.0, 2.0),
     PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.0, 2.5),
     PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
+    0.1,
     2.0,
 )
 
@@ -17,7 +18,8 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
     evidence = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
-        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "confidence": np.ones((5, 3)), **changed,
+        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "radius": np.full(3, np.nan),
+        "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
     unscaled = ("degrees", "resistance", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
@@ -96,6 +98,18 @@ def test_evidence_of_nothing_at_all_is_a_small_finite_error() -> None:
     assert (found < error_bars(features(), 4, SETTINGS).expected).all()
 
 
+def test_a_hinge_whose_vertices_are_given_may_be_off_along_its_line_by_a_share_of_its_radius() -> None:
+    nothing, radius = np.zeros(3), np.array([0.04, 0.08, np.nan])
+    still = {"drift": nothing, "spread": nothing, "residual": nothing}
+    least = SETTINGS._replace(several_cuts=SETTINGS.several_cuts._replace(least=0.02))
+    found = error_bars(features(radius=radius, **still), 4, least).expected
+    assert found == pytest.approx([0.004, 0.008, 0.02], rel=0.01)
+    drifting, without = (error_bars(features(radius=r), 4, SETTINGS).expected for r in (radius, np.full(3, np.nan)))
+    assert drifting[:2] == pytest.approx(np.hypot(0.1 * radius[:2], without[:2]))
+    assert drifting[2] == without[2]
+    assert error_bars(features(radius=radius), 1, SETTINGS).expected[0] == error_bars(features(), 1, SETTINGS).expected[0]
+
+
 def test_no_error_is_below_the_least() -> None:
     nothing = np.zeros(3)
     least = SETTINGS._replace(several_cuts=SETTINGS.several_cuts._replace(least=0.004))
@@ -111,7 +125,7 @@ def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None
     drift, spread, residual, length, offset, resistance = np.exp(rng.normal(-5.0, 1.0, (6, 200)))
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
-    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, sure, 1.0).logarithms(True)
+    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, drift, sure, 1.0).logarithms(True)
     law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3)):
