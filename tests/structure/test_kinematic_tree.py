@@ -146,6 +146,8 @@ def test_joints_are_moved_on_the_surfaces_where_connectivity_changes_and_only_if
     given = [tree_of(body, surface_joints=flag) for flag in (True, False)]
     np.testing.assert_array_equal(*(found.rest for found in given))
     assert np.isnan(given[0].surface_offset).all()
+    assert (given[0].is_given, asked.is_given) == (True, False)
+    assert given[0].border_radius == pytest.approx([np.nan, 1.0, 1.0, np.nan], abs=0.05, nan_ok=True)
 
 
 def test_part_that_hardly_turns_is_stored_as_dropped_and_has_no_joint() -> None:
