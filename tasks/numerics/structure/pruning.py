@@ -35,8 +35,8 @@ class PruningSettings(NamedTuple):
     it moves no joint of two generated bodies."""
     flat: float = 0.6
     """How far the surface of a last part without a leaf reaches beyond its border, in radii of the border; below it the part is
-    flesh beside a joint. Chosen on quadrupeds 0, 1, 3, whose false parts had 0.23 to 0.26; the last parts of 32 bodies, all
-    others with a leaf, had 1.24 and more."""
+    flesh beside a joint. Chosen on quadrupeds 0, 1, 3, whose false parts had 0.23 to 0.26; all other last parts of 35
+    bodies had 1.24 and more."""
     clear_ratio: float = 3.0
     """Ratio from which on a joint is clear: a part that has a clear joint stays when another of its joints is poor. Not
     recorded. Halved or doubled it moves no joint of two generated bodies; it guards parts between a good joint and a poor
