@@ -28,7 +28,7 @@ from typer.main import get_command
 from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError, ServiceError
 from kinetree.pipeline.application import Application, Command, Shortcut
 from kinetree.pipeline.command_line.printable import printable, quoted
-from kinetree.pipeline.running.interrupts import heed
+from kinetree.pipeline.running.interrupts import heed, is_interrupted
 
 EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 cluster or service failed, try again · 130 interrupted"
 ENVIRONMENT = (
@@ -143,7 +143,8 @@ def main(application: Application) -> NoReturn:
         sys.stderr.close()
         code = 141
     except Exception as error:
-        code = _unexpected(name, error)
+        # a library that could not be imported because of Ctrl-C is missed later
+        code = 130 if is_interrupted() else _unexpected(name, error)
     if code == 130:
         typer.echo(f"{name}: interrupted; what is finished is kept, run again to go on", err=True)
         if threading.active_count() > 1:

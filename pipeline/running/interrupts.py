@@ -18,6 +18,11 @@ def heed() -> None:
         signal.signal(signal.SIGINT, _interrupt)
 
 
+def is_interrupted() -> bool:
+    """Whether a signal came that `heed` listens for, though a library may have passed over it, and no run has begun since."""
+    return _heard.is_set()
+
+
 def _interrupt(*_: object) -> NoReturn:
     _heard.set()
     raise KeyboardInterrupt

@@ -80,6 +80,14 @@ def test_a_run_that_was_started_deaf_to_ctrl_c_stays_so_and_obeys_sigterm(toys, 
     toys.until(lambda: not living(process.pid), "no process is left behind")
 
 
+def test_what_fails_because_a_library_swallowed_an_interrupt_is_no_error_of_ours(toys):
+    """As where trimesh takes what is not imported for what is not there, and is asked for it later."""
+    swallowed = "import os\n    try: os.kill(os.getpid(), 2)\n    except BaseException: None + 1"
+    toys.edit("    from .toys import GRAPH", f"    {swallowed}\n    from .toys import GRAPH", "__main__.py")
+    ended = toys.command("run", str(toys.yaml()), "--quiet")
+    assert (ended.returncode, ended.stderr.strip()) == (130, "toy: interrupted; what is finished is kept, run again to go on")
+
+
 def test_an_interrupt_that_a_library_swallows_is_heard_before_the_first_node():
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
