@@ -54,7 +54,8 @@ class NeckParams(Params):
     """Which joints shape alone gives."""
 
     necks: bool = True
-    """Whether a tube between the last part of a limb and what carries it has a joint at both ends though one alone turns."""
+    """Whether a tube between the last part of a limb and what carries it has a joint at both ends though one alone turns;
+    not where connectivity is fixed, since motion shows both there."""
 
 
 class KinematicTreeParams(NeckParams, ExtendedTreeParams, FirstTreeParams):
@@ -106,7 +107,8 @@ class KinematicTree(ArticulatedBody):
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
     neck_joints: tuple[int, ...] = ()
-    """Joints that the shape alone shows, at the other end of a tube from one that turns; their turning is a guess."""
+    """Joints that the shape alone shows, at the other end of a tube from one that turns. They turn by nothing, since motion shows
+    no turn of theirs."""
 
     @property
     def length_variation(self) -> Floats:

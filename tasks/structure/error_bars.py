@@ -65,5 +65,7 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
     radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
+    shape_alone = np.isin(np.arange(len(skeleton.names)), tree.neck_joints)
+    tube = np.where(shape_alone, np.array(tree.border_radius), np.nan)
     confidence = np.array(skeleton.confidence)
-    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, radius, confidence, size)
+    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, radius, tube, confidence, size)

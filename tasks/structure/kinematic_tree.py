@@ -39,7 +39,7 @@ def kinematic_tree(
         body.confidence,
         further=[np.array(cut.joints_with_bones if first.has_bones else cut.joints) for cut in further_cut.values()],
         laid=joined(laid_parts),
-        has_necks=params.necks,
+        has_necks=params.necks and not body.is_given,
     )
     return KinematicTree(
         frames=frames,

@@ -66,6 +66,8 @@ class ErrorBarsSettings(NamedTuple):
     """κ: error of a joint along the line that it turns about, radii of its border, where the frames give every vertex. A hinge
     leaves its place along that line open, and there the middle of the border decides; it drifts by nothing. Takes the place
     of `least` of several cuts. Chosen on generated bodies of fixed connectivity of even seeds; 0.05 to 0.06 hold alike."""
+    across_tube: float = 0.4
+    """Error of a joint that the shape alone shows, radii of its tube, see `necks`."""
     uncertain: float = 0.5
     """k: how much farther off a joint is in a frame where its confidence is 0."""
 
@@ -81,6 +83,7 @@ class JointFeatures(NamedTuple):
     offset     : (joint,) from where halves of the frames' surfaces alone have the joint; NaN where they do not say
     resistance : (joint,) of its parts against turning about it, see `turning_resistance`; NaN where it is not known
     radius     : (joint,) of the border at the joint where the frames give every vertex; NaN where they do not
+    tube       : (joint,) radius of the tube where the shape alone shows the joint; NaN elsewhere
     confidence : (frame, joint) 0 to 1
     size       : root of the area
     """
@@ -93,6 +96,7 @@ class JointFeatures(NamedTuple):
     offset: Floats
     resistance: Floats
     radius: Floats
+    tube: Floats
     confidence: Floats
     size: float
 
@@ -140,6 +144,7 @@ def error_bars(features: JointFeatures, cuts: int, settings: ErrorBarsSettings |
     if cuts > 1:
         along = chosen.along_axis * features.radius
         level = np.where(np.isnan(along), level, np.hypot(along, features.size * levels(rows, law._replace(least=0.0))))
+    level = np.where(np.isnan(features.tube), level, chosen.across_tube * features.tube)
     in_frame = level * features.widening(chosen.uncertain)
     expected = in_frame.mean(axis=0) if len(in_frame) else level
     return ErrorBars(expected, np.where(has_offset, chosen.on_surfaces.bound, law.bound) * expected, in_frame)

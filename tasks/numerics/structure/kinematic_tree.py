@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, jo
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.necked_tree import PlacedJoints, necked_tree
+from kinetree.tasks.numerics.structure.necked_tree import PosedTree, necked_tree
 from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
@@ -120,42 +120,54 @@ def kinematic_tree(
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether bones are looked for that the shape alone shows, see `necks`
     """
-    V, area = body.V, body.area
+    V = body.V
     if first.ends:
         x = body.x.copy()
         x[:, first.at_ends] = first.end_x
         body = body._replace(x=x)
-    joints = _placed(body, first, confidence, further, laid)
-    hanging = list(necks(V, body.F, first.label, first.parents, joints.rest, first.radius)) if has_necks else []
-    is_neck = np.zeros(len(first.parents), np.bool_)
-    if hanging:
-        first, joints, is_neck = necked_tree(body, first, joints, hanging)
-    x, tree, label, rest = body.x, first.parents, first.label, joints.rest
-    share = confident_share(label, area, confidence, len(x), len(tree))
-    off = first.drift if rest is first.rest else first.drift_at(rest)
-    poses = frame_poses(
-        V, x, area, label, first.W, Motion(rest, first.R, first.t[:, 0].copy()), tree, confidence, takes=body.takes
-    )
-    support = (np.minimum(share, share[:, np.maximum(tree, 0)]) >= FramePosesSettings().seen).sum(axis=0)
+    tree = _posed(body, first, confidence, further, laid)
+    if has_necks:
+        parts = len(first.parents) - first.ends
+        hanging = necks(V, body.F, first.label, first.parents, tree.motion.rest, first.radius)
+        if chosen := [neck for neck in hanging if neck.part < parts]:
+            tree = necked_tree(tree, chosen)
     if has_second_ends:
-        leaves = np.concatenate([leaves, second_ends(V, body.F, label, tree, leaves)])
-    ends = end_effectors(V, body.F, label, tree, leaves)
-    spans = score_spans(len(x), body.takes)
-    made, order = _assembled(V, label, first.W, ends, tree, poses.motion, poses.confidence, off, support, spans)
-    return made, _derivation(first, joints, is_neck, made, order)
+        leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
+    ends = end_effectors(V, body.F, tree.label, tree.parents, leaves)
+    made, order = _assembled(V, tree, ends, score_spans(len(body.x), body.takes))
+    return made, _derivation(first, tree, made, order)
 
 
-def _placed(
+def _posed(
     body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None
-) -> PlacedJoints:
-    """The joints of the tree where all cuts have them, moved to the frames' surfaces."""
+) -> PosedTree:
+    """The tree in every frame, its joints where all cuts have them, moved to the frames' surfaces."""
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
     on_surface = SurfaceJoints(consensus.rest, np.full(parts, np.nan))
+    share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        share = confident_share(first.label, body.area, confidence, len(body.x), parts)
         on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
-    return PlacedJoints(on_surface.rest, on_surface.offset, consensus.spread, consensus.agreeing)
+    rest = on_surface.rest
+    start = Motion(rest, first.R, first.t[:, 0].copy())
+    poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)
+    return PosedTree(
+        parents=first.parents,
+        motion=poses.motion,
+        label=first.label,
+        W=first.W,
+        confidence=poses.confidence,
+        drift=first.drift if rest is first.rest else first.drift_at(rest),
+        support=(np.minimum(share, share[:, np.maximum(first.parents, 0)]) >= FramePosesSettings().seen).sum(axis=0),
+        residual=first.residual,
+        radius=first.radius,
+        offset=on_surface.offset,
+        spread=consensus.spread,
+        agreeing=consensus.agreeing,
+        place=first.place,
+        carrier=np.arange(parts),
+        is_neck=np.zeros(parts, np.bool_),
+    )
 
 
 def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
@@ -169,19 +181,9 @@ def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> Join
     )
 
 
-def _assembled(
-    V: Floats,
-    label: Ints,
-    W: Floats,
-    ends: Ints,
-    parents: Ints,
-    motion: Motion,
-    confidence: Floats,
-    drift: Floats,
-    support: Ints,
-    spans: Ints,
-) -> tuple[KinematicTree, Ints]:
+def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[KinematicTree, Ints]:
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
+    parents, motion, W, label = tree.parents, tree.motion, tree.W, tree.label
     parts = len(parents)
     part = np.concatenate([np.arange(parts), ends[:, 0]])
     rest = np.concatenate([motion.rest, V[ends[:, 1]]])
@@ -201,10 +203,10 @@ def _assembled(
         rest=rest[order],
         positions=np.concatenate([X, tips], axis=1)[:, order],
         rotation=motion.R[:, part[order]],
-        confidence=confidence[:, part[order]],
+        confidence=tree.confidence[:, part[order]],
         degrees=np.where(is_end, 0.0, degrees[part])[order],
-        drift=np.where(is_end, 0.0, drift[part])[order],
-        support=support[part[order]],
+        drift=np.where(is_end, 0.0, tree.drift[part])[order],
+        support=tree.support[part[order]],
         label=np.where(W[np.arange(len(V)), label] >= RIGID_WEIGHT, place[label], -1),
         influence=np.where(weight > 0, place[influence], 0),
         weight=weight,
@@ -212,25 +214,25 @@ def _assembled(
     return body, order
 
 
-def _derivation(first: FirstTree, placed_joints: PlacedJoints, is_neck: Flags, body: KinematicTree, order: Ints) -> Derivation:
+def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    is_neck : (part,) whether the shape alone shows its joint
-    order   : (joint,) part in the tree's order, or beyond them an end effector
+    order : (joint,) part in the tree's order, or beyond them an end effector
     """
-    parts, joint = len(first.rest), np.argsort(order)
-    length = free_bone_lengths(body.rest, body.parents, np.where(order < parts, order, -1), first.R, first.t)
+    parts, joint = len(tree.parents), np.argsort(order)
     is_part, part = order < parts, np.minimum(order, parts - 1)
+    R, t = first.R[:, tree.carrier], first.t[:, tree.carrier]
+    length = free_bone_lengths(body.rest, body.parents, np.where(is_part, order, -1), R, t)
     return Derivation(
         **first.graph._asdict(),
-        joint_of_part=np.where(first.place < 0, -1, joint[first.place]),
+        joint_of_part=np.where(tree.place < 0, -1, joint[tree.place]),
         free_length=length.mean(axis=0),
         free_deviation=length.std(axis=0),
-        spread=np.where(is_part, placed_joints.spread[part], np.nan),
-        agreeing=np.where(is_part, placed_joints.agreeing[part], 0),
-        joint_residual=np.where(is_part, first.residual[part], 0.0),
-        surface_offset=np.where(is_part, placed_joints.offset[part], np.nan),
-        border_radius=np.where(is_part & (part > 0), first.radius[part], np.nan),
+        spread=np.where(is_part, tree.spread[part], np.nan),
+        agreeing=np.where(is_part, tree.agreeing[part], 0),
+        joint_residual=np.where(is_part, tree.residual[part], 0.0),
+        surface_offset=np.where(is_part, tree.offset[part], np.nan),
+        border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
         end_joints=tuple(joint[parts - first.ends : parts].tolist()),
-        neck_joints=tuple(sorted(joint[np.flatnonzero(is_neck)].tolist())),
+        neck_joints=tuple(sorted(joint[np.flatnonzero(tree.is_neck)].tolist())),
     )

@@ -18,8 +18,8 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 class NecksSettings(NamedTuple):
     """What makes a neck; its radius is its least girth over 2π.
 
-    Chosen on generated humans of seeds 0 to 9, quadrupeds and random trees of seeds 0 to 2; people (`adult:SEED`) and recorded
-    bodies were kept apart.
+    Chosen on generated humans of seeds 0 to 9, quadrupeds and random trees of seeds 0 to 2, and not varied. People
+    (`adult:SEED`) and recorded bodies were kept apart: they gain no joint.
     """
 
     trunk: float = 2.0
@@ -67,7 +67,7 @@ class _Rings(NamedTuple):
 def necks(
     V: Floats, F: Ints, label: Ints, parents: Ints, rest: Floats, border: Floats, settings: NecksSettings | None = None
 ) -> Iterator[Neck]:
-    """The necks on which the last parts of limbs hang, by part.
+    """The necks on which the last parts of limbs hang, by part; none where the surface has a hole, which looks like a tube.
 
     V, F    : (vertex, xyz) reference, mesh unit · (face, corner)
     label   : (vertex,) part
@@ -78,6 +78,8 @@ def necks(
     chosen, edge = settings or NecksSettings(), np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     length = np.maximum(np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1), 1e-300)
     links = coo_array((length, (edge[:, 0], edge[:, 1])), shape=(len(V), len(V))).tocsr()
+    pairs, faces = np.unique(np.sort(edge, axis=1), axis=0, return_counts=True)
+    rim = pairs[faces == 1].ravel()
     for part in range(1, len(parents)):
         crossing = edge[(label[edge] == part).sum(axis=1) == 1]
         if border[part] > 0.0 and len(crossing) and not (parents == part).any():
@@ -86,7 +88,8 @@ def necks(
             half = 0.5 * np.linalg.norm(V[crossing[:, 0]] - V[crossing[:, 1]], axis=1).mean()
             beyond = np.where(label == part, 1.0, -1.0) * (distance + half)
             others = np.delete(rest, [0, part], axis=0)
-            if (neck := _neck(V, F, beyond, part, rest[part], others, float(border[part]), chosen)) is not None:
+            neck = _neck(V, F, beyond, part, rest[part], others, float(border[part]), chosen)
+            if neck is not None and not (neck.share[rim] > 0.0).any():
                 yield neck
 
 

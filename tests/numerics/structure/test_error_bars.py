@@ -9,8 +9,9 @@ SETTINGS = ErrorBarsSettings(
     PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 0.0, 2.0),
     PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.0, 2.5),
     PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
-    0.1,
-    2.0,
+    along_axis=0.1,
+    across_tube=0.3,
+    uncertain=2.0,
 )
 
 
@@ -18,7 +19,7 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
     evidence = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
-        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "radius": np.full(3, np.nan),
+        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "radius": np.full(3, np.nan), "tube": np.full(3, np.nan),
         "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
     unscaled = ("degrees", "resistance", "confidence")
@@ -120,12 +121,20 @@ def test_no_error_is_below_the_least() -> None:
     )
 
 
+def test_a_joint_that_the_shape_alone_shows_is_off_by_a_share_of_its_tube_whatever_the_motion_says() -> None:
+    tube = np.array([np.nan, 0.05, np.nan])
+    bars, plain = error_bars(features(tube=tube), 4, SETTINGS), error_bars(features(), 4, SETTINGS)
+    assert bars.expected[1] == pytest.approx(0.3 * 0.05)
+    assert bars.bound[1] == pytest.approx(2.0 * bars.expected[1])
+    np.testing.assert_array_equal(bars.expected[[0, 2]], plain.expected[[0, 2]])
+
+
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
     drift, spread, residual, length, offset, resistance = np.exp(rng.normal(-5.0, 1.0, (6, 200)))
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
-    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, drift, sure, 1.0).logarithms(True)
+    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, drift, drift, sure, 1.0).logarithms(True)
     law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3)):

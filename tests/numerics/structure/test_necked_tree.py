@@ -10,9 +10,9 @@ from shipped import TREE
 from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.structure.first_tree import first_tree
+from kinetree.tasks.numerics.structure.articulated_fit import Motion
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
-from kinetree.tasks.numerics.structure.necked_tree import PlacedJoints, necked_tree
+from kinetree.tasks.numerics.structure.necked_tree import PosedTree, necked_tree
 from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut
@@ -38,22 +38,56 @@ def nodding(joint: float, has_necks: bool) -> tuple[KinematicTree, Derivation]:
     return whole_tree(surface, cut, tips, settings=TREE._replace(hidden_bones=False), has_necks=has_necks)
 
 
-def test_the_neck_stands_between_its_part_and_the_part_above() -> None:
-    body, cut, tips = nodding_cut(TOP)
-    before = first_tree(body, cut, tips, settings=TREE._replace(hidden_bones=False))
-    hanging = list(necks(body.V, body.F, before.label, before.parents, before.rest, before.radius))
-    known = PlacedJoints(before.rest, np.array([np.nan, 0.1]), np.array([np.nan, 0.2]), np.array([0, 4]))
-    after, joints, is_new = necked_tree(body, before, known, hanging)
-    assert (after.parents.tolist(), is_new.tolist()) == ([-1, 0, 1], [False, True, False])
-    np.testing.assert_allclose(joints.rest[2], before.rest[1])
-    np.testing.assert_array_equal(joints.offset, [np.nan, np.nan, 0.1])
-    np.testing.assert_array_equal(joints.agreeing, [0, 1, 4])
-    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
-    z = body.V[:, 2]
+def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedTree:
+    """Two frames of a tree; what is known of the joint of part k is k, its rotation turns by k radians in the second frame."""
+    k = np.arange(len(parents))
+    rest = np.stack([0.0 * k, 0.0 * k, heights], axis=1)
+    R = Rotation.from_rotvec(np.outer(np.concatenate([0.0 * k, k]), [1.0, 0.0, 0.0])).as_matrix().reshape(2, len(k), 3, 3)
+    known = k.astype(np.float64)
+    return PosedTree(
+        np.array(parents), Motion(rest, R, np.zeros((2, 3))), label, np.eye(len(k))[label], np.tile(known, (2, 1)),
+        known, k, known,
+        np.where(k > 0, 1.0, 0.0), known, known, k, k, k, np.zeros(len(k), np.bool_),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("joint", "new", "moved_by"), [(TOP, 1, 0), (BOTTOM, 2, 1)])
+def test_a_neck_moves_as_the_tube_did_and_what_is_known_stays_with_its_joint(joint: float, new: int, moved_by: int) -> None:
+    V, F = bottle(3.0, 1.8)
+    before = posed([-1, 0], [0.0, joint], (V[:, 2] > joint).astype(np.int64))
+    after = necked_tree(before, list(necks(V, F, before.label, before.parents, before.motion.rest, before.radius)))
+    old = 3 - new
+    assert (after.parents.tolist(), np.flatnonzero(after.is_neck).tolist()) == ([-1, 0, 1], [new])
+    np.testing.assert_allclose(after.motion.rest[old], before.motion.rest[1])
+    np.testing.assert_array_equal(after.motion.R[:, 1], before.motion.R[:, moved_by])
+    np.testing.assert_array_equal(after.motion.R[:, [0, 2]], before.motion.R)
+    for name in ("drift", "residual", "offset", "spread", "agreeing", "radius"):
+        assert getattr(after, name)[old] == 1, name
+    assert after.support.tolist() == [0, 1, 1]
+    assert after.radius[new] == pytest.approx(1.0, rel=0.05)
+    assert after.radius[new] != 1.0
+    np.testing.assert_array_equal(after.confidence[0], [0.0, 1.0, 1.0])
+    z = V[:, 2]
     assert set(after.label[(z > BOTTOM + 0.4) & (z < TOP - 0.4)]) == {1}
-    half = np.degrees(Rotation.from_matrix(after.R[:, 1].transpose(0, 2, 1) @ after.R[:, 2]).magnitude())
-    whole = np.degrees(Rotation.from_matrix(after.R[:, 0].transpose(0, 2, 1) @ after.R[:, 2]).magnitude())
-    np.testing.assert_allclose(2.0 * half, whole, atol=1e-6)
+    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
+    moved = np.einsum("vp,tpxy->tvxy", after.W, after.motion.R)
+    np.testing.assert_allclose(moved, np.einsum("vp,tpxy->tvxy", before.W, before.motion.R), atol=1e-12)
+
+
+def test_two_necks_on_one_body_each_get_their_skin() -> None:
+    """Two bottles, the second beside the first: parts 1 and 2 are their heads."""
+    (V, F), aside = bottle(3.0, 1.8), np.array([9.0, 0.0, 0.0])
+    both, faces = np.concatenate([V, V + aside]), np.concatenate([F, F + len(V)])
+    label = np.where(both[:, 2] > TOP, np.repeat([1, 2], len(V)), 0)
+    before = posed([-1, 0, 0], [0.0, TOP, TOP], label)
+    before.motion.rest[2] += aside
+    hanging = list(necks(both, faces, label, before.parents, before.motion.rest, before.radius))
+    after = necked_tree(before, hanging)
+    assert after.parents.tolist() == [-1, 0, 1, 0, 3]
+    assert after.place.tolist() == [0, 2, 4]
+    assert after.carrier.tolist() == [0, 0, 1, 0, 2]
+    tube = (both[:, 2] > BOTTOM + 0.4) & (both[:, 2] < TOP - 0.4)
+    np.testing.assert_array_equal(after.label[tube], np.where(both[tube, 0] < 5.0, 1, 3))
 
 
 def joint_heights(tree: KinematicTree) -> list[float]:
@@ -75,6 +109,13 @@ def test_the_joint_that_turns_stays(joint: float) -> None:
     turning = next(k for k, kind in enumerate(two.kinds) if kind == "joint" and k not in derivation.neck_joints)
     (before,) = (p for p, kind in zip(one.rest, one.kinds, strict=True) if kind == "joint")
     np.testing.assert_allclose(two.rest[turning], before)
+    (new,) = derivation.neck_joints
+    known = next(k for k, kind in enumerate(one.kinds) if kind == "joint")
+    assert two.degrees[new] == pytest.approx(0.0, abs=1e-5)
+    for name in ("degrees", "drift", "support"):
+        assert getattr(two, name)[turning] == getattr(one, name)[known], name
+    assert two.support[new] == two.support[turning]
+    np.testing.assert_array_equal(two.confidence[:, new], one.confidence[:, known])
 
 
 def test_lengths_are_held_and_weights_sum_to_one() -> None:

@@ -51,3 +51,25 @@ def test_a_tube_with_a_joint_at_both_ends_has_no_other() -> None:
 
 def test_a_joint_that_is_at_neither_end_makes_no_neck() -> None:
     assert necks_of(joint=BOTTOM - 1.4) == []
+
+
+def test_a_hole_in_a_plain_tube_is_no_neck() -> None:
+    V, F = bottle(1.0, 1.0)
+    middle = V[F].mean(axis=1)
+    around = np.arctan2(middle[:, 1], middle[:, 0])
+    open_F = F[~((np.abs(middle[:, 2] - 6.7) < 0.5) & (np.abs(around) < 0.55 * np.pi))]
+    label, parents = (V[:, 2] > BOTTOM).astype(np.int64), np.array([-1, 0])
+    rest = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, BOTTOM]])
+    assert list(necks(V, open_F, label, parents, rest, np.array([0.0, 1.0]))) == []
+
+
+@pytest.mark.parametrize(("trunk", "head", "count"), [(1.85, 1.8, 0), (2.15, 1.8, 1), (3.0, 1.3, 0), (3.0, 1.5, 1)])
+def test_trunk_and_head_are_wider_than_the_tube_by_their_limits(trunk: float, head: float, count: int) -> None:
+    assert len(necks_of(trunk, head)) == count
+
+
+def test_a_part_that_carries_another_hangs_on_no_neck() -> None:
+    V, F = bottle(3.0, 1.8)
+    label = (V[:, 2] > BOTTOM).astype(np.int64) + (V[:, 2] > TOP + 2.0)
+    rest = np.array([[0.0, 0.0, z] for z in (0.0, BOTTOM, TOP + 2.0)])
+    assert [neck.part for neck in necks(V, F, label, np.array([-1, 0, 1]), rest, np.array([0.0, 1.0, 1.8]))] == []
