@@ -107,8 +107,8 @@ class KinematicTree(ArticulatedBody):
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
     neck_joints: tuple[int, ...] = ()
-    """Joints that the shape alone shows, at the other end of a tube from one that turns. They turn by nothing, since motion shows
-    no turn of theirs."""
+    """Joints that the shape alone shows, at the other end of a tube from one that turns. They turn by nothing, since
+    motion shows no turn of theirs."""
 
     @property
     def length_variation(self) -> Floats:

@@ -16,8 +16,7 @@ from pathlib import Path
 from kinetree.pipeline.storage import place
 original = place.Folder.__init__
 def elsewhere(self, root, *rest, **named):
-    original(self, root, *rest, **named)
-    self.root = Path(str(self.root) + "-of-a-container")
+    original(self, Path(f"{root}-of-a-container"), *rest, **named)
 place.Folder.__init__ = elsewhere
 """
 """As in a container: the same path, another folder; what is written there nobody else sees."""
