@@ -13,12 +13,14 @@ TAIL_BYTES = 2**16
 _LOCAL = struct.Struct("<4s22xHH")
 """What precedes a file in a zip: signature, lengths of its name and of what else stands before its bytes."""
 _SIGNATURE = b"PK\x03\x04"
-_LISTED = struct.Struct("<4s4xHH4xIIIHHHHHII")
-"""A file in the list of a zip: signature, flags, method, CRC-32, sizes packed and unpacked, lengths of its name, of what else
-stands beside it and of its comment, disk, two attributes, where its entry begins."""
+_LISTED = struct.Struct("<4s2xHHH4xIIIHHHHHII")
+"""A file in the list of a zip: signature, version needed, flags, method, CRC-32, sizes packed and unpacked,
+lengths of its name, of what else stands beside it and of its comment, disk, two attributes, where its entry begins."""
 _END = struct.Struct("<4s4HIIH")
 """What ends a zip: signature, two disks, files on this one and in all, size and place of the list, length of a comment."""
 _UTF8 = 0x800
+_VERSION = 20
+"""What Python says is needed to read a zip without anything special."""
 _WRITTEN = (1980, 1, 1, 0, 0, 0)
 """The time of every file: equal files make equal zips."""
 
@@ -71,7 +73,9 @@ class Packed:
         try:
             return Packed(place, path, _spans(*tail), *tail)
         except _Outside:
-            whole = place.part(path, 0, tail[1]) or b""  # the list alone is longer than the tail
+            whole = place.part(path, 0, tail[1])  # the list alone is longer than the tail
+            if whole is None:
+                raise DamagedZipError("it is missing or cut short") from None
             return Packed(place, path, _spans(whole, len(whole)), whole, len(whole))
 
     def read(self, names: Iterable[str]) -> dict[str, bytes]:
@@ -107,16 +111,16 @@ def _plain_spans(tail: bytes, size: int) -> dict[str, tuple[int, int, int, int]]
     end_at = len(tail) - _END.size
     if end_at < 0:
         return {}
-    signature, disk, of_list, here, count, length, end, comment = _END.unpack_from(tail, end_at)
-    at = end - (size - len(tail))
+    signature, disk, of_list, here, count, length, list_at, comment = _END.unpack_from(tail, end_at)
+    at = list_at - (size - len(tail))
     if signature != b"PK\x05\x06" or disk or of_list or here != count or comment or at < 0 or at + length != end_at:
         return {}
     entries = sorted(_plain_entries(tail[at:end_at]))
     if len(entries) != count or not count:
         return {}
-    ends = [*(entry[0] for entry in entries[1:]), end]
-    spans = {name: (begin, e, whole, crc) for (begin, whole, crc, name), e in zip(entries, ends, strict=True)}
-    is_sound = len(spans) == count and all(begin + whole <= end for begin, _, whole, _ in spans.values())
+    stops = [*(entry[0] for entry in entries[1:]), list_at]
+    spans = {name: (begin, stop, taken, crc) for (begin, taken, crc, name), stop in zip(entries, stops, strict=True)}
+    is_sound = len(spans) == count and all(begin + taken <= stop for begin, stop, taken, _ in spans.values())
     return spans if is_sound else {}
 
 
@@ -126,10 +130,11 @@ def _plain_entries(listed: bytes) -> list[tuple[int, int, int, str]]:
     while at < len(listed):
         if at + _LISTED.size > len(listed):
             return []
-        mark, flags, method, crc, stored, size, name, extra, note, disk, _, _, begin = _LISTED.unpack_from(listed, at)
+        mark, needed, flags, method, crc, stored, size, name, extra, note, disk, _, _, begin = _LISTED.unpack_from(listed, at)
         text = listed[at + _LISTED.size : at + _LISTED.size + name]
         at += _LISTED.size + name
-        is_plain = mark == b"PK\x01\x02" and not (flags & ~_UTF8 or method or stored != size or extra or note or disk)
+        is_plain = mark == b"PK\x01\x02" and needed == _VERSION
+        is_plain = is_plain and not (flags & ~_UTF8 or method or stored != size or extra or note or disk)
         if not is_plain or not text.isascii() or b"\0" in text:
             return []
         entries.append((begin, size, crc, text.decode()))
@@ -142,16 +147,18 @@ def _any_spans(tail: bytes, size: int) -> dict[str, tuple[int, int, int, int]]:
     window = _Window(tail, offset)
     try:
         with zipfile.ZipFile(window) as archive:
-            infos, end = sorted(archive.infolist(), key=lambda info: info.header_offset), archive.start_dir
+            infos, list_at = sorted(archive.infolist(), key=lambda info: info.header_offset), archive.start_dir
     except _Outside:
         raise
     except Exception as error:  # zipfile raises many kinds for altered bytes
         raise DamagedZipError(f"its list of files cannot be read ({type(error).__name__})") from error
     if any(i.compress_type != zipfile.ZIP_STORED or i.file_size != i.compress_size or i.flag_bits & 1 for i in infos):
         raise DamagedZipError("its files are compressed or encrypted")
-    ends = [*(info.header_offset for info in infos[1:]), end]
-    spans = {i.filename: (i.header_offset, e, i.file_size, i.CRC) for i, e in zip(infos, ends, strict=True)}
-    if len(spans) != len(infos) or any(begin < 0 or begin + count > end for begin, end, count, _ in spans.values()):
+    if not infos:
+        raise DamagedZipError("it holds nothing")
+    stops = [*(info.header_offset for info in infos[1:]), list_at]
+    spans = {i.filename: (i.header_offset, stop, i.file_size, i.CRC) for i, stop in zip(infos, stops, strict=True)}
+    if len(spans) != len(infos) or any(begin < 0 or begin + taken > stop for begin, stop, taken, _ in spans.values()):
         raise DamagedZipError("its list of files contradicts itself")
     return spans
 
@@ -180,8 +187,11 @@ class _Window(io.RawIOBase):
         return True
 
     def seek(self, offset: int, whence: int = 0) -> int:
-        self._at = offset + (0, self._at, self._offset + len(self._tail))[whence]
-        return self._at
+        at = offset + (0, self._at, self._offset + len(self._tail))[whence]
+        if at < 0:  # as a file says it: Python's reader seeks there where a file is shorter than the record of its end
+            raise OSError("before the beginning")
+        self._at = at
+        return at
 
     def tell(self) -> int:
         return self._at
