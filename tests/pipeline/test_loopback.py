@@ -7,10 +7,11 @@ import socket
 from collections.abc import Iterator
 from pathlib import Path
 
+import dask
 import pytest
 from distributed import Client, LocalCluster, Security
 
-from kinetree.errors import ConfigError
+from kinetree.errors import ClusterError, ConfigError
 from kinetree.pipeline.running import clusters
 from kinetree.pipeline.running.own_cluster import local
 from kinetree.pipeline.settings.config import Compute
@@ -135,6 +136,23 @@ def test_certificates_that_do_not_fit_are_the_users_to_mend(certificates, secure
     compute = Compute(scheduler=secured.replace("tls://", f"{scheme}://"), security=certificates[1][files])
     with pytest.raises(ConfigError, match=words), clusters.at(compute):
         pass
+
+
+def test_without_certificates_the_security_loader_of_dask_is_asked(monkeypatch):
+    asked = []
+
+    def client(address, timeout, security):
+        asked.append((address, security))
+        raise OSError("no such scheduler")
+
+    monkeypatch.setattr(clusters, "Client", client)
+    with (
+        dask.config.set({"distributed.client.security-loader": "company.certificates"}),
+        pytest.raises(ClusterError, match="nobody answers there"),
+        clusters.at(Compute(scheduler="tls://127.0.0.1:1")),
+    ):
+        pass
+    assert asked == [("tls://127.0.0.1:1", None)]
 
 
 @pytest.mark.parametrize(
