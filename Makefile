@@ -9,7 +9,7 @@ RUNS   ?= 1000000
 LOWEST := 'pytest>=8.2' 'pytest-timeout>=2.3.1' 'hypothesis>=6.100' 'libigl>=2.6' 'pygeodesic>=0.1.9'
 PROCESSES ?= 2
 
-.PHONY: demo test lint types tests coverage benchmarks faults fuzz accuracy lowest audit licences sbom wheel clean
+.PHONY: demo test lint types artifact-types tests coverage benchmarks faults fuzz accuracy lowest audit licences sbom wheel clean
 
 demo: $(READY)
 	$(BIN)/kinetree demo --output demo-output
@@ -21,6 +21,10 @@ lint: $(READY)
 
 types: $(READY)
 	$(BIN)/mypy
+
+# what the artifact of a task's name is to a type checker; after a task was added or renamed
+artifact-types: $(READY)
+	$(BIN)/python .ci/artifact_of_task.py
 
 # files go to the processes in the order in which they are collected: those that take longest first;
 # one thread of BLAS in each, since the processes fill the cores

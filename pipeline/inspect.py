@@ -12,7 +12,7 @@ import time
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any
 
 from kinetree.errors import NodesFailedError, ReadOnlyStoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline.application import Application, current, helped
@@ -24,6 +24,7 @@ from kinetree.pipeline.inspection.look import Difference, RunList, RunSummary, h
 from kinetree.pipeline.inspection.origins import origin_artifacts
 from kinetree.pipeline.inspection.plan import Plan, Planned
 from kinetree.pipeline.inspection.snapshot import Snapshot
+from kinetree.pipeline.inspection.typed_by_name import typed_by_name
 from kinetree.pipeline.output.output import as_yaml
 from kinetree.pipeline.output.session import Session, Status
 from kinetree.pipeline.planning.layout import OriginArtifacts
@@ -42,7 +43,6 @@ from kinetree.schemas.array import Artifact
 if TYPE_CHECKING:  # networkx is imported when a graph is asked for
     from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
 
-A = TypeVar("A", bound=Artifact)
 Outside = tuple[OriginArtifacts, list[str]]
 """What origins find, and remarks on it."""
 
@@ -256,11 +256,8 @@ class Pipeline:
         """The part of the graph of nodes from which this node is made and which is made from it."""
         return self.inspect().lineage(node)
 
-    @overload
-    def artifact(self, what: type[A], **index: int) -> A: ...
-    @overload
-    def artifact(self, what: str, **index: int) -> Any: ...
-    def artifact(self, what: type[A] | str, **index: int) -> Any:
+    @typed_by_name
+    def artifact(self, what: type[Artifact] | str, **index: int) -> Artifact:
         """One artifact, as `Snapshot.artifact` gives it; who wants several asks `inspect()` once."""
         return self.inspect(until=[self.tasks.writer(what).name]).artifact(what, **index)
 

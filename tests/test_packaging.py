@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,27 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parent.parent
-SHIPPED = (".py", ".yaml", ".js", ".css", ".html", ".jsonl", ".LICENSE")
+SHIPPED = (".py", ".pyi", ".yaml", ".js", ".css", ".html", ".jsonl", ".LICENSE")
+
+SCRIPT = """
+from kinetree.pipeline import Pipeline
+from kinetree.schemas.structure.skeleton import Skeleton
+
+pipeline = Pipeline.of("walk-out")
+there = pipeline.inspect()
+reveal_type(pipeline.artifact("skeleton"))
+reveal_type(there.artifact("skeleton").fps)
+reveal_type(there.artifact("kinematic_structure"))
+reveal_type(there.artifact(Skeleton))
+reveal_type(there.artifact("mesh", frame=3))
+reveal_type(there.artifact("stiffness", **{"pass": 1}))
+reveal_type(there.artifact("mesh[frame=3]"))
+there.artifact("skeletn").positions
+"""
+"""What a user may write; the last name is misspelt."""
+SKELETON, MESH = "kinetree.schemas.structure.skeleton.Skeleton", "kinetree.schemas.input.mesh.Mesh"
+STIFFNESS, ANY = "kinetree.schemas.registration.stiffness.Stiffness", "kinetree.schemas.array.Artifact"
+REVEALED = [SKELETON, "float | None", SKELETON, SKELETON, MESH, STIFFNESS, ANY]
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +60,10 @@ def test_wheel_holds_every_module_and_preset_and_nothing_generic(wheel: Path) ->
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"kinetree"}
 
 
-def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path, tmp_path: Path) -> None:
-    home = tmp_path / "clean"
+@pytest.fixture(scope="module")
+def home(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An environment in which the wheel is installed, with what it requires."""
+    home = tmp_path_factory.mktemp("clean")
     venv.create(home)
     (site,) = home.glob("lib/python*/site-packages")
     for name in required(wheel):
@@ -48,6 +71,10 @@ def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path
     pip = [sys.executable, "-m", "pip", "--python", str(home / "bin/python")]
     subprocess.run([*pip, "install", "--quiet", "--no-deps", str(wheel)], check=True, capture_output=True)
     subprocess.run([*pip, "check"], check=True, capture_output=True)
+    return home
+
+
+def test_wheel_works_from_another_folder_with_what_it_requires_alone(home: Path, tmp_path: Path) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     generic = "import importlib.util as u; print([n for n in ('pipeline', 'tasks', 'schemas') if u.find_spec(n)])"
@@ -61,6 +88,15 @@ def test_wheel_works_from_another_folder_with_what_it_requires_alone(wheel: Path
         counts = json.loads(done.stdout)["nodes"]
         assert counts["ran"] <= ran
         assert (counts["ran"] == 0) == (ran == 0)
+
+
+def test_a_users_type_checker_knows_the_artifact_of_every_task(home: Path, tmp_path: Path) -> None:
+    (tmp_path / "script.py").write_text(SCRIPT)
+    command = [sys.executable, "-m", "mypy", "--strict", "--python-executable", str(home / "bin" / "python"), "script.py"]
+    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False).stdout
+    assert re.findall(r'Revealed type is "(.*)"', said) == REVEALED
+    (error,) = re.findall(r": error: (.*)", said)
+    assert '"Artifact" has no attribute "positions"' in error
 
 
 def test_same_sources_give_the_same_wheel_to_the_byte(tmp_path: Path) -> None:

@@ -10,13 +10,14 @@ there.timings                             seconds, memory and bytes by task
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING
 
 from kinetree.errors import UnknownNodeError
 from kinetree.pipeline import views
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.plan import Plan, Planned
 from kinetree.pipeline.inspection.timings import Estimate, Timings, estimated
+from kinetree.pipeline.inspection.typed_by_name import typed_by_name
 from kinetree.pipeline.node import Node, label, parse
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.schedule import Schedule
@@ -24,8 +25,6 @@ from kinetree.schemas.array import Artifact
 
 if TYPE_CHECKING:  # networkx is imported when a graph is asked for
     from kinetree.pipeline.inspection.drawn_graph import DrawnGraph
-
-A = TypeVar("A", bound=Artifact)
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,14 +101,11 @@ class Snapshot:
         related = nx.ancestors(self.nodes, name) | nx.descendants(self.nodes, name) | {name}
         return DrawnGraph(self.nodes.subgraph(related))
 
-    @overload
-    def artifact(self, what: type[A], **index: int) -> A: ...
-    @overload
-    def artifact(self, what: str, **index: int) -> Any: ...
-    def artifact(self, what: type[A] | str, **index: int) -> Any:
+    @typed_by_name
+    def artifact(self, what: type[Artifact] | str, **index: int) -> Artifact:
         """The artifact of a class or of a task's name at an index, with arrays that are read when asked for.
 
-        what   : the artifact's class, which a type checker follows, or the name of the task that writes it
+        what   : the artifact's class or the name of the task that writes it; a type checker follows both
         index  : one number for each dimension that the task runs over
         raises : UnknownNodeError where there is no such node or it has not been computed
         """

@@ -59,7 +59,7 @@ def _skeleton(axes: "Axes", run: Run, frame: int, axis: Floats) -> None:
 
 def _captured(axes: "Axes", run: Run, frame: int, axis: Floats) -> None:
     body, mesh = run.fetch("skeleton"), run.fetch("mesh", frame=frame)
-    of_input = input_labels(body, run.there.artifact(run.pipeline.tasks.writers[Projection].name, frame=frame))
+    of_input = input_labels(body, run.there.artifact(Projection, frame=frame))
     label = np.full(len(mesh.vertices), -1, np.int32)
     known = mesh.vertex_of_input >= 0
     label[mesh.vertex_of_input[known]] = of_input[known]
