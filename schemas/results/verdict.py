@@ -17,6 +17,7 @@ Kind = Literal[
     "imprecise",
     "asymmetric",
     "small",
+    "shape",
     "close",
     "short",
     "still",
@@ -43,6 +44,7 @@ class Finding(Params):
     still       : no joint turns enough
     unpaired    : joints found on one side alone
     small       : joints that turn little
+    shape       : joints that the body's shape alone shows, so that no turn was measured there
     close       : joints very near the one that they hang on.
     """
     severity: Literal["grave", "fault", "note"]

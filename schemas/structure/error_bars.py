@@ -1,9 +1,12 @@
 """How far off every joint is expected to be (ours)."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import FRAME, JOINT
+
+Evidence = Literal["motion", "shape"]
+"""How a joint is known: its parts turn against each other; or by the body's shape alone, so that no turn was measured there."""
 
 
 class ErrorBars(Artifact):
@@ -39,3 +42,5 @@ class ErrorBars(Artifact):
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]
     """Frames in which most of the surface of the joint's parts was seen and certain."""
+    evidence: tuple[Evidence | None, ...]
+    """How each joint is known; None for root and leaves, and where it is not known."""

@@ -42,6 +42,7 @@ from kinetree.tasks.views.verdict import headline
 VARIATION = "length varies by, %"
 ERROR = "expected error"
 OFFSET = "surface offset"
+EVIDENCE = "evidence"
 
 
 @task()
@@ -132,6 +133,7 @@ def _joint_table(
         "bone length": skeleton.lengths.tolist(),
         VARIATION: [f"{v:.2g}" if np.isfinite(v) else "–" for v in np.where(parents < 0, np.nan, figures.length_variation)],
         "range, °": skeleton.degrees.tolist(),
+        EVIDENCE: [known or "–" for known in bars.evidence],
         ERROR: [_error_words(bars, j) for j in range(len(parents))],
         "drift": skeleton.drift.tolist(),
         OFFSET: [two_digits(v) if np.isfinite(v) else "–" for v in bars.surface_offset.tolist()],
@@ -143,6 +145,8 @@ def _joint_table(
         del columns[VARIATION]
     if not bars.cuts:
         del columns[ERROR]
+    if "shape" not in bars.evidence:
+        del columns[EVIDENCE]
     if not np.isfinite(bars.surface_offset).any():
         del columns[OFFSET]
     return list(columns), [list(row) for row in zip(*columns.values(), strict=True)]

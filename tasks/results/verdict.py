@@ -45,6 +45,7 @@ def verdict(
             length=skeleton.lengths / size,
             expected=np.array(error_bars.expected) / side,
             bound=np.array(error_bars.bound) / side,
+            by_shape=np.array([known == "shape" for known in error_bars.evidence]),
             pairs=pairs,
             unpaired=unpaired,
         )

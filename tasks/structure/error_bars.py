@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
-from kinetree.schemas.structure.error_bars import ErrorBars
+from kinetree.schemas.structure.error_bars import ErrorBars, Evidence
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.surface import surface_areas
@@ -36,6 +36,7 @@ def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
         turning_resistance=of_joints(features.resistance),
         agreeing=kinematic_tree.agreeing,
         support=np.where(turning, skeleton.support, 0),
+        evidence=_evidence(skeleton, kinematic_tree),
     )
 
 
@@ -52,7 +53,7 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
     return ErrorBars(
         joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
         in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
-        surface_offset=unknown, turning_resistance=unknown, agreeing=none, support=none,
+        surface_offset=unknown, turning_resistance=unknown, agreeing=none, support=none, evidence=(None,) * joints,
     )  # fmt: skip
 
 
@@ -69,3 +70,9 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     tube = np.where(shape_alone, np.array(tree.border_radius), np.nan)
     confidence = np.array(skeleton.confidence)
     return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, radius, tube, confidence, size)
+
+
+def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[Evidence | None, ...]:
+    """How each joint is known; None for root and leaves."""
+    necks = frozenset(kinematic_tree.neck_joints)
+    return tuple(None if kind != "joint" else "shape" if j in necks else "motion" for j, kind in enumerate(skeleton.kinds))

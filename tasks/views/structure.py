@@ -103,7 +103,9 @@ def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
         off = f"±{two_digits(bars.expected[joint])}{unit} (90 %: {two_digits(bars.bound[joint])})"
         if np.isfinite(bars.surface_offset[joint]):
             off += f", surface offset {two_digits(bars.surface_offset[joint])}{unit}"
-    return f"{length}, turns {skeleton.degrees[joint]:.0f}°, {off}, {support}"
+    by_shape = bars is not None and bars.evidence[joint] == "shape"
+    turn = "by the shape alone, no turn measured" if by_shape else f"turns {skeleton.degrees[joint]:.0f}°"
+    return f"{length}, {turn}, {off}, {support}"
 
 
 def two_digits(length: float) -> str:
@@ -134,6 +136,7 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
         expected, bound, drift, spread, residual, offset = (two_digits(getattr(bars, name)[j]) for name in lengths)
         evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
         evidence += "" if np.isnan(bars.surface_offset[j]) else f", surface offset {offset}"
+        evidence = "by the shape alone" if bars.evidence[j] == "shape" else evidence
         support = f"seen in {bars.support[j]} frames"
         lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {support}")
     return tuple(lines)

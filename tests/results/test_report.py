@@ -188,3 +188,11 @@ def test_joints_have_their_expected_error_beside_them_where_it_is_known() -> Non
     unknown = page(error_bars=unknown_error_bars(body))
     assert "expected error" not in unknown
     assert "surface offset" not in unknown
+
+
+def test_table_of_joints_says_which_of_them_the_shape_alone_shows() -> None:
+    bars, j = bars_of(spider()), spider().kinds.index("joint")
+    alone = bars.model_copy(update={"evidence": tuple("shape" if k == j else known for k, known in enumerate(bars.evidence))})
+    assert page(error_bars=alone).count("<td>shape</td>") == 1
+    assert "<td>motion</td>" in page(error_bars=alone)
+    assert "<td>motion</td>" not in page(), "no such column where all joints are known by motion"

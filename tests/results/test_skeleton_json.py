@@ -143,6 +143,20 @@ def test_spread_of_a_joint_that_one_cut_has_its_offset_where_there_is_none_and_a
 def test_files_without_expected_errors_are_still_read(body):
     content = json.loads(text(body))
     assert content["errors"] is None
-    assert {joint.pop("error") for joint in content["joints"]} == {None}
+    assert (
+        {joint.pop("error") for joint in content["joints"]} == {joint.pop("evidence") for joint in content["joints"]} == {None}
+    )
     del content["errors"]
     assert Document.model_validate(content).errors is None
+
+
+def test_joints_say_whether_motion_or_the_shape_alone_shows_them(body):
+    j = body.kinds.index("joint")
+    bars = bars_of(body)
+    alone = bars.model_copy(update={"evidence": tuple("shape" if k == j else known for k, known in enumerate(bars.evidence))})
+    content = json.loads(text(body, bars=alone))
+    assert Document.model_validate(content)
+    of_kind = {kind: {joint["evidence"] for joint in content["joints"] if joint["kind"] == kind} for kind in body.kinds}
+    assert of_kind == {"root": {None}, "joint": {"motion", "shape"}, "leaf": {None}}
+    assert content["joints"][j]["evidence"] == "shape"
+    assert {joint["evidence"] for joint in json.loads(text(body))["joints"]} == {None}

@@ -228,9 +228,9 @@ def test_joints_have_their_expected_error_and_its_evidence_and_frames_have_their
         if kind == "joint":
             assert float(told["expected_error"]) == pytest.approx(expected)
             assert float(told["error_bound"]) == pytest.approx(2 * expected)
-            assert (told["cuts_agreeing"], told["cuts"], told["frames_seen"]) == ("3", "4", "12")
+            assert (told["cuts_agreeing"], told["cuts"], told["frames_seen"], told["evidence"]) == ("3", "4", "12", "motion")
         else:
-            assert told["expected_error"] == told["cuts"] == told["frames_seen"] == ""
+            assert told["expected_error"] == told["cuts"] == told["frames_seen"] == told["evidence"] == ""
     head, *values = csv.reader(io.StringIO(made["tables/errors.csv"].decode(), newline=""))
     j = body.kinds.index("joint")
     assert head[2:] == list(body.names)

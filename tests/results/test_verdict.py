@@ -10,14 +10,23 @@ from results.sample_report import artifacts, confident
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.verdict import Finding, Verdict
+from kinetree.schemas.structure.error_bars import Evidence
 from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.verdict import verdict
 from kinetree.tasks.views.verdict import headline, runs, sentence
 
 
-def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = (), bound: float = 0.1) -> Verdict:
-    """The verdict on the spider; in some frames the hand of the input is moved away; every joint is known to a bound."""
+def of(
+    spoilt: dict[int, float] | None = None,
+    failed: tuple[int, ...] = (),
+    bound: float = 0.1,
+    evidence: tuple[Evidence | None, ...] | None = None,
+) -> Verdict:
+    """The verdict on the spider; in some frames the hand of the input is moved away; every joint is known to a bound.
+
+    evidence : (joint,) how each joint is known; None for motion
+    """
     body = spider()
     anatomy = tuple("hand_end_l" if name == "hand" else "shoulder_l" if name == "arm" else "" for name in body.names)
     content = artifacts()
@@ -32,7 +41,12 @@ def of(spoilt: dict[int, float] | None = None, failed: tuple[int, ...] = (), bou
         joint_names=plain(body, anatomy=anatomy),
         frame_confidence=confident(body.frames, failed=failed),
         surface_error=errors,
-        error_bars=bars_of(body).model_copy(update={"bound": np.where(np.array(body.kinds) == "joint", bound, np.nan)}),
+        error_bars=bars_of(body).model_copy(
+            update={
+                "bound": np.where(np.array(body.kinds) == "joint", bound, np.nan),
+                "evidence": evidence or bars_of(body).evidence,
+            }
+        ),
     )
 
 
@@ -131,3 +145,12 @@ def test_every_kind_of_finding_has_its_sentence(kind: str) -> None:
     text = sentence(found, of())
     assert text[0].islower()
     assert not text.endswith(".")
+
+
+def test_a_joint_that_the_shape_alone_shows_is_named_with_the_words_for_it() -> None:
+    alone = tuple(
+        "shape" if name == "knee" else known for name, known in zip(spider().names, bars_of(spider()).evidence, strict=True)
+    )
+    line, reason, *_ = views.remarks(of(evidence=alone))
+    assert line == "good except for knee"
+    assert reason == "knee: placed by the body's shape alone, no turn was measured there"

@@ -93,3 +93,17 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
     assert "residual 0.02, surface offset 0.02, seen" in views.text(offset)[0]
     large = bars.model_copy(update={"bound": np.full(5, 123.4)})
     assert "(90 %: 120)" in beside(large)[0]
+
+
+def test_a_joint_that_the_shape_alone_shows_says_so_wherever_its_evidence_stands() -> None:
+    body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
+    bars = error_bars(body, tree.model_copy(update={"neck_joints": (3,)}))
+    assert bars.evidence == (None, "motion", None, "shape", "motion")
+    assert [("by the shape alone" in line, "drift" in line) for line in views.text(bars)] == [
+        (False, True),
+        (True, False),
+        (False, True),
+    ]
+    words = views.text(body, lambda cls: bars if cls is ErrorBars else None)
+    assert [j for j, line in enumerate(words) if "by the shape alone, no turn measured" in line] == [3]
+    assert unknown_error_bars(body).evidence == (None,) * 5

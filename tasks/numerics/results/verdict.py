@@ -60,6 +60,7 @@ class Evidence(NamedTuple):
     length     : (joint,) of the bone to its parent, share of the diagonal
     expected   : (joint,) expected error, share of the longest side of the body's box; NaN where it is not known
     bound      : (joint,) the distance that the mean error of nine joints of ten keeps, the same share; NaN where not known
+    by_shape   : (joint,) whether the body's shape alone shows the joint, so that it turns by nothing
     pairs      : pairs of joints, left and right, whose bones should be equally long
     unpaired   : joints that have a side, and no partner
     """
@@ -76,6 +77,7 @@ class Evidence(NamedTuple):
     length: Floats
     expected: Floats
     bound: Floats
+    by_shape: Flags
     pairs: Sequence[tuple[int, int]]
     unpaired: Sequence[int]
 
@@ -197,8 +199,11 @@ def _of_joints(e: Evidence, state: Ints, s: VerdictSettings) -> Iterator[Finding
     small = e.turning & (e.degrees < s.degrees)
     close = e.turning & (e.length < s.length) & ~small
     yield from _asymmetric(e, weak | small | close, s)
-    if small.any() and not small[e.turning].all():
-        yield Finding("small", "fault", (), _at(small), float(e.degrees[small].max()))
+    little = small & ~e.by_shape
+    if little.any() and not little[e.turning & ~e.by_shape].all():
+        yield Finding("small", "fault", (), _at(little), float(e.degrees[little].max()))
+    if e.by_shape.any():
+        yield Finding("shape", "fault", (), _at(e.by_shape))
     if close.any():
         yield Finding("close", "fault", (), _at(close), float(e.length[close].min()))
     if e.unpaired:

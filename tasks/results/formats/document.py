@@ -91,6 +91,7 @@ def _joints(skeleton: Skeleton, names: JointNames, B: Floats, assumed: Collectio
     offset = local_offsets(skeleton.rest, B, skeleton.parents).tolist()
     identity = np.broadcast_to(np.eye(3), (1, *B.shape))
     rotation = np.round(quaternions(local_rotations(identity, B, skeleton.parents))[0], DIGITS).tolist()
+    evidence = {} if bars is None else dict(zip(bars.joints, bars.evidence, strict=True))
     return [
         Joint(
             name=names.names[j],
@@ -99,6 +100,7 @@ def _joints(skeleton: Skeleton, names: JointNames, B: Floats, assumed: Collectio
             kind="assumed" if j in assumed else skeleton.kinds[j],
             range=float(skeleton.degrees[j]),
             rest=Rest(position=tuple(skeleton.rest[j].tolist()), offset=tuple(offset[j]), rotation=tuple(rotation[j])),
+            evidence=evidence.get(skeleton.names[j]),
             error=_joint_error(skeleton.names[j], bars),
         )
         for j in range(len(skeleton.names))

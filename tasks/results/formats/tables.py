@@ -38,9 +38,10 @@ def tables(skeleton: Skeleton, found: Derivatives | None, bars: ErrorBars | None
 
     motion      a row a frame and joint: frame, seconds, joint, position x y z, velocity vx vy vz, acceleration ax ay az,
                 rotation qx qy qz qw against the parent as in skeleton.json, confidence
-    joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths; its
-                expected error, a bound that nine of ten joints keep, and the evidence: drift, spread over so many cuts of which
-                so many have the joint, residual, surface offset, frames seen; no such columns where no error is known
+    joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths; whether
+                its motion or the body's shape alone shows it; its expected error, a bound that nine of ten joints keep, and
+                drift, spread over so many cuts of which so many have the joint, residual, surface offset, frames seen; no
+                such columns where no error is known
     positions   a row a frame: frame, seconds, then x, y, z of every joint
     confidence  a row a frame: frame, seconds, then every joint's confidence, 0 to 1
     errors      a row a frame: frame, seconds, then every joint's expected error; only where errors are known
@@ -84,7 +85,8 @@ def _error_columns(bars: ErrorBars | None, joints: int) -> dict[str, Column]:
         return {}
     found = {column: np.asarray(getattr(bars, field), np.float64) for column, field in ERROR_COLUMNS.items()}
     found["cuts"] = np.full(joints, float(bars.cuts))
-    return {column: np.where(np.isnan(bars.expected), np.nan, values) for column, values in found.items()}
+    numbers = {column: np.where(np.isnan(bars.expected), np.nan, values) for column, values in found.items()}
+    return {"evidence": [known or "" for known in bars.evidence], **numbers}
 
 
 def _errors_in_frames(skeleton: Skeleton, bars: ErrorBars) -> Floats:
