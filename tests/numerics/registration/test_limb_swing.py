@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, bent, rotation, tube
+from shipped import GRAPH
+from skimage.measure import marching_cubes
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
@@ -21,6 +23,35 @@ NONE = np.zeros((0, 5, 3))
 def bent_stems(angle, order=(1, 0)):
     """Stems and centre of the bent tube as a frame shows them, in an order of its own."""
     return np.stack([bent(stem, angle) for stem in STEMS])[list(order)], bent(V, angle).mean(axis=0)
+
+
+REACHING = np.array([[5.0, 4.0, 3.0], [-5.0, 4.0, 3.0], [2.0, 0.0, -9.0], [-2.0, 0.0, -9.0]])
+"""(limb, xyz) ends of two arms that reach forwards and of two legs; the trunk is the z axis from −4 to 4."""
+ROOTS = np.array([[0.0, 0.0, 3.0], [0.0, 0.0, 3.0], [0.0, 0.0, -4.0], [0.0, 0.0, -4.0]])
+
+
+def reaching_body():
+    """V, F of a trunk, two arms and two legs, and stems (limb, station, xyz)."""
+    x = np.stack(
+        np.meshgrid(np.arange(-7, 7.1, 0.4), np.arange(-3, 6.1, 0.4), np.arange(-11, 6.1, 0.4), indexing="ij"), axis=-1
+    )
+    ends = [
+        (np.array([0.0, 0.0, -4.0]), np.array([0.0, 0.0, 4.0]), 1.3),
+        *((a, b, 0.8) for a, b in zip(ROOTS, REACHING, strict=True)),
+    ]
+    along = [np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1) for a, b, _ in ends]
+    inside = [r - np.linalg.norm(x - a - s[..., None] * (b - a), axis=-1) for (a, b, r), s in zip(ends, along, strict=True)]
+    surface, faces, _, _ = marching_cubes(np.max(inside, axis=0), 0.0, gradient_direction="ascent")
+    share = np.linspace(0.2, 1.0, 5)[None, :, None]
+    stems = ROOTS[:, None] + share * (REACHING - ROOTS)[:, None]
+    return surface * 0.4 + x[0, 0, 0], np.ascontiguousarray(faces, dtype=np.int64), stems
+
+
+def twisted(x, angle):
+    """Points (…, xyz) turned about the trunk, the chest in full and the legs not at all."""
+    turn = angle * np.clip((x[..., 2] + 3.0) / 5.0, 0.0, 1.0)
+    cos, sin = np.cos(turn), np.sin(turn)
+    return np.stack([cos * x[..., 0] - sin * x[..., 1], sin * x[..., 0] + cos * x[..., 1], x[..., 2]], axis=-1)
 
 
 def test_points_at_rest_lie_where_they_are_and_turn_with_the_body(body):
@@ -60,6 +91,17 @@ def test_a_limb_that_the_frame_does_not_show_goes_along_with_the_others(body):
     shift = np.array([0.0, 2.0, 0.0])
     found = swung(body, at_rest(body), STEMS, stems[:1] + shift, centre + shift)
     np.testing.assert_allclose(shape(body, found)[0], body.V + shift, atol=0.05 * LENGTH)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 1, 0, 2)])
+def test_arms_stay_on_their_sides_where_the_trunk_twists_and_each_comes_nearer_to_the_place_of_the_other_one(order):
+    surface, faces, stems = reaching_body()
+    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    goal = twisted(stems, 1.65)
+    assert np.linalg.norm(goal[1::-1] - stems[:2], axis=2).mean() < np.linalg.norm(goal[:2] - stems[:2], axis=2).mean()
+    centre = twisted(shape(body, at_rest(body))[0][body.sample], 1.65).mean(axis=0)
+    swing = swung(body, at_rest(body), stems, goal[list(order)], centre)
+    np.testing.assert_allclose(carried(body, swing, stem_points(body, stems)), goal.reshape(-1, 3), atol=1.0)
 
 
 def test_without_limbs_nothing_is_swung(body):
