@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from distributed import Client, Security, config, performance_report
+from distributed.comm import get_address_host
 from distributed.comm.core import FatalCommClosedError
 
 from kinetree.errors import ClusterError, ConfigError
@@ -20,6 +21,32 @@ from kinetree.pipeline.settings.config import Compute
 
 CONNECT_SECONDS = 10
 SCHEDULER_FILE_BYTES = 2**20
+NO_TLS = {
+    "WRONG_VERSION_NUMBER",
+    "RECORD_LAYER_FAILURE",  # the same from OpenSSL 3.2 on
+    "PACKET_LENGTH_TOO_LONG",
+    "UNEXPECTED_MESSAGE",
+    "UNEXPECTED_EOF_WHILE_READING",
+}
+"""What OpenSSL says of somebody who speaks something else than TLS, or hangs up."""
+_NOBODY_SPEAKS_TLS = "nobody speaks TLS there ({}); check the address and the scheduler"
+
+
+class _ClosedUnlessConnected(Client):  # type: ignore[misc]
+    """A client that is closed where it cannot connect.
+
+    dask leaves that to the garbage collector; where this comes while another client starts, it waits for a lock that its own
+    thread has, for ever.
+    """
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        try:
+            super().__init__(*args, **options)
+        except Exception:
+            with contextlib.suppress(OSError, RuntimeError, TimeoutError, AttributeError):  # it may be half made
+                self.close()
+                self._loop_runner.stop()  # dask leaves it running where it has closed the client itself
+            raise
 
 
 @contextlib.contextmanager
@@ -50,27 +77,42 @@ def connected(
 
 @contextlib.contextmanager
 def at(compute: Compute) -> Iterator[Client]:
-    """A scheduler that somebody else runs; raises ClusterError where nobody answers, ConfigError where TLS refuses."""
+    """A scheduler that somebody else runs; raises ClusterError where none answers, ConfigError where TLS refuses."""
     asked = f"--scheduler {compute.scheduler}" if compute.scheduler else f"--scheduler-file {compute.scheduler_file}"
-    try:
-        address = compute.scheduler or _left_address(Path(str(compute.scheduler_file)))
+    with _refusals(asked):
+        try:
+            address = compute.scheduler or _left_address(Path(str(compute.scheduler_file)))
+            get_address_host(address)
+        except (ValueError, KeyError, TypeError) as error:
+            raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
         security = secured(compute, asked).get("security")
         if security or not _has_security_loader():
             refuse_unfit(address, security or Security(), asked)
-        client = Client(address, timeout=CONNECT_SECONDS, security=security)
-    except (ValueError, KeyError, TypeError) as error:
-        raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
+        client = _ClosedUnlessConnected(address, timeout=CONNECT_SECONDS, security=security)
+    with closed(client):
+        yield client
+
+
+@contextlib.contextmanager
+def _refusals(asked: str) -> Iterator[None]:
+    """What dask says where it cannot connect, in words: a fault of the cluster or one of the configuration."""
+    try:
+        yield
     except FatalCommClosedError as error:
         why = error.__cause__ or error
+        if getattr(why, "reason", "") in NO_TLS:
+            raise ClusterError(f"{asked}: {_NOBODY_SPEAKS_TLS.format(why)}") from error
         raise ConfigError(f"{asked}: the certificates of the two sides do not fit ({why}); see compute.security") from None
+    except ValueError as error:  # tornado's, of a connection that was closed before it could be secured
+        raise ClusterError(f"{asked}: {_NOBODY_SPEAKS_TLS.format(error)}") from error
+    except ImportError as error:
+        raise ConfigError(f"{asked}: dask's distributed.client.security-loader cannot be imported ({error})") from None
     except (OSError, TimeoutError) as error:
         raise ClusterError(
             f"{asked}: nobody answers there within {CONNECT_SECONDS} s ({type(error).__name__});"
             " check the address (tls:// where it is secured) and that the scheduler runs (dask scheduler), or leave the"
             " option out"
         ) from error
-    with closed(client):
-        yield client
 
 
 def _has_security_loader() -> bool:

@@ -3,7 +3,10 @@
 import ipaddress
 import json
 import os
+import re
 import socket
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -138,6 +141,32 @@ def test_certificates_that_do_not_fit_are_the_users_to_mend(certificates, secure
         pass
 
 
+def test_somebody_who_speaks_no_tls_is_a_fault_of_the_cluster_and_leaves_no_client(certificates):
+    """In a process of its own: tornado leaves sockets open where it cannot secure them."""
+    script = [sys.executable, str(Path(__file__).parent / "no_tls.py"), json.dumps(certificates[1]["right"])]
+    answers = json.loads(subprocess.run(script, capture_output=True, text=True, check=True).stdout)
+    assert len(answers) == 6
+    for refusal, says, threads in answers.values():
+        assert refusal == "ClusterError"
+        assert re.search(r"nobody speaks TLS there .*; check the address", says)
+        assert threads == []
+
+
+@pytest.mark.parametrize("address", ["tcp://host", "tcp://host:port", "host", "nosuch://host:8786", "tcp://[::1"])
+def test_what_is_no_address_is_the_users_to_mend(address):
+    with pytest.raises(ConfigError, match="not an address"), clusters.at(Compute(scheduler=address)):
+        pass
+
+
+def test_a_security_loader_that_is_not_there_is_the_users_to_mend():
+    with (
+        dask.config.set({"distributed.client.security-loader": "nowhere.certificates"}),
+        pytest.raises(ConfigError, match=r"security-loader cannot be imported .*nowhere"),
+        clusters.at(Compute(scheduler="tcp://127.0.0.1:1")),
+    ):
+        pass
+
+
 def test_without_certificates_the_security_loader_of_dask_is_asked(monkeypatch):
     asked = []
 
@@ -145,7 +174,7 @@ def test_without_certificates_the_security_loader_of_dask_is_asked(monkeypatch):
         asked.append((address, security))
         raise OSError("no such scheduler")
 
-    monkeypatch.setattr(clusters, "Client", client)
+    monkeypatch.setattr(clusters, "_ClosedUnlessConnected", client)
     with (
         dask.config.set({"distributed.client.security-loader": "company.certificates"}),
         pytest.raises(ClusterError, match="nobody answers there"),
