@@ -8,11 +8,14 @@ from limbs import LENGTH, rotation, tube
 from shapes import y_pipe
 from shipped import TREE
 
+from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+ALL_STAY = TREE._replace(pruning=TREE.pruning._replace(degrees=0.0, ratio=0.0, flesh_length=0.0))
+"""Settings with which no part is dropped."""
 
 
 class Known(NamedTuple):
@@ -103,6 +106,20 @@ def neck_ends(body: Known) -> TreeJoints:
     label = (body.V[:, 2] > 0.0).astype(np.int64)
     cut = Cut(body.V, label, body.R[:, ends], body.t[:, ends], body.residual[:, ends])
     return tree_joints(MovingSurface(body.V, body.F, body.x, body.area), cut, tips, settings=TREE)
+
+
+def surface(body: Known) -> MovingSurface:
+    return MovingSurface(body.V, body.F, body.x, body.area)
+
+
+def cut_by_height(body: Known, heights: tuple[float, ...]) -> TreeJoints:
+    """Parts between the heights, each with the rigid motion that explains its vertices best."""
+    label = np.searchsorted(np.array(heights), body.V[:, 2])
+    V = np.broadcast_to(body.V, body.x.shape)
+    fits = [rigid_motion(V[:, label == p], body.x[:, label == p]) for p in range(len(heights) + 1)]
+    R, t = (np.stack(of, axis=1) for of in zip(*fits, strict=True))
+    tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    return tree_joints(surface(body), Cut(body.V, label, R, t, np.zeros(R.shape[:2])), tips, settings=ALL_STAY)
 
 
 def three_arms(turn: Floats | None = None, reach: float = 12.0) -> Known:

@@ -5,6 +5,7 @@ from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.loose_parts import tightened
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.slabs import bones_without_slabs
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints
 
 
@@ -26,7 +27,7 @@ def cut_tree(
     if not _looks_for_bones(confidence, settings):
         return found
     noise = settings.noise * body.size
-    return tightened(body, inserted_bones(body, found, noise), noise)
+    return tightened(body, bones_without_slabs(body, found, settings), noise)
 
 
 def cut_joints(
@@ -34,7 +35,8 @@ def cut_joints(
 ) -> tuple[Floats, Floats]:
     """The joints of another cut of the same body, but for its root; the frames need not show them.
 
-    Whether the body has bones that no cut can find is for the first cut to say, so that both are given.
+    Whether the body has bones that no cut can find is for the first cut to say, so that both are given. Slabs beside them stay:
+    their joints have no partner in the first cut, and chests are placed better with them.
 
     leaves, confidence : as in `cut_tree`
     returns            : (frame, joint, xyz) without such bones · (frame, joint, xyz) with them, mesh unit

@@ -103,6 +103,11 @@ def pruned(
     return state
 
 
+def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
+    """The same without a part that turned out to be flesh, whose vertices go to the parts around it."""
+    return _without(body, state, gone, FLESH, *rings(body.F, len(body.V)))
+
+
 def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, chosen: PruningSettings) -> Pruned:
     """Drops weak parts until none is weak or none can be spared."""
     start, ring = rings(body.F, len(body.V))

@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
-from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned
+from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned, without_flesh
 from kinetree.tasks.numerics.structure.rigid_cores import core_motions
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres, widest_drift
@@ -124,11 +124,23 @@ def tree_joints(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     evidence   : the frames' surfaces, which must show every joint; None asks for no evidence
     """
-    chosen, (V, F, x, area, _) = settings, body
-    label = _filled(V, np.array(cut.label, dtype=np.int64))
+    label = _filled(body.V, np.array(cut.label, dtype=np.int64))
     used, label, R, t, residual = _used(label, cut.R, cut.t, cut.residual)
-    seen = None if confidence is None else confident_share(label, area, confidence, len(x), R.shape[1])
-    left = pruned(body, MovingParts(label, R, t, residual, seen), leaves, evidence, settings=chosen.pruning)
+    seen = None if confidence is None else confident_share(label, body.area, confidence, len(body.x), R.shape[1])
+    left = pruned(body, MovingParts(label, R, t, residual, seen), leaves, evidence, settings=settings.pruning)
+    return _of_parts(body, left, used, confidence, settings)
+
+
+def without_part(body: MovingSurface, found: TreeJoints, part: int, settings: KinematicTreeSettings) -> TreeJoints:
+    """The tree without a part that is flesh, by its number among those that are left; every vertex of the body was followed."""
+    return _of_parts(body, without_flesh(body, found.left, part), found.used, None, settings)
+
+
+def _of_parts(
+    body: MovingSurface, left: Pruned, used: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
+) -> TreeJoints:
+    """The joints of the parts that are left."""
+    V, F, x, area, _ = body
     tree = left.part_tree.tree
     label = np.argsort(tree.order)[left.parts.label]
     tau = np.ones(x.shape[:2]) if confidence is None else np.array(confidence, dtype=np.float64)

@@ -2,30 +2,11 @@
 
 import numpy as np
 import pytest
-from articulated import Known, and_at_rest, chain, swings
-from shipped import TREE
+from articulated import Known, and_at_rest, chain, cut_by_height, surface, swings
 
-from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.loose_parts import LoosePartsSettings, tightened
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
-
-ALL_STAY = TREE._replace(pruning=TREE.pruning._replace(degrees=0.0, ratio=0.0, flesh_length=0.0))
-
-
-def surface(body: Known) -> MovingSurface:
-    return MovingSurface(body.V, body.F, body.x, body.area)
-
-
-def cut_by_height(body: Known, heights: tuple[float, ...]) -> TreeJoints:
-    """Parts between the heights, each with the rigid motion that explains its vertices best."""
-    label = np.searchsorted(np.array(heights), body.V[:, 2])
-    V = np.broadcast_to(body.V, body.x.shape)
-    fits = [rigid_motion(V[:, label == p], body.x[:, label == p]) for p in range(len(heights) + 1)]
-    R, t = (np.stack(of, axis=1) for of in zip(*fits, strict=True))
-    tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    return tree_joints(surface(body), Cut(body.V, label, R, t, np.zeros(R.shape[:2])), tips, settings=ALL_STAY)
+from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 
 
 def error_of_turning(joints: TreeJoints, body: Known, place: int, part: int) -> float:
