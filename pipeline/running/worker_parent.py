@@ -85,7 +85,7 @@ class WorkerParent:
         self._preload[:] = server._preload_modules
         is_started = False
         try:
-            with _set(variables):
+            with _set({**variables, "PYTHONWARNINGS": _without_leaks()}):
                 resource_tracker.ensure_running()  # which lets interrupts through again
             with _set(variables), _interrupts_held_back():
                 forkserver.set_forkserver_preload([worker_preload.__name__])
@@ -117,6 +117,11 @@ def _ended(server: Any) -> None:
             time.sleep(0.01)
     with contextlib.suppress(OSError, TypeError):
         Path(address).unlink()
+
+
+def _without_leaks() -> str:
+    """PYTHONWARNINGS of the process that removes what an interrupted run leaves; it would warn of that behind the prompt."""
+    return ",".join(filter(None, (os.environ.get("PYTHONWARNINGS"), "ignore:resource_tracker")))
 
 
 @contextlib.contextmanager

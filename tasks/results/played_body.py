@@ -19,8 +19,7 @@ from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
 from kinetree.tasks.results.formats.names import in_words
 from kinetree.tasks.results.glb import NO_APPEARANCE
-from kinetree.tasks.results.page.packing import Packing
-from kinetree.tasks.results.page.scene import Limits, Scene, scene
+from kinetree.tasks.results.page.scene import Limits, scene
 from kinetree.tasks.results.page.surface_colours import surface_colours
 
 
@@ -52,10 +51,3 @@ def played_body(
         reference_vertex=body.reference_vertex,
         axes=body.axes,
     )
-
-
-def played_scene(played: PlayedBody) -> Scene:
-    """What the page contains of it."""
-    description = json.loads(played.description)
-    packing = Packing(description["arrays"], played.block.tobytes(), played.size, played.checksum)
-    return Scene(description, packing, played.omitted, np.array(played.reference_vertex), np.array(played.axes))

@@ -31,9 +31,9 @@ from kinetree.tasks.numerics.results.verdict import VerdictSettings
 from kinetree.tasks.results.formats.assumed import NOTHING_ASSUMED
 from kinetree.tasks.results.page.chapters import pictures, sections
 from kinetree.tasks.results.page.document import Page, Section, document, table
+from kinetree.tasks.results.page.played_scene import played_scene
 from kinetree.tasks.results.page.trust import Trust, with_trust
 from kinetree.tasks.results.page.warnings import WarningLimits, counted, faults, notes
-from kinetree.tasks.results.played_body import played_scene
 from kinetree.tasks.views.results import evaluation_remarks
 from kinetree.tasks.views.structure import assumed_words, two_digits
 from kinetree.tasks.views.topology import UNSURE

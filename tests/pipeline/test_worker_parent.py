@@ -3,6 +3,7 @@
 import contextlib
 import os
 import signal
+import subprocess
 import sys
 from multiprocessing import forkserver, get_context
 from pathlib import Path
@@ -30,6 +31,20 @@ def test_workers_are_forked_and_have_what_the_product_has_loaded():
             assert {"colorsys", "kinetree.pipeline.running.execute"} <= loaded
     with pytest.raises(ProcessLookupError):
         os.kill(server, 0)
+
+
+def test_what_an_interrupted_run_leaves_is_removed_without_a_warning_after_the_prompt():
+    """A semaphore that is left is what Python warns of; the process that removes it is told not to."""
+    left = """
+import os, multiprocessing
+from kinetree.pipeline.running.worker_parent import WorkerParent
+with WorkerParent() as parent:
+    parent.begin({})
+    left = multiprocessing.get_context("forkserver").Semaphore()
+    os._exit(130)
+"""
+    ended = subprocess.run([sys.executable, "-c", left], capture_output=True, text=True, check=False, timeout=60)
+    assert (ended.returncode, ended.stderr) == (130, "")
 
 
 def test_without_anything_to_compute_there_is_none():

@@ -6,7 +6,7 @@ from results.sample_report import page_artifacts
 
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.tasks.methods import METHODS
-from kinetree.tasks.results.played_body import played_scene
+from kinetree.tasks.results.page.played_scene import played_scene
 
 
 def test_page_reads_what_was_packed() -> None:
