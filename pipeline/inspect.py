@@ -20,9 +20,10 @@ from kinetree.pipeline.graph import Graph
 from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
 from kinetree.pipeline.inspection.diff import difference
 from kinetree.pipeline.inspection.history import History
-from kinetree.pipeline.inspection.look import Difference, RunList, RunSummary, html_table
+from kinetree.pipeline.inspection.look import Difference, RunList, html_table
 from kinetree.pipeline.inspection.origins import origin_artifacts
 from kinetree.pipeline.inspection.plan import Plan, Planned
+from kinetree.pipeline.inspection.run_summary import RunSummary
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.inspection.typed_by_name import typed_by_name
 from kinetree.pipeline.output.output import as_yaml

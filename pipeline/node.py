@@ -44,7 +44,7 @@ def parse(text: str, graph: Graph) -> Node:
 
 def project(index: Index, space: Space, onto: Space) -> Index:
     """The part of an index that belongs to the dimensions of `onto`, all of which `space` has."""
-    return tuple(index[space.index(dim)] for dim in onto)
+    return index if onto == space else tuple(index[space.index(dim)] for dim in onto)
 
 
 def _example(graph: Graph) -> str:

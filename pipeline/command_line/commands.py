@@ -38,6 +38,7 @@ from kinetree.pipeline.storage.sizes import bytes_of
 
 if TYPE_CHECKING:
     from kinetree.pipeline.inspect import Pipeline
+    from kinetree.pipeline.inspection.run_summary import RunSummary
     from kinetree.pipeline.running.events import Listener
     from kinetree.pipeline.storage.files import Settling
 
@@ -230,7 +231,7 @@ def _progress(pipeline: "Pipeline", quiet: bool, log: Path | None) -> "Iterator[
         yield listeners
 
 
-def _print_summary(summary: dict[str, Any], pipeline: "Pipeline") -> None:
+def _print_summary(summary: "RunSummary", pipeline: "Pipeline") -> None:
     from kinetree.pipeline.command_line.progress import clock
 
     counts = summary["nodes"]
@@ -239,7 +240,7 @@ def _print_summary(summary: dict[str, Any], pipeline: "Pipeline") -> None:
     for note in summary.get("notes", ()):
         err.print(printable(note), markup=False)
     out.print(f"{summary['status']}: {line} in {clock(summary['seconds'])}")
-    remarks = pipeline.remarks()
+    remarks = summary.there.remarks()
     for node, text in remarks[:REMARKS_PRINTED]:
         out.print(f"{node}: {printable(text)}", markup=False)
     if len(remarks) > REMARKS_PRINTED:

@@ -1,19 +1,10 @@
-"""How a run, the list of runs and a comparison look in a shell and in a notebook: plain dictionaries and lists otherwise."""
+"""How the list of runs and a comparison look in a shell and in a notebook: plain dictionaries and lists otherwise."""
 
 import html
 from collections.abc import Sequence
 from typing import Any
 
 RUN_COLUMNS = ("name", "status", "ran", "fresh", "failed", "seconds", "output")
-
-
-class RunSummary(dict[str, Any]):
-    """The content of run.json and the run's name; shown as one line and its failures."""
-
-    def __repr__(self) -> str:
-        counts = ", ".join(f"{count} {name}" for name, count in self["nodes"].items() if count or name in ("ran", "fresh"))
-        lines = [f"{self['run']} {self['status']}: {counts} in {self['seconds']:.1f} s"]
-        return "\n".join(lines + [f"  {f['node']}: {f['error']}: {f['message']}" for f in self["failures"]])
 
 
 class RunList(list[dict[str, Any]]):

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from kinetree.errors import StoreError, StoreFullError
 from kinetree.pipeline.inspection.history import History, closing, new_name, opening, summary
-from kinetree.pipeline.inspection.look import RunSummary
+from kinetree.pipeline.inspection.run_summary import RunSummary
 from kinetree.pipeline.inspection.snapshot import Snapshot
 from kinetree.pipeline.output.output import (
     RUN_JSON,
@@ -106,12 +106,12 @@ class Session:
         if self.is_own:
             write_run_json(self.config, content)
         if not self.is_on_record:
-            return RunSummary({"run": self.name, **content})
+            return RunSummary({"run": self.name, **content}, self.there)
         before = History.of(store, self.config).last_nodes()
         store.create()  # which somebody may have removed meanwhile
         store.write_run(self.name, closing(self.opened, schedule, before, self.account, summed))
         store.records.pack(self.name, [e.key for e in schedule.entries.values() if e.key and e.state in DONE])
-        return RunSummary({"run": self.name, **content})
+        return RunSummary({"run": self.name, **content}, self.there)
 
     def write_pages(self, summed: Mapping[str, Any]) -> None:
         """Leaves the pages that also tell of the run, as `close` summed it up."""

@@ -1,7 +1,7 @@
 """Which nodes there are and what they read, as far as the artifacts that open spaces and order traversals are known."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol, TypeVar
 
@@ -33,6 +33,8 @@ class Layout:
     origin_artifacts: OriginArtifacts
     ask: Ask
     exists: Callable[[Node], bool]
+    _listed: dict[tuple[str, Index], tuple[Artifact, Sequence[int], frozenset[int]]] = field(default_factory=dict)
+    """By space and prefix, what listed the members and what it listed: every node below is looked for among them."""
 
     def indices(self, space: Space, within: Mapping[str, int] = EVERYWHERE) -> tuple[list[Index], tuple[Node, ...]]:
         """The known indices of a space, and the nodes that must be computed before the rest is known.
@@ -97,8 +99,19 @@ class Layout:
                 return [only] if (*prefix, only) in there else []
             return sorted(i[-1] for i in there if i[:-1] == prefix)
         node = Node(opener.name, project(prefix, space[:-1], opener.over))
-        members = self.ask(node, lambda value: value.members("/".join(space), prefix))
-        return node if members is None else [m for m in members if only is None or m == only]
+        listed = self.ask(node, lambda value: self._listed_by(value, "/".join(space), prefix))
+        if listed is None:
+            return node
+        members, lookup = listed
+        return members if only is None else [only] * (only in lookup)
+
+    def _listed_by(self, value: Artifact, space: str, prefix: Index) -> tuple[Sequence[int], frozenset[int]]:
+        """What an artifact lists below a prefix, in order and to look one up; it is asked once, however many nodes ask."""
+        last = self._listed.get((space, prefix))
+        if last is None or last[0] is not value:
+            members = tuple(value.members(space, prefix))
+            last = self._listed[space, prefix] = value, members, frozenset(members)
+        return last[1], last[2]
 
     def refuse_missing(self, task: AnyTask, reader: str, nodes: Sequence[Node]) -> None:
         """Raises GraphError where a node, by its label, reads one that does not exist."""

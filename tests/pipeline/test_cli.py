@@ -13,9 +13,11 @@ import pytest
 import yaml
 
 from kinetree.errors import KinetreeError, MeshError
+from kinetree.pipeline import inspect
 from kinetree.pipeline.command_line import cli, queries
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.inspection.show import statistics
+from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.tasks.application import APPLICATION, main
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n{x} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -157,6 +159,16 @@ def test_run_says_what_it_did_and_where_the_results_are(kinetree, scans, tmp_pat
     code, printed, complained = kinetree("run", "walk", "--until", "connectivity")
     assert code == 0
     assert printed.startswith("done: 0 ran, 5 fresh in ")
+
+
+def test_run_looks_at_the_input_and_the_store_once(kinetree, walked, monkeypatch):
+    laid_out = []
+    monkeypatch.setattr(inspect, "Schedule", lambda *a, **named: laid_out.append(a) or Schedule(*a, **named))
+    code, printed, _ = kinetree("run", walked, "--until", "connectivity", "--executor", "sync")
+    assert code == 0
+    assert "0 ran" in printed
+    assert "nothing has to be aligned" in printed
+    assert len(laid_out) == 1
 
 
 def test_run_leaves_its_account_and_its_configuration(kinetree, walked, tmp_path):

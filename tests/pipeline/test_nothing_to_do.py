@@ -57,6 +57,22 @@ def test_reads_and_writes_do_not_grow_with_the_frames_and_a_node_is_asked_for_on
     assert many["size"] <= nodes + 5
 
 
+def test_what_lists_members_is_asked_for_them_once_however_many_frames_there_are(toys, monkeypatch, tmp_path):
+    questions = []
+    intervals = toys.module.Intervals
+    plain = intervals.members
+    monkeypatch.setattr(intervals, "members", lambda *asked: questions.append(asked[1:]) or plain(*asked))
+    counts = []
+    for frames in (5, 40):
+        toys.write(*(10.0 * (n + 1) for n in range(frames)))
+        blocks = {**ALONE, "output": str(tmp_path / f"{frames}")}
+        toys.run(**blocks)
+        questions.clear()
+        assert not toys.run(**blocks).ran
+        counts.append(sorted(questions))
+    assert counts[0] == counts[1] == [("interval", ()), ("interval/frame", (0,))]
+
+
 def test_libraries_that_compute_and_store_are_not_imported(toys):
     config = str(toys.yaml())
     assert toys.command("run", config, "--quiet").returncode == 0
