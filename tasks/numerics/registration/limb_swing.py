@@ -29,8 +29,8 @@ class LimbSwingSettings(NamedTuple):
     """What the distances of all points from the stems weigh, against one edge for every node."""
     rounds: int = 10
     """Rounds in which nodes are moved and then turned. With 5, 20 and 40 as many limbs of a dance and a wolf come back."""
-    exchange: float = 0.75
-    """Share of the energy that an exchange of two stems must fall below. Right exchanges of four people had 0.22 to 0.57, a
+    exchange: float = 0.875
+    """Share of the energy that an exchange of two stems must fall below. Right exchanges of five people had 0.22 to 0.77, a
     wrong one of a ballet 0.98, all others more than 1."""
     begun: float = 2.0
     """How many times the energy it may have after one round, to be gone on with: right exchanges had 0.9 to 1.7 times."""
