@@ -145,11 +145,12 @@ def cluster_of(compute: Compute) -> Any:
     try:
         made = getattr(importlib.import_module(module), name)
     except (ImportError, AttributeError) as error:
-        raise ConfigError(f"compute.cluster {compute.cluster}: {error}; pip install 'kinetree[cluster]'") from None
+        hint = "pip install 'kinetree[cluster]'" if module == "dask_jobqueue" else "install the package that has it"
+        raise ConfigError(f"compute.cluster {compute.cluster}: {error}; {hint}") from None
     try:
         return made(**{**secured(compute), **compute.options})
     except (TypeError, ValueError) as error:
-        raise ConfigError(f"compute.options: {compute.cluster} refuses them: {error}") from None
+        raise ConfigError(f"compute.cluster {compute.cluster} with compute.options cannot be made: {error}") from None
     except (OSError, RuntimeError) as error:
         raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
 

@@ -1,6 +1,9 @@
 """Clusters whose workers come late, come and go, or never come; and those that a configuration names."""
 
+import inspect
 import json
+import sys
+import types
 
 import pytest
 from distributed import Client, LocalCluster
@@ -46,9 +49,9 @@ def test_a_cluster_is_named_by_class_and_options(toys, tmp_path):
     options = {**NONE, "processes": False}
     compute = {"cluster": "distributed:LocalCluster", "options": options, "workers": 1}
     assert toys.run(until=("smooth",), compute=compute).told["status"] == "done"
-    with pytest.raises(ConfigError, match="compute.cluster nowhere:Cluster: No module named 'nowhere'"):
+    with pytest.raises(ConfigError, match="compute.cluster nowhere:Cluster: No module named 'nowhere'; install the package"):
         cluster_of(Compute(cluster="nowhere:Cluster"))
-    with pytest.raises(ConfigError, match="compute.options: fractions:Fraction refuses them"):
+    with pytest.raises(ConfigError, match="compute.cluster fractions:Fraction with compute.options cannot be made: .*nonsense"):
         cluster_of(Compute(cluster="fractions:Fraction", options={"nonsense": 1}))
 
 
@@ -65,6 +68,26 @@ def test_the_preset_for_slurm_asks_the_queue_for_what_it_says():
         assert "--nworkers 8" in script
     finally:
         cluster.close()
+
+
+def test_the_preset_for_kubernetes_names_options_that_its_cluster_takes():
+    operator = pytest.importorskip("dask_kubernetes.operator", reason="dask-kubernetes is not installed")
+    compute = Pipeline.of({"compute": "kubernetes"}).config.compute
+    assert compute.cluster == "dask_kubernetes.operator:KubeCluster"
+    inspect.signature(operator.KubeCluster.__init__).bind(None, **compute.options)
+
+
+def test_the_preset_for_kubernetes_starts_what_it_names(monkeypatch):
+    made = []
+    operator = types.ModuleType("dask_kubernetes.operator")
+    operator.KubeCluster = lambda **options: made.append(options) or LocalCluster(**INSIDE)
+    monkeypatch.setitem(sys.modules, "dask_kubernetes", types.ModuleType("dask_kubernetes"))
+    monkeypatch.setitem(sys.modules, "dask_kubernetes.operator", operator)
+    compute = Pipeline.of({"compute": "kubernetes"}).config.compute
+    with clusters.started(compute) as client:
+        assert client.cluster.workers == {}, "none before there is work"
+    assert made == [compute.options]
+    assert {"name", "image"} <= set(made[0])
 
 
 def test_an_address_that_is_none_is_the_users_to_mend(toys, tmp_path):
