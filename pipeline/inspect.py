@@ -32,6 +32,7 @@ from kinetree.pipeline.planning.layout import OriginArtifacts
 from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.running.events import Account, Listener, Watch
+from kinetree.pipeline.running.interrupts import raise_swallowed
 from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.running.worker_parent import WorkerParent, refuse_within_import
 from kinetree.pipeline.settings import config as configuration
@@ -187,6 +188,7 @@ class Pipeline:
         with WorkerParent(self.worker_setup) as parent, advising(self.store):
             files = Files.of(self.store, settling, unknown=begin)
             there = self._snapshot(files, tuple(until) or self.tasks.unasked, force, made_with)
+            raise_swallowed()  # before anything is put on record and workers start
             session = Session.begin(self.config, there, listeners, started=started, told_of=self.described())
             files.save()
             status: Status = "interrupted"
@@ -284,6 +286,7 @@ class Pipeline:
         from kinetree.pipeline.running.losses import take_back_lost
         from kinetree.pipeline.running.run import run
 
+        raise_swallowed()  # by what was imported just now
         is_whole, beside = False, self.beside if client is None and self.config.compute.is_here else None
         while not is_whole:
             with helped(beside), launcher(self.config.compute, client, parent) as launch:

@@ -23,6 +23,16 @@ def is_interrupted() -> bool:
     return _heard.is_set()
 
 
+def raise_swallowed() -> None:
+    """Raises KeyboardInterrupt where a signal came before that a library passed over.
+
+    Libraries try to import others and pass over whatever is raised meanwhile.
+    """
+    if _heard.is_set():
+        _heard.clear()  # a later run of this process is not meant
+        raise KeyboardInterrupt
+
+
 def _interrupt(*_: object) -> NoReturn:
     _heard.set()
     raise KeyboardInterrupt
@@ -36,12 +46,9 @@ def interruptible(interrupt: Callable[..., None], *, is_apart: bool) -> Iterator
     very thread (not `is_apart`) is interrupted as usual. A signal that whoever started this process had it ignore (nohup, a
     job in the background) stays ignored.
 
-    raises : KeyboardInterrupt where one came before and was swallowed: libraries try to import others and pass over whatever
-             is raised meanwhile
+    raises : KeyboardInterrupt as `raise_swallowed`
     """
-    if _heard.is_set():
-        _heard.clear()  # a later run of this process is not meant
-        raise KeyboardInterrupt
+    raise_swallowed()
     if not is_apart or threading.current_thread() is not threading.main_thread():
         yield
         return

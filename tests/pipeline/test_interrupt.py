@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from kinetree.pipeline.inspect import Pipeline
+from kinetree.pipeline.running import launch
 from kinetree.pipeline.running.interrupts import heed, interruptible
 
 
@@ -106,3 +108,28 @@ def test_an_interrupt_that_a_library_swallows_is_heard_before_the_first_node():
         heed()
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def test_a_signal_that_a_library_passed_over_ends_a_run_before_it_starts_workers(toys, monkeypatch):
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    started = []
+    monkeypatch.setattr(launch, "launcher", lambda *_: started.append(True))
+    pipeline = toys.pipeline()
+    plain = Pipeline.look
+
+    def look(self, *asked):
+        with contextlib.suppress(BaseException):
+            os.kill(os.getpid(), signal.SIGTERM)
+        return plain(self, *asked)
+
+    monkeypatch.setattr(Pipeline, "look", look)
+    try:
+        heed()
+        with pytest.raises(KeyboardInterrupt):
+            pipeline.run()
+    finally:
+        heed()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    assert started == []
+    assert pipeline.runs() == [], "nothing is on record"
