@@ -29,8 +29,8 @@ from pathlib import Path
 from typing import Any
 
 from kinetree.pipeline.identity.definitions import Code
-from kinetree.pipeline.identity.key import HARMLESS
 from kinetree.pipeline.identity.modules import PACKAGE
+from kinetree.pipeline.identity.own_code import HARMLESS
 from kinetree.pipeline.identity.statements import syntax
 from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.records import Records

@@ -51,7 +51,8 @@ from scipy.optimize import linear_sum_assignment
 
 from kinetree.errors import KinetreeError
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.identity.key import code_parts, digest
+from kinetree.pipeline.identity.key import digest
+from kinetree.pipeline.identity.own_code import code_parts
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.planning import freshness
 from kinetree.pipeline.running import execute

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from kinetree.errors import CycleError, GraphError, MissingWriterError, TwoWritersError
 from kinetree.pipeline.edges import AnyTask as AnyTask
 from kinetree.pipeline.edges import Edges, lists_members
-from kinetree.pipeline.identity.key import code_parts, keep_code
+from kinetree.pipeline.identity.own_code import code_parts, keep_code
 from kinetree.pipeline.task import Space, space
 from kinetree.schemas.array import Artifact, Params
 

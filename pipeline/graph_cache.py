@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 from kinetree.errors import ClusterError, GraphError
 from kinetree.pipeline.graph import AnyTask, Graph
 from kinetree.pipeline.identity import kept
-from kinetree.pipeline.identity.key import CODE_ROOTS, code_state, is_code_as_read, is_own_code, source_of
+from kinetree.pipeline.identity.own_code import CODE_ROOTS, code_state, is_code_as_read, is_own_code, source_of
 from kinetree.pipeline.signature import Argument
 from kinetree.pipeline.task import Task, load
 from kinetree.schemas.array import Artifact, Params

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 from kinetree.errors import NodesFailedError, ReadOnlyStoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline.application import Application, current, helped
 from kinetree.pipeline.graph import Graph
-from kinetree.pipeline.identity.key import artifact_digest, code_digest, digest
+from kinetree.pipeline.identity.key import artifact_digest, digest
+from kinetree.pipeline.identity.own_code import code_digest
 from kinetree.pipeline.inspection.diff import difference
 from kinetree.pipeline.inspection.history import History
 from kinetree.pipeline.inspection.look import Difference, RunList, html_table

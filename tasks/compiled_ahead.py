@@ -16,7 +16,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from kinetree.pipeline.identity.key import code_state, digest
+from kinetree.pipeline.identity.key import digest
+from kinetree.pipeline.identity.own_code import code_state
 from kinetree.tasks.numerics.kernel_folder import kernel_folder
 
 SWITCH = "KINETREE_COMPILE_AHEAD"

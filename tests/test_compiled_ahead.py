@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kinetree.pipeline.identity.key import code_parts
+from kinetree.pipeline.identity.own_code import code_parts
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.tasks import compiled_ahead
 from kinetree.tasks.compiled_ahead import SWITCH, compiling_ahead, main

@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from kinetree.pipeline.graph import AnyTask, Graph
-from kinetree.pipeline.identity.key import code_digest, code_parts, node_key
+from kinetree.pipeline.identity.key import encoded, node_key
+from kinetree.pipeline.identity.own_code import code_digest, code_parts
 from kinetree.pipeline.node import Node
 from kinetree.pipeline.planning.entry import Entry
 from kinetree.pipeline.planning.made_with import MadeWith
@@ -31,6 +32,7 @@ class Freshness:
     ) -> None:
         self.graph = graph
         self.params = {task.name: asked_params(task, params) for task in graph.tasks}
+        self.encoded = {name: encoded(asked) for name, asked in self.params.items()}
         self.code = {task.name: code_digest(task.module, task.name) for task in graph.tasks}
         self.force = force
         self.recall = recall
@@ -49,7 +51,7 @@ class Freshness:
             for (a, nodes), work_input in zip(entry.inputs or (), work.inputs, strict=True)
         ]
         index = entry.node.at if entry.task.asks_index else None
-        key = node_key(entry.node.task, self.code[entry.node.task], work.params, identity, index)
+        key = node_key(entry.node.task, self.code[entry.node.task], self.encoded[entry.node.task], identity, index)
         record = self.holder.record(key)
         if record is not None and not self._asked_again(entry, record) and self.holder.holds(record):
             return key, record, ()

@@ -15,7 +15,8 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Literal
 
 from kinetree.errors import DamagedArtifactError, StaleWorkerError, StoreError
-from kinetree.pipeline.identity.key import artifact_digest, code_digest, code_parts, node_key
+from kinetree.pipeline.identity.key import artifact_digest, node_key
+from kinetree.pipeline.identity.own_code import code_digest, code_parts
 from kinetree.pipeline.planning.made_with import MadeWith
 from kinetree.pipeline.running.memory import measured
 from kinetree.pipeline.running.sight import Sight

@@ -5,6 +5,7 @@ from itertools import pairwise
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
@@ -123,11 +124,18 @@ class KinematicTree(ArticulatedBody):
 
     def runs(self) -> tuple[tuple[int, ...], ...]:
         """Uncertain source frames, neighbours together, a few at a time."""
+        return tuple(map(self._numbers, self._rows()))
+
+    def _rows(self) -> list[NDArray[np.intp]]:
+        """By run, the rows of its frames."""
         at = np.flatnonzero(self.uncertain)
-        ends = [0, *(i + 1 for i, (a, b) in enumerate(pairwise(at)) if b > a + 1), len(at)]
-        rows = [at[k : min(k + MOST_TOGETHER, b)] for a, b in pairwise(ends) for k in range(a, b, MOST_TOGETHER)]
-        return tuple(tuple(self.frames[t] for t in run) for run in rows)
+        ends = [0, *(np.flatnonzero(np.diff(at) > 1) + 1), len(at)]
+        return [at[k : min(k + MOST_TOGETHER, b)] for a, b in pairwise(ends) for k in range(a, b, MOST_TOGETHER)]
+
+    def _numbers(self, rows: NDArray[np.intp]) -> tuple[int, ...]:
+        return tuple(self.frames[t] for t in rows)
 
     def members(self, space: str, index: Index) -> Sequence[int]:
         """The runs of uncertain frames, numbered from 0, or the source frames of one."""
-        return range(len(self.runs())) if space == "doubt" else self.runs()[index[0]]
+        rows = self._rows()
+        return range(len(rows)) if space == "doubt" else self._numbers(rows[index[0]])

@@ -21,7 +21,7 @@ import pytest
 from distributed import LocalCluster
 from pipeline.toy_clusters import NONE
 
-from kinetree.pipeline.identity.key import forget_code
+from kinetree.pipeline.identity.own_code import forget_code
 from kinetree.pipeline.inspect import Pipeline
 
 HERE = Path(__file__).parent

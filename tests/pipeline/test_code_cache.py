@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from kinetree.pipeline.identity import key
+from kinetree.pipeline.identity import own_code
 from kinetree.pipeline.identity.code_cache import CodeCache
 from kinetree.pipeline.identity.kept import FILES_KEPT
 from kinetree.tasks.input.mesh import mesh
@@ -16,9 +16,9 @@ FOUND = ("0" * 40, {"a.b": "f:000000"})
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    key.forget_code()
+    own_code.forget_code()
     yield tmp_path / "kinetree" / "code"
-    key.forget_code()
+    own_code.forget_code()
 
 
 def cache_of(texts=TEXTS):
@@ -74,11 +74,11 @@ def test_a_file_that_is_used_stays(home):
 
 
 def test_kept_digests_are_those_that_are_computed(monkeypatch):
-    computed = key.code_digest(mesh.module, mesh.name), key.code_parts(mesh.module, mesh.name)
-    key.keep_code()
-    key.forget_code()
-    monkeypatch.setattr(key, "_computed", None)
-    assert (key.code_digest(mesh.module, mesh.name), key.code_parts(mesh.module, mesh.name)) == computed
+    computed = own_code.code_digest(mesh.module, mesh.name), own_code.code_parts(mesh.module, mesh.name)
+    own_code.keep_code()
+    own_code.forget_code()
+    monkeypatch.setattr(own_code, "_computed", None)
+    assert (own_code.code_digest(mesh.module, mesh.name), own_code.code_parts(mesh.module, mesh.name)) == computed
 
 
 def test_code_of_another_package_is_not_kept(toys, home):

@@ -6,7 +6,7 @@ import pytest
 
 from kinetree.errors import GraphError
 from kinetree.pipeline import views
-from kinetree.pipeline.identity.key import code_parts
+from kinetree.pipeline.identity.own_code import code_parts
 from kinetree.pipeline.output import output
 from kinetree.schemas.array import Artifact
 from kinetree.tasks import VIEWS
