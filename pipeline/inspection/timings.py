@@ -75,6 +75,8 @@ class Estimate:
     by_task: dict[str, float]
     nodes: int
     """Nodes that are known not to be fresh."""
+    waiting: int
+    """Those of them that need not run where what they wait for stays as it was; they count as if they ran."""
     unknown: tuple[str, ...]
     """Tasks of which a node would run and none ever did; they count nothing."""
     open_tasks: tuple[str, ...]
@@ -86,13 +88,15 @@ class Estimate:
 
     def __str__(self) -> str:
         text = f"about {self.seconds:.1f} s of computing for {self.nodes} nodes"
+        if self.waiting:
+            text += f", {self.waiting} of which run only if what they wait for changes"
         if self.unknown:
             text += f", and what {', '.join(self.unknown)} will take, of which no run is on record"
         return text
 
 
 def estimated(schedule: Schedule, last: Mapping[str, Record]) -> Estimate:
-    """The estimate of what a schedule has to compute; nodes that only wait count as if they ran.
+    """The estimate of what a schedule has to compute.
 
     last : by label, the records of the nodes of the last runs
     """
@@ -109,7 +113,8 @@ def estimated(schedule: Schedule, last: Mapping[str, Record]) -> Estimate:
             seconds[record.task] += record.seconds
     wanted = {e.node.task for e in todo} | set(open_tasks)
     unknown = tuple(task.name for task in schedule.graph.tasks if task.name in wanted and task.name not in means)
-    return Estimate(round(sum(seconds.values()), 3), dict(seconds), len(todo), unknown, open_tasks)
+    waiting = sum(entry.state == "waits" for entry in todo)
+    return Estimate(round(sum(seconds.values()), 3), dict(seconds), len(todo), waiting, unknown, open_tasks)
 
 
 def _means(records: Sequence[Record]) -> dict[str, float]:

@@ -135,9 +135,10 @@ def _nodes(store: Store, run: dict[str, Any]) -> dict[str, Any]:
 def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: Collection[str], since: float) -> Garbage:
     records: list[str] = []
     needed: set[str] = set()
+    known = store.records.listed()  # first: a run under way writes more while these are judged
     singles = store.records.singles()
     recent = store.records.since(since)
-    for key in store.records.listed():
+    for key in known:
         is_wanted = key in keys or key in recent
         record = (singles.get(key) or store.record(key, as_listed=True)) if is_wanted else None
         if record is not None:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -9,6 +10,7 @@ from kinetree.errors import StoreFullError, UnknownNodeError
 from kinetree.pipeline.storage import gc
 from kinetree.pipeline.storage.gc import advising, collect
 from kinetree.pipeline.storage.records import Records
+from kinetree.pipeline.storage.sealed import sealed
 from kinetree.pipeline.storage.store import Store
 
 
@@ -122,6 +124,24 @@ def test_a_run_under_way_is_safe(toys):
     assert process.returncode == 0, err
     toys.clear()
     assert toys.run().ran == set()
+
+
+@pytest.mark.parametrize("asked", ["singles", "since", "listed"])
+def test_what_a_run_under_way_records_during_a_collection_is_safe(toys, asked, monkeypatch):
+    toys.run()
+    there = store(toys)
+    monkeypatch.setattr("kinetree.pipeline.storage.gc._latest", lambda runs: [{**run, "list": ""} for run in runs.values()])
+    late, ask = replace(next(there.records.all()), key="ab" * 20), getattr(Records, asked)
+
+    def answered(records, *arguments):
+        answer = ask(records, *arguments)
+        (toys.output / "store" / "records" / f"{late.key}.json").write_bytes(sealed(asdict(late)))
+        return answer
+
+    monkeypatch.setattr(Records, asked, answered)
+    assert late.key not in collect(there).records
+    monkeypatch.undo()
+    assert store(toys).record(late.key) == late
 
 
 def test_what_a_run_under_way_found_fresh_is_safe(toys):

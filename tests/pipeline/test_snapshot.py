@@ -82,6 +82,9 @@ def test_an_estimate_counts_what_the_same_nodes_took(toys):
     toys.run()
     entries = toys.pipeline().inspect().schedule.entries.values()
     expected = toys.pipeline().inspect(force=["points"]).estimate()
+    forced = sum(e.node.task == "points" for e in entries)
+    assert expected.nodes - expected.waiting == forced < expected.nodes
+    assert f"{expected.waiting} of which run only if what they wait for changes" in str(expected)
     assert expected.by_task["points"] == pytest.approx(sum(e.record.seconds for e in entries if e.node.task == "points"))
     assert expected.unknown == ()
 
