@@ -3,7 +3,7 @@
 Three digests, each of tagged canonical bytes (1 and "1" differ, no two values share an encoding), pinned by golden tests:
 
     artifact_digest   what an artifact holds: schema name and version, field names, dtypes, shapes, bytes
-    code_digest       what a task does: the syntax trees of the definitions that its function reaches by name
+    code_digest       in `own_code`, what a task does: the syntax trees of the definitions that its function reaches by name
     node_key          task name + code digest + params + input digests: what a node will compute, before it is computed
 """
 
