@@ -9,7 +9,7 @@ import pytest
 from kinetree.errors import ClusterError, GraphError
 from kinetree.pipeline import graph_cache
 from kinetree.pipeline.graph_cache import import_functions, kept_graphs
-from kinetree.pipeline.identity import kept, key
+from kinetree.pipeline.identity import kept, own_code
 from kinetree.tasks.methods import DATA_SETS, METHODS
 
 REFERENCE = "kinetree.tasks.methods:METHODS"
@@ -25,7 +25,7 @@ def home(tmp_path, monkeypatch):
 
 
 def forget():
-    key.forget_code()
+    own_code.forget_code()
     graph_cache._graphs.cache_clear()
 
 
@@ -111,8 +111,8 @@ def test_graphs_of_other_packages_are_not_kept(toys, home):
 
 def test_code_that_is_edited_after_it_was_planned_with_is_not_imported(monkeypatch):
     read = read_again()["mesoscopic"].until(["sequence"])
-    stamps = dict(key._stamps())
-    monkeypatch.setattr(key, "_stamps", lambda: {**stamps, "kinetree.tasks.input.mesh": (0, 0)})
+    stamps = dict(own_code._stamps())
+    monkeypatch.setattr(own_code, "_stamps", lambda: {**stamps, "kinetree.tasks.input.mesh": (0, 0)})
     import_functions(read)  # they are all imported already, as they were
     monkeypatch.delitem(sys.modules, "kinetree.tasks.input.sequence")
     with pytest.raises(ClusterError, match="was edited after this process had planned with it; run again"):
