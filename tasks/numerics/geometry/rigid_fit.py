@@ -31,6 +31,19 @@ def nearest_rotation(H: Floats) -> Floats:
     return np.asarray(U @ Vt, dtype=np.float64)
 
 
+@compiled
+def nearest_rotations(H: Floats) -> Floats:
+    """The same as `nearest_rotation` for many matrices, as eigenvectors of their quaternion matrices  (Horn 1987).
+
+    H       : (matrix, 3, 3) any unit
+    returns : (matrix, 3, 3)
+    """
+    R = np.empty_like(H)
+    for i in range(len(H)):
+        write_rotation(jacobi_eigenvector(quaternion_matrix(H[i])), R[i])
+    return R
+
+
 def rigid_motion(Q: Floats, X: Floats, weight: Floats | None = None) -> tuple[Floats, Floats]:
     """The rigid motion that carries Q nearest to X, in least squares  (Kabsch 1976).
 

@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotation
+from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotations
 from kinetree.tasks.numerics.registration.deformation import Pose, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
@@ -152,39 +152,61 @@ class _Swing(NamedTuple):
         solver = cho_factor((2.0 * D.T @ D).toarray() + weight * M.T @ M + settings.anchor * np.eye(nodes))
         return cls(graph, pose, points, settings, solver, D, M, weight)
 
-    def reached(self, goal: Floats, rounds: int) -> tuple[Pose, float]:
-        """The pose of least Σ |R_j (g_k − g_j) + p_j − p_k|² + weight · |points − goal|², by moving and turning nodes in turn.
+    def reached(self, goal: Floats, rounds: int) -> list[tuple[Pose, float]]:
+        """The poses of least Σ |R_j (g_k − g_j) + p_j − p_k|² + weight · |points − goal|², by moving and turning nodes in turn.
 
-        goal    : (point, xyz) mesh unit
-        returns : Pose · that sum, mesh unit²
+        goal    : (pose, point, xyz) where the points are to be in each pose, mesh unit
+        returns : (pose,) Pose · that sum, mesh unit²
         """
         graph, anchor, points = self.graph, self.settings.anchor, self.points
         a, b = graph.edge.T
         e = graph.g[b] - graph.g[a]
-        R, p = np.array(self.pose.rotation), np.array(self.pose.translation)
-        along = p + (goal - carried(graph, self.pose, points)).mean(axis=0)
+        R = np.repeat(self.pose.rotation[None], len(goal), axis=0)
+        p = np.repeat(self.pose.translation[None], len(goal), axis=0)
+        along = p + (goal - carried(graph, self.pose, points)).mean(axis=1, keepdims=True)
         floor = self.settings.held * np.square(e).sum() / len(graph.node)
         for _ in range(rounds):
-            both = np.einsum("exy,ey->ex", R[a] + R[b], e)
-            pull = self.weight * self.M.T @ (goal - _turned(graph, R, points))
-            p = cho_solve(self.solver, self.D.T @ both + pull + anchor * along)
-            outer = np.einsum("ex,ey->exy", self.D @ p, e).reshape(-1, 9)
-            R = nearest_rotation((abs(self.D).T @ outer).reshape(-1, 3, 3) + floor * R)
-        apart = carried(graph, Pose(R, p), points) - goal
-        bent = sum(float(np.square(np.einsum("exy,ey->ex", R[end], e) - self.D @ p).sum()) for end in (a, b))
-        return Pose(R, p), bent + self.weight * float(np.square(apart).sum())
+            both = np.einsum("sexy,ey->sex", R[:, a] + R[:, b], e)
+            pull = self.weight * self.M.T @ (goal - np.stack([_turned(graph, turns, points) for turns in R]))
+            p = self._placed(_applied(self.D.T, both) + pull + anchor * along)
+            outer = np.einsum("sex,ey->sexy", _applied(self.D, p), e).reshape(len(goal), -1, 9)
+            H = _applied(abs(self.D).T, outer).reshape(R.shape) + floor * R
+            R = nearest_rotations(H.reshape(-1, 3, 3)).reshape(R.shape)
+        return [(pose, self._energy(pose, place)) for pose, place in zip(map(Pose, R, p), goal, strict=True)]
+
+    def _placed(self, pull: Floats) -> Floats:
+        """(pose, node, xyz) the places of nodes, from what pulls them."""
+        columns = pull.transpose(1, 0, 2).reshape(pull.shape[1], -1)
+        placed: Floats = cho_solve(self.solver, columns, check_finite=False)
+        return placed.reshape(len(columns), -1, 3).transpose(1, 0, 2)
+
+    def _energy(self, pose: Pose, goal: Floats) -> float:
+        """The sum that `reached` makes least; goal (point, xyz), mesh unit²."""
+        a, b = self.graph.edge.T
+        e, along = self.graph.g[b] - self.graph.g[a], self.D @ pose.translation
+        bent = sum(float(np.square(np.einsum("exy,ey->ex", pose.rotation[end], e) - along).sum()) for end in (a, b))
+        return bent + self.weight * float(np.square(carried(self.graph, pose, self.points) - goal).sum())
+
+
+def _applied(A: csr_array, x: Floats) -> Floats:
+    """(pose, row, any) A x for every x (pose, column, any)."""
+    return np.stack([A @ one for one in x])
 
 
 def _least_bent(swing: _Swing, stems: Floats, given: Ints) -> Pose:
     """The pose with stems as given (limb,) or with pairs exchanged, for as long as an exchange has clearly less energy."""
     chosen = swing.settings
-    best, energy = swing.reached(stems[given].reshape(-1, 3), chosen.rounds)
+
+    def reached(orders: list[Ints], rounds: int) -> list[tuple[Pose, float]]:
+        return swing.reached(np.stack([stems[order].reshape(-1, 3) for order in orders]), rounds) if orders else []
+
+    best, energy = reached([given], chosen.rounds)[0]
     while True:
         orders = [given, *(_exchanged(given, *pair) for pair in combinations(range(len(given)), 2))]
-        begun = [swing.reached(stems[order].reshape(-1, 3), 1)[1] for order in orders]
+        begun = [one for _, one in reached(orders, 1)]
         near = [order for order, one in zip(orders[1:], begun[1:], strict=True) if one <= chosen.begun * begun[0]]
-        reached = [(*swing.reached(stems[order].reshape(-1, 3), chosen.rounds), order) for order in near]
-        pose, least, order = min(reached, key=lambda one: one[1], default=(best, energy, given))
+        ends = [(*end, order) for end, order in zip(reached(near, chosen.rounds), near, strict=True)]
+        pose, least, order = min(ends, key=lambda one: one[1], default=(best, energy, given))
         if least >= chosen.exchange * energy:
             return best
         best, energy, given = pose, least, order

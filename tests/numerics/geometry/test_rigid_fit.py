@@ -8,6 +8,7 @@ from kinetree.tasks.numerics.geometry.rigid_fit import (
     moments,
     motion,
     nearest_rotation,
+    nearest_rotations,
     residual,
     rigid_motion,
     rotation_gain,
@@ -137,6 +138,11 @@ def test_the_nearest_rotation_gains_the_most_whatever_the_number_of_matrices():
         np.testing.assert_allclose(np.linalg.det(R), 1.0, atol=1e-12)
         gain = np.einsum("abij,abij->ab", R, KINDS[kind].reshape(5, 100, 3, 3)).ravel()
         np.testing.assert_allclose(gain, [rotation_gain(H) for H in KINDS[kind]], rtol=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["any", "flat", "small", "rotations"])
+def test_nearest_rotations_of_many_matrices_are_those_of_each_one(kind):
+    np.testing.assert_allclose(nearest_rotations(KINDS[kind]), nearest_rotation(KINDS[kind]), atol=1e-11)
 
 
 def test_motion_from_points_is_that_from_their_sums():
