@@ -46,7 +46,7 @@ def joints_of(case: Case, work: Path, sets: Sequence[str]) -> Joints | None:
 
 def body_of(name: str) -> str:
     """The body of a run: its figure and seed, or the recorded sequence without what was done to it."""
-    return "-".join(name.removeprefix("fixed-").split("-")[:2]).removesuffix("-body")
+    return "-".join(name.removeprefix("fixed-").removeprefix("long-").split("-")[:2]).removesuffix("-body")
 
 
 def spoilt(work: Path) -> Iterator[Case]:

@@ -38,6 +38,13 @@ class ErrorBars(Artifact):
     turning_resistance: Annotated[Floats, Array("float64", JOINT, finite=False)]
     """How firmly the surface of its parts resists turning about it: 0 where one is round about an axis through the joint, at
     most 1/3; NaN also where its parts have no vertices."""
+    hinge_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance, along its limb, from where halves of the frames' surfaces bend the limb; NaN also where no
+    straight limb is on both sides."""
+    turning_below: Annotated[Floats, Array("float64", JOINT, unit="°", finite=False)]
+    """Range of turning of the joint right below that turns most; 0 where there is none."""
+    softness: Annotated[Floats, Array("float64", JOINT, finite=False)]
+    """How much of the skin near the joint follows other joints than the one that it follows most, 0 to 1."""
     agreeing: Annotated[Ints, Array("int32", JOINT)]
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]

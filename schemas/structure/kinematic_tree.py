@@ -101,6 +101,9 @@ class KinematicTree(ArticulatedBody):
     surface_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square distance of each joint from where halves of the frames' surfaces alone have it; NaN where connectivity
     is fixed, where the surfaces do not say, and for root and leaves."""
+    hinge_offset: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Root mean square distance of each joint, along its limb, from where halves of the frames' surfaces bend it; NaN also
+    where no straight limb is on both sides."""
     border_radius: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square distance of the line between a joint's two parts from the middle of it; NaN for root and leaves."""
     is_given: bool = False

@@ -39,7 +39,7 @@ def graph_skeleton(
     derived = derivation._asdict() if derivation else numerics.Derivation(
         np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.full(parts, -1), (),
         np.zeros(count), np.zeros(count), np.full(count, np.nan), np.zeros(count, np.int64), np.zeros(count),
-        np.full(count, np.nan), np.full(count, np.nan),
+        np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.nan),
     )._asdict()  # fmt: skip
     return KinematicTree(
         frames=tuple(motions),

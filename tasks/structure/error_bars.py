@@ -9,6 +9,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import error_bars as numerics
+from kinetree.tasks.numerics.structure.skin_softness import skin_softness
 from kinetree.tasks.numerics.structure.turning_resistance import turning_resistance
 
 
@@ -34,6 +35,9 @@ def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
         residual=of_joints(features.residual),
         surface_offset=of_joints(features.offset),
         turning_resistance=of_joints(features.resistance),
+        hinge_offset=of_joints(features.hinge),
+        turning_below=of_joints(features.below),
+        softness=of_joints(features.softness),
         agreeing=kinematic_tree.agreeing,
         support=np.where(turning, skeleton.support, 0),
         evidence=_evidence(skeleton, kinematic_tree),
@@ -53,7 +57,8 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
     return ErrorBars(
         joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
         in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
-        surface_offset=unknown, turning_resistance=unknown, agreeing=none, support=none, evidence=(None,) * joints,
+        surface_offset=unknown, turning_resistance=unknown, hinge_offset=unknown, turning_below=unknown, softness=unknown,
+        agreeing=none, support=none, evidence=(None,) * joints,
     )  # fmt: skip
 
 
@@ -61,15 +66,21 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     """What is known of all joints, root and leaves among them."""
     tree = kinematic_tree
     V, F, label = np.array(skeleton.vertices), np.array(skeleton.faces, np.int64), np.array(skeleton.label, np.int64)
-    resistance = turning_resistance(V, F, label, np.array(skeleton.parents), np.array(skeleton.rest))
-    size = float(np.sqrt(surface_areas(V, F).sum()))
+    rest, parents, area = np.array(skeleton.rest), np.array(skeleton.parents), surface_areas(V, F)
+    resistance, size = turning_resistance(V, F, label, parents, rest), float(np.sqrt(area.sum()))
+    softness = skin_softness(V, area, np.array(skeleton.weight), rest)
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
     radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
     shape_alone = np.isin(np.arange(len(skeleton.names)), tree.neck_joints)
     tube = np.where(shape_alone, np.array(tree.border_radius), np.nan)
     confidence = np.array(skeleton.confidence)
-    return numerics.JointFeatures(drift, spread, residual, degrees, length, offset, resistance, radius, tube, confidence, size)
+    below = np.zeros_like(degrees)
+    np.maximum.at(below, parents[parents >= 0], degrees[parents >= 0])
+    return numerics.JointFeatures(
+        drift, spread, residual, degrees, length, offset, resistance, np.array(tree.hinge_offset), below, softness,
+        radius, tube, confidence, size,
+    )  # fmt: skip
 
 
 def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[Evidence | None, ...]:

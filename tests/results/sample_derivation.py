@@ -56,5 +56,6 @@ def tree_of(skeleton: Skeleton) -> KinematicTree:
         border_degrees=np.full(len(pair), 20.0), joint_of_part=np.array([*carriers, -1]), dropped=((count, "sliding"),),
         free_length=skeleton.lengths, free_deviation=0.01 * skeleton.lengths,
         spread=np.full(len(parents), np.nan), agreeing=np.zeros(len(parents), int), joint_residual=np.zeros(len(parents)),
-        surface_offset=np.full(len(parents), np.nan), border_radius=np.full(len(parents), np.nan),
+        surface_offset=np.full(len(parents), np.nan), hinge_offset=np.full(len(parents), np.nan),
+        border_radius=np.full(len(parents), np.nan),
     )  # fmt: skip

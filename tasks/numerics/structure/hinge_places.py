@@ -7,7 +7,7 @@ leaves least, if that is clearly less than what the joint leaves, and if halves 
 border: a plane across the limb, and the line that was cut. Labels and skinning weights stay as they were cut.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -86,19 +86,55 @@ def hinge_shifts(
     spans   : (laid,) each, frames that are judged together: all, and of several takes each. The first that agrees counts
     """
     chosen, shifts = settings or HingePlacesSettings(), np.zeros_like(rest)
-    anywhere = chosen._replace(length=0.0, straight=-np.inf)
     spans = [span for span in spans if span.sum() >= chosen.least_frames] or [np.ones(len(certain), np.bool_)]
+    for limb in _limbs(tree, costs, rest, certain, chosen):
+        way = next((way for span in spans if (way := _agreed(limb.along, limb.square[span], chosen))), 0.0)
+        if abs(way) < chosen.share * limb.bone:
+            shifts[limb.joint] = way * limb.axis
+    return shifts
+
+
+def hinge_offsets(
+    tree: FirstTree, costs: HingeCosts, rest: Floats, certain: Floats, settings: HingePlacesSettings | None = None
+) -> Floats:
+    """(part,) root mean square distance of a joint from where halves of the frames bend its limb; NaN where it has no limb.
+
+    Arguments are as in `hinge_shifts`; a place is that of one border shape. A half that bends the limb least at an end of the
+    places counts with that end.
+    """
+    offsets = np.full(len(rest), np.nan)
+    for limb in _limbs(tree, costs, rest, certain, settings or HingePlacesSettings()):
+        sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(certain))])
+        ways = np.array([_least(limb.along, cost) for cost in sums])
+        ways = np.where(np.isnan(ways), limb.along[sums.argmin(axis=1)], ways)
+        offsets[limb.joint] = np.sqrt(np.square(ways).mean())
+    return offsets
+
+
+class _Limb(NamedTuple):
+    """A joint within a straight limb: (xyz,) its axis, `along` (place,) of the hinge from the joint, `bone` the shorter length.
+
+    square : (laid, border shape, place) mean squared distances, by how certain a frame is
+    """
+
+    joint: int
+    axis: Floats
+    bone: float
+    along: Floats
+    square: Floats
+
+
+def _limbs(tree: FirstTree, costs: HingeCosts, rest: Floats, certain: Floats, chosen: HingePlacesSettings) -> Iterator[_Limb]:
+    """The joints of `costs` whose limb is long and straight enough; arguments as in `hinge_shifts`."""
+    anywhere = chosen._replace(length=0.0, straight=-np.inf)
     for k, (joint, end) in enumerate(zip(costs.joint.tolist(), costs.end, strict=True)):
         axis = limb_axis(tree, tree.rest, joint, end, anywhere)
         if axis is None or limb_axis(tree, rest, joint, end, chosen) is None:
             continue
         share = np.minimum(certain[:, joint], certain[:, tree.parents[joint]]) + 1e-3
         along = chosen.places * tree.radius[joint] - (rest[joint] - tree.rest[joint]) @ axis
-        square = share[:, None, None] * costs.square[:, k]
-        way = next((way for span in spans if (way := _agreed(along, square[span], chosen))), 0.0)
-        if abs(way) < chosen.share * np.linalg.norm(_bones(tree, rest, joint, end), axis=1).min():
-            shifts[joint] = way * axis
-    return shifts
+        bone = float(np.linalg.norm(_bones(tree, rest, joint, end), axis=1).min())
+        yield _Limb(joint, axis, bone, along, share[:, None, None] * costs.square[:, k])
 
 
 def limb_axis(tree: FirstTree, rest: Floats, joint: int, end: Floats, settings: HingePlacesSettings) -> Floats | None:
@@ -128,15 +164,20 @@ def _agreed(along: Floats, square: Floats, chosen: HingePlacesSettings) -> float
 
     along, square : (place,) from the joint, mesh unit · (frame, border shape, place)
     """
-    frame = np.arange(len(square))
-    quarter = frame * 4 // max(len(frame), 1)
-    sets = (frame >= 0, frame % 2 == 0, frame % 2 == 1, quarter % 2 == 0, quarter % 2 == 1)
+    sets = (np.ones(len(square), np.bool_), *_halves(len(square)))
     ways = np.array([[_least(along, cost) for cost in square[of].sum(axis=0)] for of in sets])
     way = float(ways[0].mean())
     halves_agree = (np.abs(ways[[1, 3]] - ways[[2, 4]]) < chosen.agree * np.abs(ways[0])).all()
     shapes_agree = abs(ways[0, 0] - ways[0, 1]) < chosen.agree * abs(way)
     gains = all(cost.min() < (1.0 - chosen.gain) * np.interp(0.0, along, cost) for cost in square.sum(axis=0))
     return way if halves_agree and shapes_agree and gains else 0.0
+
+
+def _halves(frames: int) -> tuple[Flags, ...]:
+    """Each second frame and the others, each second quarter and the others; (frame,) each."""
+    frame = np.arange(frames)
+    quarter = frame * 4 // max(frames, 1)
+    return frame % 2 == 0, frame % 2 == 1, quarter % 2 == 0, quarter % 2 == 1
 
 
 def _least(along: Floats, cost: Floats) -> float:

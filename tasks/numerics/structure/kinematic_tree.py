@@ -76,6 +76,8 @@ class Derivation(NamedTuple):
     joint_residual : (joint,) root mean square of what the motions of its two parts leave unexplained, mesh unit
     surface_offset : (joint,) root mean square distance from where halves of the frames' surfaces alone have it, mesh unit; NaN
                      where they were not asked or do not say, and where it is none
+    hinge_offset   : (joint,) the same along its limb, from where halves of the frames' surfaces bend it, mesh unit; NaN also
+                     where no straight limb is
     border_radius  : (joint,) of the border at the joint, mesh unit; NaN for the root and ends of bones
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
@@ -93,6 +95,7 @@ class Derivation(NamedTuple):
     agreeing: Ints
     joint_residual: Floats
     surface_offset: Floats
+    hinge_offset: Floats
     border_radius: Floats
     end_joints: tuple[int, ...] = ()
     neck_joints: tuple[int, ...] = ()
@@ -144,7 +147,7 @@ def _posed(
     """The tree in every frame, its joints where all cuts have them, moved to the frames' surfaces."""
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
-    on_surface = SurfaceJoints(consensus.rest, np.full(parts, np.nan))
+    on_surface = SurfaceJoints(consensus.rest, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
         on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
@@ -162,6 +165,7 @@ def _posed(
         residual=first.residual,
         radius=first.radius,
         offset=on_surface.offset,
+        hinge=on_surface.hinge,
         spread=consensus.spread,
         agreeing=consensus.agreeing,
         place=first.place,
@@ -232,6 +236,7 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         agreeing=np.where(is_part, tree.agreeing[part], 0),
         joint_residual=np.where(is_part, tree.residual[part], 0.0),
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
+        hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
         end_joints=tuple(joint[parts - first.ends : parts].tolist()),
         neck_joints=tuple(sorted(joint[np.flatnonzero(tree.is_neck)].tolist())),

@@ -25,6 +25,7 @@ class PosedTree(NamedTuple):
     residual   : (part,) see `FirstTree`, mesh unit
     radius     : (part,) of the border at each joint, mesh unit
     offset     : (part,) see `SurfaceJoints`, mesh unit
+    hinge      : (part,) see `SurfaceJoints`, mesh unit
     spread     : (part,) see `JointConsensus`, mesh unit
     agreeing   : (part,) cuts that have each
     place      : (first part,) part, −1 where it was dropped
@@ -42,6 +43,7 @@ class PosedTree(NamedTuple):
     residual: Floats
     radius: Floats
     offset: Floats
+    hinge: Floats
     spread: Floats
     agreeing: Ints
     place: Ints
@@ -82,6 +84,7 @@ def necked_tree(tree: PosedTree, necks: Sequence[Neck]) -> PosedTree:
         residual=_with(tree.residual, below, new, np.zeros(len(below))),
         radius=_with(tree.radius, below, new, np.array([neck.radius for neck in necks])),
         offset=_with(tree.offset, below, new, np.full(len(below), np.nan)),
+        hinge=_with(tree.hinge, below, new, np.full(len(below), np.nan)),
         spread=_with(tree.spread, below, new, np.full(len(below), np.nan)),
         agreeing=_with(tree.agreeing, below, new, np.ones(len(below), np.int64)),
         place=np.where(tree.place < 0, -1, place[tree.place]),

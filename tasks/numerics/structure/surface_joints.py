@@ -20,7 +20,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings
-from kinetree.tasks.numerics.structure.hinge_places import hinge_shifts
+from kinetree.tasks.numerics.structure.hinge_places import hinge_offsets, hinge_shifts
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts, LaidPartsSettings
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 
@@ -57,10 +57,12 @@ class SurfaceJoints(NamedTuple):
     rest   : (part, xyz) in the reference, moved where the frames agree on it, mesh unit
     offset : (part,) root mean square distance of each joint from where halves of the surfaces alone have it, mesh unit; NaN
              where too few frames show both parts
+    hinge  : (part,) the same along the limb, from where halves of the surfaces bend it, see `hinge_offsets`
     """
 
     rest: Floats
     offset: Floats
+    hinge: Floats
 
 
 class _PartFits(NamedTuple):
@@ -106,7 +108,7 @@ def surface_joints(
                 moved[joint] += shifts[joint] * (moved[joint] == rest[joint]).all()
                 places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
                 offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
-    return SurfaceJoints(moved, offset)
+    return SurfaceJoints(moved, offset, hinge_offsets(tree, laid.hinges, moved, share))
 
 
 def within_limbs(parents: Ints) -> Flags:

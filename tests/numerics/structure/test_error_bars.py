@@ -6,9 +6,9 @@ import pytest
 from kinetree.tasks.numerics.structure.error_bars import ErrorBarsSettings, JointFeatures, PowerLaw, error_bars, fitted
 
 SETTINGS = ErrorBarsSettings(
-    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 0.0, 2.0),
-    PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.0, 2.5),
-    PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
+    PowerLaw(0.5, 0.4, 0.5, 0.1, -0.5, -0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0),
+    PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.3, -0.1, 0.4, 0.0, 2.5),
+    PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
     along_axis=0.1,
     across_tube=0.3,
     uncertain=2.0,
@@ -19,10 +19,11 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
     evidence = {
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
-        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "radius": np.full(3, np.nan), "tube": np.full(3, np.nan),
+        "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "hinge": np.full(3, np.nan),
+        "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "tube": np.full(3, np.nan),
         "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
-    unscaled = ("degrees", "resistance", "confidence")
+    unscaled = ("degrees", "resistance", "below", "softness", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
 
 
@@ -65,12 +66,36 @@ def test_by_the_shipped_laws_a_joint_farther_from_its_place_on_the_surfaces_has_
 
 def test_a_joint_farther_from_its_place_on_the_surfaces_is_worse_and_one_without_such_a_place_goes_by_the_rest() -> None:
     same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01)}
-    found = error_bars(features(offset=np.array([0.002, 0.008, np.nan]), **same), 4, SETTINGS)
+    hinge = np.full(3, 0.01)
+    found = error_bars(features(offset=np.array([0.002, 0.008, np.nan]), hinge=hinge, **same), 4, SETTINGS)
     assert found.expected[1] == pytest.approx(2.0 * found.expected[0])
-    assert found.bound / found.expected == pytest.approx([2.5, 2.5, 2.0])
-    assert found.expected[2] == pytest.approx(error_bars(features(**same), 4, SETTINGS).expected[2])
+    assert found.expected[2] == pytest.approx(np.sqrt(1.0 / 0.008) * found.expected[1]), "as far off as the body is large"
+    assert found.bound == pytest.approx(2.5 * found.expected)
+    assert error_bars(features(**same), 4, SETTINGS).bound == pytest.approx(
+        2.0 * error_bars(features(**same), 4, SETTINGS).expected
+    )
     alone = [error_bars(features(offset=np.full(3, offset), **same), 1, SETTINGS).expected for offset in (0.002, 0.02)]
     assert alone[0] == pytest.approx(alone[1]), "with one cut the law knows no offset"
+
+
+def test_a_joint_farther_from_where_its_limb_bends_is_worse_and_the_offset_stands_for_a_hinge_that_is_not_known() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01), "offset": np.full(3, 0.008)}
+    found = error_bars(features(hinge=np.array([0.008, 0.032, np.nan]), **same), 4, SETTINGS).expected
+    assert found[1] == pytest.approx(4.0**0.3 * found[0])
+    assert found[2] == pytest.approx(found[0])
+    without = {**same, "offset": np.full(3, np.nan)}
+    far, near = (error_bars(features(hinge=np.full(3, hinge), **without), 4, SETTINGS).expected for hinge in (0.03, 0.003))
+    assert far == pytest.approx(near), "without any offset the law knows no hinge"
+
+
+def test_a_joint_in_softer_skin_is_worse_and_one_with_a_joint_below_that_turns_is_better() -> None:
+    same = {"spread": np.full(3, 0.004), "drift": np.full(3, 0.01), "offset": np.full(3, 0.01)}
+    for settings in (SETTINGS, ErrorBarsSettings()):
+        soft = error_bars(features(softness=np.array([0.02, 0.1, 0.3]), **same), 4, settings).expected
+        assert soft[0] < soft[1] < soft[2]
+        below = error_bars(features(below=np.array([60.0, 10.0, 0.0]), **same), 4, settings).expected
+        assert below[0] < below[1] < below[2]
+        assert np.isfinite(error_bars(features(softness=np.zeros(3), **same), 4, settings).expected).all()
 
 
 def test_a_joint_off_the_axes_of_its_parts_is_worse_and_one_without_parts_is_worst() -> None:
@@ -131,12 +156,14 @@ def test_a_joint_that_the_shape_alone_shows_is_off_by_a_share_of_its_tube_whatev
 
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
-    drift, spread, residual, length, offset, resistance = np.exp(rng.normal(-5.0, 1.0, (6, 200)))
+    drift, spread, residual, length, offset, resistance, hinge = np.exp(rng.normal(-5.0, 1.0, (7, 200)))
+    below, softness = rng.uniform(1.0, 90.0, 200), rng.uniform(0.02, 0.4, 200)
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
-    rows = JointFeatures(drift, spread, residual, degrees, length, offset, resistance, drift, drift, sure, 1.0).logarithms(True)
-    law = [3.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2]
+    known = (drift, spread, residual, degrees, length, offset, resistance, hinge, below, softness)
+    rows = JointFeatures(*known, drift, drift, sure, 1.0).logarithms(True)
+    law = [5.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2, 0.2, -0.1, 0.3]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
-    for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3)):
+    for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3), (8, -0.3), (9, 0.3), (10, -0.3)):
         other = [value if k == wrong else exponent for k, exponent in enumerate(law)]
         assert fitted(rows, np.exp(rows @ other))[wrong] == 0.0

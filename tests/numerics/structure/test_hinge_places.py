@@ -8,7 +8,13 @@ from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
-from kinetree.tasks.numerics.structure.hinge_places import HingeCosts, HingePlacesSettings, hinge_shifts, limb_axis
+from kinetree.tasks.numerics.structure.hinge_places import (
+    HingeCosts,
+    HingePlacesSettings,
+    hinge_offsets,
+    hinge_shifts,
+    limb_axis,
+)
 
 FRAMES = 16
 """Frames of the tube."""
@@ -139,6 +145,26 @@ def test_a_bend_in_one_of_two_takes_moves_the_joint() -> None:
     spans = [np.ones(FRAMES, np.bool_), first, ~first]
     assert not shift_of(tree, both).any(), "over all frames little is gained"
     np.testing.assert_allclose(hinge_shifts(tree, both, tree.rest, ALL, spans)[2], [0.0, 0.0, 0.5 * tree.radius[2]], atol=1e-9)
+
+
+def test_the_offset_is_how_far_the_joint_lies_from_where_halves_bend_the_limb() -> None:
+    tree, costs = costs_of(0.0)
+    at = least_at(costs, 0.5, 0.5)
+    np.testing.assert_allclose(hinge_offsets(tree, at, tree.rest, ALL), [np.nan, *0.5 * tree.radius[1:]], atol=1e-9)
+    rest = tree.rest.copy()
+    rest[2, 2] += 0.5 * tree.radius[2]
+    assert hinge_offsets(tree, at, rest, ALL)[2] == pytest.approx(0.0, abs=1e-9)
+    square = np.where(np.arange(FRAMES)[:, None, None, None] % 2, at.square, least_at(costs, -0.5, 0.5).square)
+    apart = hinge_offsets(tree, costs._replace(square=square), tree.rest, ALL)[2]
+    assert 0.3 * tree.radius[2] < apart < 0.5 * tree.radius[2], "second frames disagree by a radius, second quarters do not"
+
+
+def test_a_limb_that_bends_beyond_all_places_has_the_offset_of_the_last_and_a_bent_limb_has_none() -> None:
+    tree, costs = costs_of(0.0)
+    reach = HingePlacesSettings().reach
+    assert hinge_offsets(tree, least_at(costs, 3.5, 0.5), tree.rest, ALL)[2] == pytest.approx(reach * tree.radius[2])
+    bent = costs._replace(end=tree.rest[1:] + np.array([6.0, 0.0, 0.0]))
+    assert np.isfinite(hinge_offsets(tree, bent, tree.rest, ALL)).tolist() == [False, True, False]
 
 
 def test_one_noisy_frame_repeated_moves_no_joint() -> None:

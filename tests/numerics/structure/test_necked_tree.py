@@ -47,7 +47,7 @@ def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedT
     return PosedTree(
         np.array(parents), Motion(rest, R, np.zeros((2, 3))), label, np.eye(len(k))[label], np.tile(known, (2, 1)),
         known, k, known,
-        np.where(k > 0, 1.0, 0.0), known, known, k, k, k, np.zeros(len(k), np.bool_),
+        np.where(k > 0, 1.0, 0.0), known, known, known, k, k, k, np.zeros(len(k), np.bool_),
     )  # fmt: skip
 
 
@@ -61,7 +61,7 @@ def test_a_neck_moves_as_the_tube_did_and_what_is_known_stays_with_its_joint(joi
     np.testing.assert_allclose(after.motion.rest[old], before.motion.rest[1])
     np.testing.assert_array_equal(after.motion.R[:, 1], before.motion.R[:, moved_by])
     np.testing.assert_array_equal(after.motion.R[:, [0, 2]], before.motion.R)
-    for name in ("drift", "residual", "offset", "spread", "agreeing", "radius"):
+    for name in ("drift", "residual", "offset", "hinge", "spread", "agreeing", "radius"):
         assert getattr(after, name)[old] == 1, name
     assert after.support.tolist() == [0, 1, 1]
     assert after.radius[new] == pytest.approx(1.0, rel=0.05)
