@@ -157,12 +157,12 @@ def _cheapest(
             return -1
         if not stale[cheapest]:
             return cheapest
-        cost[cheapest] = _cost(body, settings, label, R, t, near, size, rim[cheapest], cheapest, member)
+        cost[cheapest] = part_cost(body, settings, label, R, t, near, size, rim[cheapest], cheapest, member)
         stale[cheapest] = False
 
 
 @compiled
-def _cost(
+def part_cost(
     body: NormalisedBody,
     settings: EliminationSettings,
     label: Ints,
@@ -174,7 +174,13 @@ def _cost(
     part: int,
     member: Ints,
 ) -> float:
-    """What removing a part costs: infinite without a neighbour."""
+    """What removing a part costs, root of the area: infinite without a neighbour.
+
+    label, R, t : as in `eliminated`
+    near        : (part, part) see `part_labels.border_edges`
+    size, rim   : (part,) area · length of the part's border, see `rims`
+    member      : (vertex,) written
+    """
     other, touches = candidates(near, size, part)
     if touches == 0:
         return np.inf

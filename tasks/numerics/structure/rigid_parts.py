@@ -16,6 +16,7 @@ from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated
+from kinetree.tasks.numerics.structure.halved_parts import halved
 from kinetree.tasks.numerics.structure.oversegmentation import ConeRuns, OversegmentationSettings, cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.part_labels import connected, relabelled
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, unevenness
@@ -39,7 +40,7 @@ class Cut(NamedTuple):
     removed    : (removal,) parts of the first cut in the order in which they were eliminated
     cost       : (removal,) what removing each cost, root of the area
     merge_threshold, cost_threshold : merge error above which tenths of a cone are cut apart · cost from which on parts stay
-    origin     : (part,) which part of the first cut each rigid part has become
+    origin     : (part,) which part of the first cut each rigid part has become; two of one were halved, see `halved_parts`
     """
 
     cone: Ints
@@ -195,6 +196,10 @@ def _normalised_parts(
         label = relabelled(V, x, weight, R, t, label, body.start, body.ring, steps)
         used, label, R, t = _refitted(body, label, limits.floor)
         origin = origin[used]
+    label, R, t, whole = halved(body, patch, label, R, t, limits, steps)
+    if len(whole) > len(origin):
+        used, label, R, t = _refitted(body, label, limits.floor)
+        origin = origin[whole][used]
     e = misfit(V, x, weight, R, t, label)
     rigid = limits.removal_cost**2 / (limits.removal_cost**2 + 4 * e)
     cut = Cut(
