@@ -64,7 +64,7 @@ def test_pictures_count_what_was_cut_removed_and_dropped() -> None:
     parts, tree = parts_of(body), tree_of(body)
     text = words(body, parts, tree)
     assert f"first cut: {int(parts.initial.max()) + 1} parts" in text[2]
-    assert f"{len(parts.origin)} parts left, 2 removed" in text[2]
+    assert f"2 removed, {len(parts.origin)} parts at the end" in text[2]
     assert "crossed: 1 dropped (1 slides)" in text[3]
     assert f"{body.kinds.count('joint')} joints left" in text[3]
 

@@ -109,10 +109,10 @@ def merging_words(parts: RigidParts) -> str:
 
 
 def elimination_words(parts: RigidParts) -> str:
-    """How many parts there were and remained."""
-    return (
-        f"Of {int(parts.initial.max()) + 1} parts of the first cut {len(parts.origin)} are left, {len(parts.removed)} removed."
-    )
+    """How many parts there were and remained, and how many of these were halved."""
+    left = len(np.unique(parts.origin))
+    halved = f" Cut in two of those left: {len(parts.origin) - left}." if len(parts.origin) > left else ""
+    return f"Of {int(parts.initial.max()) + 1} parts of the first cut {left} are left, {len(parts.removed)} removed.{halved}"
 
 
 def structure_words(body: ArticulatedBody, tree: KinematicTree) -> str:

@@ -80,7 +80,7 @@ def elimination(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     for axes, label, of in ((before, parts.initial, None), (after, parts.label, parts.origin)):
         surface(axes, reference.vertices @ axis, reference.faces, _part_colours(label, reference.faces, of))
     before.set_title(f"first cut: {int(parts.initial.max()) + 1} parts", fontsize=9)
-    after.set_title(f"{len(parts.origin)} parts left, {len(parts.removed)} removed", fontsize=9)
+    after.set_title(f"{len(parts.removed)} removed, {len(parts.origin)} parts at the end", fontsize=9)
     number = np.arange(1, len(parts.cost) + 1)
     curve.plot(number, 100 * parts.cost, ".-", color=COLOURS[0], lw=1.2, ms=4, label="removal cost")
     curve.axhline(100 * parts.cost_threshold, color=COLOURS[1], lw=1.0, ls="--", label="threshold")

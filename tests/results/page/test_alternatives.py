@@ -1,14 +1,16 @@
 """Alternative texts say what a picture shows of this run."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 from results.rigged_bodies import spider
+from results.sample_derivation import parts_of
 from results.sample_report import page_artifacts
 
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.results.report import ReportParams
-from kinetree.tasks.results.page.alternatives import angles_words, confidence_words, tree_words
+from kinetree.tasks.results.page.alternatives import angles_words, confidence_words, elimination_words, tree_words
 from kinetree.tasks.results.plots.motion import joint_angles
 from kinetree.tasks.results.report import report
 
@@ -30,6 +32,17 @@ def test_the_frame_of_least_confidence_is_named() -> None:
 
 def test_the_tree_is_told_from_its_root() -> None:
     assert tree_words(spider(), spider().names).startswith("trunk carries arm, tail, knee; arm carries hand")
+
+
+def test_two_halves_of_one_part_count_once_and_are_named() -> None:
+    parts = parts_of(spider())
+    left, origin = len(parts.origin), np.array(parts.origin)
+    assert f"{left} are left, {len(parts.removed)} removed." in elimination_words(parts)
+    origin[-1] = origin[0]
+    halved = SimpleNamespace(**{**vars(parts), "origin": origin})
+    assert elimination_words(halved).endswith(
+        f"{left - 1} are left, {len(parts.removed)} removed. Cut in two of those left: 1."
+    )
 
 
 def test_every_picture_of_a_page_says_more_than_its_caption() -> None:
