@@ -46,7 +46,7 @@ PRODUCT = re.compile(
 )
 """Words that only the product says."""
 OURS = {"kinetree.tasks", "kinetree.schemas"}
-"""Packages that the loom names in one place: their definitions are what a code digest is made of (key.py)."""
+"""Packages that the loom names in one place: their definitions are what a code digest is made of (own_code.py)."""
 STUB = "kinetree.schemas.artifact_of_task"
 """A module for type checkers alone, which no program can import."""
 TYPES_ALONE = {"pipeline/inspection/typed_by_name.py": ("kinetree.schemas.array", STUB)}

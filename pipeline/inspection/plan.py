@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 from kinetree.pipeline.inspection.look import html_table
-from kinetree.pipeline.planning.entry import Entry
+from kinetree.pipeline.planning.entry import DONE, Entry
 from kinetree.pipeline.planning.reason import Reason
 from kinetree.pipeline.planning.schedule import Schedule
 
@@ -119,8 +119,9 @@ class Plan:
 
 def _planned(schedule: Schedule, entry: Entry) -> Planned:
     waits = tuple(schedule.entries[n].label if n in schedule.entries else n.task for n in sorted(entry.waits))
-    state: PlanState = "waits" if waits else ("fresh" if entry.state == "fresh" else "stale")
-    return Planned(entry.label, entry.node.task, state, entry.reasons, waits, entry.key, entry.artifact)
+    is_done = entry.state in DONE
+    state: PlanState = "waits" if waits else ("fresh" if is_done else "stale")
+    return Planned(entry.label, entry.node.task, state, () if is_done else entry.reasons, waits, entry.key, entry.artifact)
 
 
 def _tasks(schedule: Schedule, nodes: tuple[Planned, ...]) -> Iterator[TaskPlan]:

@@ -103,9 +103,13 @@ def _refusals(asked: str) -> Iterator[None]:
         if getattr(why, "reason", "") in NO_TLS:
             raise ClusterError(f"{asked}: {_NOBODY_SPEAKS_TLS.format(why)}") from error
         raise ConfigError(f"{asked}: the certificates of the two sides do not fit ({why}); see compute.security") from None
+    except UnicodeError as error:
+        raise ConfigError(f"{asked}: not an address ({error}); expected one such as tcp://host:8786") from None
     except ValueError as error:  # tornado's, of a connection that was closed before it could be secured
         raise ClusterError(f"{asked}: {_NOBODY_SPEAKS_TLS.format(error)}") from error
     except ImportError as error:
+        if not _has_security_loader():
+            raise ConfigError(f"{asked}: {error}; install the package that has it") from None
         raise ConfigError(f"{asked}: dask's distributed.client.security-loader cannot be imported ({error})") from None
     except (OSError, TimeoutError) as error:
         raise ClusterError(
@@ -145,14 +149,23 @@ def cluster_of(compute: Compute) -> Any:
     try:
         made = getattr(importlib.import_module(module), name)
     except (ImportError, AttributeError) as error:
-        hint = "pip install 'kinetree[cluster]'" if module == "dask_jobqueue" else "install the package that has it"
-        raise ConfigError(f"compute.cluster {compute.cluster}: {error}; {hint}") from None
+        hint = (
+            "; pip install 'kinetree[cluster]'"
+            if module.split(".")[0] == "dask_jobqueue"
+            else "; install the package that has it"
+        )
+        raise ConfigError(f"compute.cluster {compute.cluster}: {error}{hint if _is_missing(module) else ''}") from None
     try:
         return made(**{**secured(compute), **compute.options})
     except (TypeError, ValueError) as error:
         raise ConfigError(f"compute.cluster {compute.cluster} with compute.options cannot be made: {error}") from None
     except (OSError, RuntimeError) as error:
         raise ClusterError(f"compute.cluster {compute.cluster}: {error}") from error
+
+
+def _is_missing(module: str) -> bool:
+    """Whether the package of a module is not installed."""
+    return find_spec(module.split(".")[0]) is None
 
 
 def dashboard(client: Client) -> str:

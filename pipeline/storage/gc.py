@@ -146,6 +146,9 @@ def _garbage(store: Store, runs: tuple[str, ...], keys: Collection[str], lists: 
         else:
             records.append(key)
     there = store.artifacts()
+    for key in {*store.records.listed()}.difference(known):  # of these some name bytes that an old run left
+        if (record := store.record(key)) is not None:
+            needed.add(record.artifact)
     artifacts = [digest for digest, listed in there.items() if digest not in needed and listed.modified < since]
     leftovers = dict(_leftovers(store, runs, lists, since))
     freed = sum(there[digest].size for digest in artifacts) + sum(leftovers.values())

@@ -90,6 +90,19 @@ def test_the_preset_for_kubernetes_starts_what_it_names(monkeypatch):
     assert {"name", "image"} <= set(made[0])
 
 
+@pytest.mark.parametrize("address", ["tcp://a..b:8786", f"tcp://{'a' * 70}:8786"])
+def test_a_host_that_no_name_can_be_is_no_address(address):
+    with pytest.raises(ConfigError, match="not an address"), clusters.at(Compute(scheduler=address)):
+        raise AssertionError
+
+
+@pytest.mark.parametrize(("cluster", "hint"), [("distributed:Nope", False), ("dask_jobqueue_x.slurm:Nope", True)])
+def test_only_a_package_that_is_missing_is_to_be_installed(cluster, hint):
+    with pytest.raises(ConfigError, match="Nope|No module") as refused:
+        clusters.cluster_of(Compute(cluster=cluster))
+    assert ("install the package that has it" in str(refused.value)) == hint
+
+
 def test_an_address_that_is_none_is_the_users_to_mend(toys, tmp_path):
     (tmp_path / "scheduler.json").write_text("{}")
     with pytest.raises(ConfigError, match="--scheduler-file .*: not an address"):

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from dataclasses import asdict, replace
 
 import pytest
@@ -142,6 +143,32 @@ def test_what_a_run_under_way_records_during_a_collection_is_safe(toys, asked, m
     assert late.key not in collect(there).records
     monkeypatch.undo()
     assert store(toys).record(late.key) == late
+
+
+@pytest.mark.parametrize("asked", ["singles", "since"])
+def test_old_bytes_that_a_run_under_way_makes_again_during_a_collection_stay(toys, asked, monkeypatch):
+    toys.run()
+    there = store(toys)
+    old = next(record for record in there.records.all() if record.task == "report")
+    toys.run(intervals={"length": 3})
+    for path in (toys.output / "store" / "artifacts").rglob("*"):
+        if path.is_file():
+            os.utime(path, (time.time() - 60,) * 2)
+    begun = [{**run, "list": "", "epoch": time.time() - 10, "status": "running"} for run in there.run_records.heads()]
+    monkeypatch.setattr("kinetree.pipeline.storage.gc._latest", lambda runs: begun)
+    late, ask = replace(old, key="ab" * 20), getattr(Records, asked)
+
+    def answered(records, *arguments):
+        answer = ask(records, *arguments)
+        (toys.output / "store" / "records" / f"{late.key}.json").write_bytes(sealed(asdict(late)))
+        return answer
+
+    monkeypatch.setattr(Records, asked, answered)
+    garbage = collect(there, last=1)
+    monkeypatch.undo()
+    assert store(toys).record(late.key) == late
+    assert store(toys).holds(late)
+    assert late.artifact not in garbage.artifacts
 
 
 def test_what_a_run_under_way_found_fresh_is_safe(toys):

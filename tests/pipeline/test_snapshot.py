@@ -26,6 +26,19 @@ def test_a_snapshot_answers_as_the_pipeline_does(toys):
     assert there.artifact("points", frame=2) == pipeline.artifact("points", frame=2)
 
 
+def test_what_a_run_left_answers_as_a_new_look_does(toys):
+    pipeline = toys.pipeline()
+    for _ in ("a first run", "nothing to do"):
+        left, looked = pipeline.run().there, pipeline.inspect()
+        assert sorted(map(str, left.plan.nodes)) == sorted(map(str, looked.plan.nodes))
+        assert left.plan.counts == looked.plan.counts
+        assert left.plan.is_done
+        assert left.why("points[2]") == looked.why("points[2]")
+    forced = pipeline.run(force=["points"]).there
+    assert forced.plan.is_done
+    assert "forced" not in repr(forced)
+
+
 def test_an_artifact_is_found_by_its_class_as_by_its_task(toys):
     toys.run()
     there, module = toys.pipeline().inspect(), toys.module
