@@ -151,11 +151,12 @@ def test_old_bytes_that_a_run_under_way_makes_again_during_a_collection_stay(toy
     there = store(toys)
     old = next(record for record in there.records.all() if record.task == "report")
     toys.run(intervals={"length": 3})
-    for path in (toys.output / "store" / "artifacts").rglob("*"):
+    for path in (toys.output / "store").rglob("*"):
         if path.is_file():
             os.utime(path, (time.time() - 60,) * 2)
-    begun = [{**run, "list": "", "epoch": time.time() - 10, "status": "running"} for run in there.run_records.heads()]
-    monkeypatch.setattr("kinetree.pipeline.storage.gc._latest", lambda runs: begun)
+    last = max(there.run_records.heads(), key=lambda run: run["epoch"])
+    begun = {**last, "list": "", "epoch": time.time() - 10, "status": "running"}
+    monkeypatch.setattr("kinetree.pipeline.storage.gc._latest", lambda runs: [begun])
     late, ask = replace(old, key="ab" * 20), getattr(Records, asked)
 
     def answered(records, *arguments):
