@@ -21,7 +21,10 @@ from kinetree.tasks.numerics.registration.deformation_graph import DeformationGr
 
 
 class LimbSwingSettings(NamedTuple):
-    """How limbs are swung. Not varied, but for `rounds`."""
+    """How limbs are swung.
+
+    Varied were `rounds`, `exchange` (0.75 and 1) and `begun`, on people and recorded bodies at a quarter of their frames.
+    """
 
     near: int = 6
     """Nodes that carry a point of a stem."""
@@ -78,7 +81,8 @@ def swung(
     """The pose with every limb swung to a stem of a frame, each to one, so that the body bends least (ours).
 
     Begun with the stems nearest about the body's centre; two limbs exchange theirs for as long as the body then bends
-    clearly less. A trunk that twists fast brings each arm nearer to the other one's stem.
+    clearly less. A trunk that twists fast brings each arm nearer to the other one's stem. A stem that no limb begins with is
+    not tried.
 
     graph   : of the reference mesh
     pose    : to begin with, of a frame nearby
@@ -207,7 +211,7 @@ def _least_bent(swing: _Swing, stems: Floats, given: Ints) -> Pose:
         near = [order for order, one in zip(orders[1:], begun[1:], strict=True) if one <= chosen.begun * begun[0]]
         ends = [(*end, order) for end, order in zip(reached(near, chosen.rounds), near, strict=True)]
         pose, least, order = min(ends, key=lambda one: one[1], default=(best, energy, given))
-        if least >= chosen.exchange * energy:
+        if not least < chosen.exchange * energy:
             return best
         best, energy, given = pose, least, order
 

@@ -8,7 +8,7 @@ from skimage.measure import marching_cubes
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.limb_swing import carried, stem_points, swung
+from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, carried, stem_points, swung
 from kinetree.tasks.numerics.registration.near_pose import near_pose, thinned_body, thinned_frame
 
 V, F = tube(around=29, along=57, start=0.07)
@@ -102,6 +102,23 @@ def test_arms_stay_on_their_sides_where_the_trunk_twists_and_each_comes_nearer_t
     centre = twisted(shape(body, at_rest(body))[0][body.sample], 1.65).mean(axis=0)
     swing = swung(body, at_rest(body), stems, goal[list(order)], centre)
     np.testing.assert_allclose(carried(body, swing, stem_points(body, stems)), goal.reshape(-1, 3), atol=1.0)
+
+
+def off(angle, settings=None):
+    """(limb,) how far the limbs of the body at rest end from where they are, after its trunk has twisted."""
+    surface, faces, stems = reaching_body()
+    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    centre = twisted(shape(body, at_rest(body))[0][body.sample], angle).mean(axis=0)
+    goal = twisted(stems, angle)
+    swing = swung(body, at_rest(body), stems, goal, centre, settings)
+    carried_to = carried(body, swing, stem_points(body, stems)).reshape(stems.shape)
+    return np.linalg.norm(carried_to - goal, axis=2).mean(axis=1)
+
+
+@pytest.mark.parametrize("strict", [{"exchange": 0.1}, {"begun": 0.5}])
+def test_limbs_keep_the_nearest_stems_where_the_body_would_not_bend_clearly_less(strict):
+    assert off(1.65).max() < 1.0
+    assert off(1.65, LimbSwingSettings(**strict))[:2].min() > 3.0
 
 
 def test_without_limbs_nothing_is_swung(body):
