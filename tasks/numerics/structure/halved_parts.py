@@ -56,15 +56,16 @@ def halved(
     """
     chosen, origin = settings or HalvedPartsSettings(), list(range(R.shape[1]))
     for part in range(R.shape[1]):
-        second = _second_half(body, patch, label == part, limits.floor, steps, chosen.rounds)
+        second = _second_half(body, patch, label == part, limits, steps, chosen.rounds)
         if not second.any():
             continue
         new = R.shape[1]
         tried, turned, moved = np.where(second, new, label), _with_room(R), _with_room(t)
         both = np.isin(np.arange(new + 1), (part, new))
-        fit(body.V, body.x, body.weight, body.area, tried, both, False, len(tried), limits.floor, turned, moved)
+        fit(body.V, body.x, body.weight, body.area, tried, both, False, limits.fit_vertices, limits.floor, turned, moved)
         costs = _costs(body, tried, turned, moved, limits, (part, new))
         if min(costs) >= chosen.cost * limits.removal_cost and _have_own_joint(body, tried, turned, moved, part, chosen):
+            fit(body.V, body.x, body.weight, body.area, tried, both, True, len(tried), limits.floor, turned, moved)
             label, R, t = tried, turned, moved
             origin.append(part)
     return label, R, t, np.array(origin)
@@ -75,7 +76,7 @@ def _with_room(motion: Floats) -> Floats:
     return np.concatenate([motion, motion[:, :1]], axis=1)
 
 
-def _second_half(body: NormalisedBody, patch: Ints, part: Flags, floor: float, steps: int, rounds: int) -> Flags:
+def _second_half(body: NormalisedBody, patch: Ints, part: Flags, limits: EliminationSettings, steps: int, rounds: int) -> Flags:
     """(vertex,) one of the two groups of a part's patches that move most nearly as one each; nothing if it has no two."""
     own, number = np.flatnonzero(part), np.cumsum(part) - 1
     faces = number[body.F[part[body.F].all(axis=1)]]
@@ -84,12 +85,12 @@ def _second_half(body: NormalisedBody, patch: Ints, part: Flags, floor: float, s
     half = grouped(V, x, weight * area, patch[own], np.zeros(len(own), np.int64), start, ring, 2, np.inf)
     R, t = np.empty((len(x), 2, 3, 3)), np.empty((len(x), 2, 3))
     for turn in range(rounds + 1):
+        if turn > 0:
+            fit(V, x, weight, area, half, np.ones(2, np.bool_), False, limits.fit_vertices, limits.floor, R, t)
+            half = relabelled(V, x, weight, R, t, half, start, ring, steps)
         half = connected(half, 2, start, ring) if half.max() == 1 else half
         if half.max() != 1 or half.min() != 0:
             return np.zeros(len(part), np.bool_)
-        fit(V, x, weight, area, half, np.ones(2, np.bool_), False, len(own), floor, R, t)
-        if turn < rounds:
-            half = relabelled(V, x, weight, R, t, half, start, ring, steps)
     second = np.zeros(len(part), np.bool_)
     second[own[half == 1]] = True
     return second
