@@ -33,6 +33,8 @@ class HalvedPartsSettings(NamedTuple):
     1.16 at most."""
     rounds: int = 2
     """Rounds of labels and motions of the two halves."""
+    frames: int = 36
+    """Frames, evenly many, by which the halves are told apart, at most; for time. They are judged by all."""
 
 
 def halved(
@@ -56,7 +58,7 @@ def halved(
     """
     chosen, origin = settings or HalvedPartsSettings(), list(range(R.shape[1]))
     for part in range(R.shape[1]):
-        second = _second_half(body, patch, label == part, limits, steps, chosen.rounds)
+        second = _second_half(body, patch, label == part, limits, steps, chosen)
         if not second.any():
             continue
         new = R.shape[1]
@@ -76,15 +78,18 @@ def _with_room(motion: Floats) -> Floats:
     return np.concatenate([motion, motion[:, :1]], axis=1)
 
 
-def _second_half(body: NormalisedBody, patch: Ints, part: Flags, limits: EliminationSettings, steps: int, rounds: int) -> Flags:
+def _second_half(
+    body: NormalisedBody, patch: Ints, part: Flags, limits: EliminationSettings, steps: int, chosen: HalvedPartsSettings
+) -> Flags:
     """(vertex,) one of the two groups of a part's patches that move most nearly as one each; nothing if it has no two."""
     own, number = np.flatnonzero(part), np.cumsum(part) - 1
     faces = number[body.F[part[body.F].all(axis=1)]]
     start, ring = rings(faces, len(own))
-    V, x, weight, area = body.V[own], np.ascontiguousarray(body.x[:, own]), body.weight[:, own].copy(), body.area[own]
+    some = np.ix_(np.unique(np.linspace(0, len(body.x) - 1, chosen.frames).round().astype(np.int64)), own)
+    V, x, weight, area = body.V[own], body.x[some], body.weight[some], body.area[own]
     half = grouped(V, x, weight * area, patch[own], np.zeros(len(own), np.int64), start, ring, 2, np.inf)
     R, t = np.empty((len(x), 2, 3, 3)), np.empty((len(x), 2, 3))
-    for turn in range(rounds + 1):
+    for turn in range(chosen.rounds + 1):
         if turn > 0:
             fit(V, x, weight, area, half, np.ones(2, np.bool_), False, limits.fit_vertices, limits.floor, R, t)
             half = relabelled(V, x, weight, R, t, half, start, ring, steps)
