@@ -32,5 +32,5 @@ class PlayedBody(Artifact):
     """Adler-32 of the arrays."""
     reference_vertex: Annotated[Ints, Array("int32", SAMPLE)]
     """The vertices of the reference mesh that play."""
-    axes: Annotated[Floats, Array("float64", ROW, XYZ)]
+    axes: Annotated[Floats, Array("float64", XYZ, ROW)]
     """The axes of the view, as columns."""

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from kinetree.schemas.results.exports import Exported
-from kinetree.schemas.structure.error_bars import Evidence
+from kinetree.schemas.structure.error_bars import EvidenceKind
 
 FORMAT = "kinetree.skeleton/2"
 Point = tuple[float, float, float]
@@ -74,7 +74,7 @@ class Joint(_FileObject):
     shape alone shows."""
     rest: Rest
     """Where it is in the reference pose, and how its axes lie."""
-    evidence: Evidence | None = None
+    evidence: EvidenceKind | None = None
     """motion: its parts turn against each other; shape: the body's shape alone shows it, and no turn was measured there.
     null for root and leaves, for assumed joints, and where the method does not know."""
     error: JointError | None = None

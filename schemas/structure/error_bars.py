@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import FRAME, JOINT
 
-Evidence = Literal["motion", "shape"]
+EvidenceKind = Literal["motion", "shape"]
 """How a joint is known: its parts turn against each other; or by the body's shape alone, so that no turn was measured there."""
 
 
@@ -49,5 +49,5 @@ class ErrorBars(Artifact):
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]
     """Frames in which most of the surface of the joint's parts was seen and certain."""
-    evidence: tuple[Evidence | None, ...]
+    evidence: tuple[EvidenceKind | None, ...]
     """How each joint is known; None for root and leaves, and where it is not known."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from kinetree.pipeline.task import task
 from kinetree.schemas.array import Floats
-from kinetree.schemas.structure.error_bars import ErrorBars, Evidence
+from kinetree.schemas.structure.error_bars import ErrorBars, EvidenceKind
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.surface import surface_areas
@@ -83,7 +83,7 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     )  # fmt: skip
 
 
-def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[Evidence | None, ...]:
+def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[EvidenceKind | None, ...]:
     """How each joint is known; None for root and leaves."""
     necks = frozenset(kinematic_tree.neck_joints)
     return tuple(None if kind != "joint" else "shape" if j in necks else "motion" for j, kind in enumerate(skeleton.kinds))

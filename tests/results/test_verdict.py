@@ -10,7 +10,7 @@ from results.sample_report import artifacts, confident
 
 from kinetree.pipeline import views
 from kinetree.schemas.results.verdict import Finding, Verdict
-from kinetree.schemas.structure.error_bars import Evidence
+from kinetree.schemas.structure.error_bars import EvidenceKind
 from kinetree.schemas.structure.joint_names import JointNames
 from kinetree.tasks.results.surface_error import surface_error
 from kinetree.tasks.results.verdict import verdict
@@ -21,7 +21,7 @@ def of(
     spoilt: dict[int, float] | None = None,
     failed: tuple[int, ...] = (),
     bound: float = 0.1,
-    evidence: tuple[Evidence | None, ...] | None = None,
+    evidence: tuple[EvidenceKind | None, ...] | None = None,
 ) -> Verdict:
     """The verdict on the spider; in some frames the hand of the input is moved away; every joint is known to a bound.
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from articulated import ALL_STAY, Known, chain, cut_by_height, surface, swings
+from articulated import ALL_STAY, Known, and_at_rest, chain, cut_by_height, surface, swings
 
 from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -52,6 +52,21 @@ def test_a_part_stays_whose_joints_lie_apart_or_without_which_the_bone_drifts(st
 def test_joints_that_lie_as_one_are_one_however_much_the_bone_drifts() -> None:
     body, before = in_takes(soft_neck()), cut_amiss()
     assert origins(bones_without_slabs(body, before, ALL_STAY, SlabsSettings(worse=0.1, one_point=0.9))) == [0, NO_PART, 2]
+
+
+@pytest.mark.parametrize(("worse", "left"), [(0.7, [0, NO_PART, 1, 2]), (0.8, [0, NO_PART, 2])])
+def test_takes_in_which_the_body_rests_change_nothing(worse: float, left: list[int]) -> None:
+    resting, takes = and_at_rest(soft_neck(), 24)
+    limits = SlabsSettings(worse=worse, one_point=0.0)
+    after = bones_without_slabs(surface(resting)._replace(takes=takes), cut_by_height(resting, (0.0, 1.7)), ALL_STAY, limits)
+    moving = bones_without_slabs(in_takes(soft_neck()), cut_amiss(), ALL_STAY, limits)
+    assert origins(after) == origins(moving) == left
+
+
+def test_a_part_whose_joints_lie_as_far_apart_as_a_bones_stays() -> None:
+    body, before = in_takes(soft_neck()), cut_by_height(soft_neck(), (0.0, 2.8))
+    assert origins(bones_without_slabs(body, before, ALL_STAY)) == [0, NO_PART, 1, 2]
+    assert origins(bones_without_slabs(body, before, ALL_STAY, SlabsSettings(length=9.0))) == [0, NO_PART, 2]
 
 
 def test_a_tree_without_hidden_bones_keeps_its_slabs() -> None:
