@@ -106,7 +106,7 @@ def test_varied_setting_changes_results_and_computes_nothing_before_them(bench: 
 
 def test_task_that_a_setting_cannot_change_keeps_its_code_digest(bench: ModuleType) -> None:
     asked = {
-        "rigid_parts": ("kinetree.tasks.structure.rigid_parts", 0),
+        "stiffness": ("kinetree.tasks.registration.stiffness", 0),
         "first_tree": ("kinetree.tasks.structure.first_tree", 1),
     }
     before = {name: freshness.code_digest(module, name) for name, (module, _) in asked.items()}
