@@ -21,6 +21,7 @@ from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
+from kinetree.tasks.numerics.structure.shared_joints import shared_joints
 from kinetree.tasks.numerics.structure.skinning import heaviest
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 
@@ -147,10 +148,12 @@ def _posed(
     """The tree in every frame, its joints where all cuts have them, moved to the frames' surfaces."""
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
-    on_surface = SurfaceJoints(consensus.rest, *np.full((2, parts), np.nan))
+    shared = shared_joints(first, consensus.rest, body.size)
+    on_surface = SurfaceJoints(shared, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        on_surface = surface_joints(first, laid, consensus.rest, share, takes=body.takes)
+        held = (shared != consensus.rest).any(axis=1)
+        on_surface = surface_joints(first, laid, shared, share, held=held, takes=body.takes)
     rest = on_surface.rest
     start = Motion(rest, first.R, first.t[:, 0].copy())
     poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)

@@ -41,6 +41,16 @@ def misfit(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: In
     return e
 
 
+def rigid_share(square: Floats, removal_cost: float) -> Floats:
+    """Share of motion that a part alone explains, c² / (c² + 4 e): 1 on bones, a half where √e is half of the cost c.
+
+    square       : mean squared residual e, see `misfit`, area of the body
+    removal_cost : cost from which on a part stays, root of the area
+    """
+    share: Floats = removal_cost**2 / (removal_cost**2 + 4 * square)
+    return share
+
+
 @compiled
 def residuals(V: Floats, x: Floats, weight: Floats, R: Floats, t: Floats, label: Ints) -> Floats:
     """Root mean square of |R q + t − x| over each part's vertices, in every frame.

@@ -19,7 +19,8 @@ from kinetree.tasks.numerics.structure.elimination import EliminationSettings, N
 from kinetree.tasks.numerics.structure.halved_parts import halved
 from kinetree.tasks.numerics.structure.oversegmentation import ConeRuns, OversegmentationSettings, cone_runs, grouped, patches
 from kinetree.tasks.numerics.structure.part_labels import connected, relabelled
-from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, unevenness
+from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals, rigid_share, unevenness
+from kinetree.tasks.numerics.structure.parted_limbs import parted
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.topology.extrema import extrema
 from kinetree.tasks.numerics.topology.geodesics import farthest_bases, mu
@@ -40,7 +41,8 @@ class Cut(NamedTuple):
     removed    : (removal,) parts of the first cut in the order in which they were eliminated
     cost       : (removal,) what removing each cost, root of the area
     merge_threshold, cost_threshold : merge error above which tenths of a cone are cut apart · cost from which on parts stay
-    origin     : (part,) which part of the first cut each rigid part has become; two of one were halved, see `halved_parts`
+    origin     : (part,) which part of the first cut each rigid part has become; those of one were cut apart, see
+                 `halved_parts`, `parted_limbs`
     """
 
     cone: Ints
@@ -197,11 +199,11 @@ def _normalised_parts(
         used, label, R, t = _refitted(body, label, limits.floor)
         origin = origin[used]
     label, R, t, whole = halved(body, patch, label, R, t, limits, steps)
-    if len(whole) > len(origin):
+    label, limbs = parted(body, label, R, t, limits.removal_cost)
+    if len(limbs) > len(origin):
         used, label, R, t = _refitted(body, label, limits.floor)
-        origin = origin[whole][used]
-    e = misfit(V, x, weight, R, t, label)
-    rigid = limits.removal_cost**2 / (limits.removal_cost**2 + 4 * e)
+        origin = origin[whole][limbs][used]
+    rigid = rigid_share(misfit(V, x, weight, R, t, label), limits.removal_cost)
     cut = Cut(
         cones.cone, cones.ring, leaves, cones.run, cones.merge, initial, np.concatenate(removed), np.concatenate(cost),
         first.cut, limits.removal_cost, origin,

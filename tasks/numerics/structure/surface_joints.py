@@ -85,15 +85,17 @@ class _Pull(NamedTuple):
 
 def surface_joints(
     tree: FirstTree, laid: LaidParts, rest: Floats, seen: Floats, settings: SurfaceJointsSettings | None = None,
-    takes: Sequence[slice] | None = None,
+    held: Flags | None = None, takes: Sequence[slice] | None = None,
 ) -> SurfaceJoints:  # fmt: skip
     """Joints where the frames agree on them, and how far all are from where the surfaces have them.
 
     rest  : (part, xyz) the joints in the reference, mesh unit
     seen  : (frame, part) share of its surface that is certain, 0 to 1
+    held  : (part,) joints that stay where they are, see `shared_joints`; None holds none
     takes : positions of the frames of each take, in order; None takes all as one
     """
-    chosen, may_move = settings or SurfaceJointsSettings(), within_limbs(tree.parents)
+    chosen, stays = settings or SurfaceJointsSettings(), np.zeros(len(rest), np.bool_) if held is None else held
+    may_move = within_limbs(tree.parents) & ~stays
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
     spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
     shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)
@@ -105,7 +107,7 @@ def surface_joints(
             if may_move[joint]:
                 moved[joint] = _moved_joint(pull, rest[joint], chosen.spread * radius, chosen)
             if _often_shown(pull):
-                moved[joint] += shifts[joint] * (moved[joint] == rest[joint]).all()
+                moved[joint] += shifts[joint] * (not stays[joint] and (moved[joint] == rest[joint]).all())
                 places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
                 offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
     return SurfaceJoints(moved, offset, hinge_offsets(tree, laid.hinges, moved, share))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 from articulated import Known, chain, moved, swings, three_arms
-from limbs import tube
+from limbs import rotation, tube
 
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
 
@@ -69,3 +69,22 @@ def test_joint_that_one_take_turns_is_as_clear_as_in_that_take() -> None:
     assert whole.degrees[1] < 0.7 * alone.degrees[1]
     assert whole.ratio[1] < 0.7 * alone.ratio[1]
     assert of(body, [slice(0, 48)]).ratio[1] == whole.ratio[1]
+
+
+def test_limbs_that_move_alike_hang_on_the_middle_and_not_on_each_other() -> None:
+    """Both carry the same error against the middle, so that the border in which they touch drifts least."""
+    hinge = np.array([0.0, 1.0, 0.0])
+    turn = np.tile(np.eye(3), (24, 4, 1, 1))
+    turn[:, 2] = turn[:, 3] = np.stack([rotation(hinge, 0.5 * np.sin(f / 3)) for f in range(24)])
+    turn[:, 1] = swings(24, 2)[:, 1]
+    body = three_arms(turn)
+    alike = np.cumsum(np.random.default_rng(0).normal(size=(24, 1, 3)), axis=0) * [0.05, 0.3, 0.05]
+    body.t[:, 2:] += alike
+    bridge = (body.label == 0) & (body.V[:, 0] < -1.0) & (np.abs(body.V[:, 2]) < 3.0)
+    body.label[bridge] = np.where(body.V[bridge, 1] > 0, 2, 3)
+    for part in (2, 3):
+        own = body.label == part
+        body.x[:, own] = body.V[own] @ body.R[:, part].transpose(0, 2, 1) + body.t[:, part, None]
+    found = of(body)
+    assert found.tree.order[0] == 0
+    assert found.tree.parents.tolist() == [-1, 0, 0, 0]

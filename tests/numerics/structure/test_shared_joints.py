@@ -1,0 +1,84 @@
+"""Laws of joints that are one joint with several bones."""
+
+import numpy as np
+import pytest
+from articulated import swings
+
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
+from kinetree.tasks.numerics.structure.shared_joints import SharedJointsSettings, shared_joints
+
+FRAMES, RADIUS, SIZE = 24, 1.0, 20.0
+
+
+def star(joints: Floats, off: Floats, noise: float = 0.02, axes: int = 2, scale: float = 1.0) -> tuple[FirstTree, Floats]:
+    """Limbs that turn about joints of a root that moves, with noise in where they are · joints that far off them."""
+    count = len(joints) + 1
+    turn, rng = swings(FRAMES, count, 25.0, axes), np.random.default_rng(0)
+    R, t = turn.copy(), np.empty((FRAMES, count, 3))
+    t[:, 0] = scale * rng.normal(size=(FRAMES, 3))
+    for k, joint in enumerate(joints, 1):
+        R[:, k] = turn[:, 0] @ turn[:, k]
+        t[:, k] = turn[:, 0] @ (scale * joint) + t[:, 0] - R[:, k] @ (scale * joint)
+        t[:, k] += noise * scale * rng.normal(size=(FRAMES, 3))
+    rest = scale * np.concatenate([np.zeros((1, 3)), joints + off])
+    none = np.zeros(0)
+    graph = PartGraph(np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ())
+    tree = FirstTree(
+        parents=np.array([-1, *[0] * len(joints)]), place=np.arange(count), ends=0, label=np.zeros(1, np.int64),
+        W=np.zeros((1, count)), R=R, t=t, certain_share=None, rest=rest, drift=np.zeros(count),
+        unexplained=np.zeros((FRAMES, count)), radius=scale * np.array([0.0, *[RADIUS] * len(joints)]),
+        end_x=np.zeros((FRAMES, 0, 3)), graph=graph,
+    )  # fmt: skip
+    return tree, rest
+
+
+AT = np.array([3.0, 0.0, 1.0])
+ASIDE = np.array([[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0]])
+LOOSE = 0.2
+"""Noise so large that a joint 0.3 off drifts hardly more."""
+
+
+def test_bones_of_one_joint_meet_where_all_of_them_turn() -> None:
+    tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
+    places = shared_joints(tree, rest, SIZE)
+    np.testing.assert_array_equal(places[1], places[2])
+    assert np.linalg.norm(places[1] - AT) < 0.15
+    np.testing.assert_array_equal(places[0], rest[0])
+
+
+def test_three_bones_of_one_joint_meet() -> None:
+    tree, rest = star(np.array([AT] * 3), np.array([*ASIDE, [0.0, 0.3, 0.0]]), LOOSE)
+    places = shared_joints(tree, rest, SIZE)
+    assert (places[1:] == places[1]).all()
+    assert np.linalg.norm(places[1] - AT) < 0.15
+
+
+def test_near_joints_that_both_motions_tell_apart_stay() -> None:
+    tree, rest = star(np.array([AT, AT + [0.6, 0.0, 0.0]]), np.zeros((2, 3)))
+    assert shared_joints(tree, rest, SIZE) is rest
+
+
+def test_joints_farther_apart_than_their_borders_are_wide_stay_whatever_the_motion_says() -> None:
+    """Both hinges turn about the line through both joints, so that each explains the other's motion."""
+    apart = np.array([AT, AT + [1.2, 0.0, 0.0]])
+    tree, rest = star(apart, np.zeros((2, 3)), axes=1)
+    assert shared_joints(tree, rest, SIZE) is rest
+    wide = SharedJointsSettings(near=1.5)
+    assert (shared_joints(tree, rest, SIZE, wide)[1] == shared_joints(tree, rest, SIZE, wide)[2]).all()
+
+
+def test_joints_on_different_parts_stay() -> None:
+    tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
+    assert shared_joints(tree._replace(parents=np.array([-1, 0, 1])), rest, SIZE) is rest
+
+
+@pytest.mark.parametrize("scale", [0.001, 1000.0])
+def test_the_same_on_a_body_of_another_size(scale: float) -> None:
+    one, other = (shared_joints(*star(np.array([AT, AT]), ASIDE, LOOSE, scale=s), SIZE * s) / s for s in (1.0, scale))
+    np.testing.assert_allclose(other, one, rtol=1e-9)
+
+
+def test_a_body_that_is_one_part_has_none() -> None:
+    tree, rest = star(np.zeros((0, 3)), np.zeros((0, 3)))
+    assert shared_joints(tree, rest, SIZE) is rest
