@@ -44,6 +44,10 @@ class _Joint(NamedTuple):
         return float(np.sqrt(self.weight @ ((self.M @ c - self.d) ** 2).sum(axis=1)))
 
 
+_Groups = list[tuple[tuple[int, ...], Floats]]
+"""Parts whose joints are one, and where it is."""
+
+
 def shared_joints(tree: FirstTree, rest: Floats, size: float, settings: SharedJointsSettings | None = None) -> Floats:
     """The joints in the reference, those that are one at one place.
 
@@ -56,16 +60,13 @@ def shared_joints(tree: FirstTree, rest: Floats, size: float, settings: SharedJo
     chosen, moved = settings or SharedJointsSettings(), rest
     joints = [None, *_joints(tree.motion, rest[1:], tree.radius[1:], chosen.noise * size)]
     for above in np.unique(tree.parents[1:]).tolist():
-        groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
+        groups: _Groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
         while (merged := _nearest_merged(groups, joints, chosen)) is not None:
             groups = merged
         for members, place in groups:
             if len(members) > 1:
                 moved = np.where(np.isin(np.arange(len(rest)), members)[:, None], place, moved)
     return moved
-
-
-_Groups = list[tuple[tuple[int, ...], Floats]]
 
 
 def _joints(motion: JointMotion, rest: Floats, radius: Floats, noise: float) -> list[_Joint]:
