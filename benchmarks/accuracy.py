@@ -2,7 +2,7 @@
 
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     python benchmarks/accuracy.py [--data FOLDER] [--only NAME ...] [--presets default paper-2014] [--seeds 0-9]
-                                  [--kinds human adult clothed quadruped random] [--motions NAME ...] [--fps 12 30]
+                                  [--kinds human adult clothed quadruped random fork] [--motions NAME ...] [--fps 12 30]
                                   [--frames 36] [--vertices 6000] [--work FOLDER] [--json FILE] [--markdown]
                                   [--fixed] [--set TASK.NAME=VALUE ...]
 
@@ -10,8 +10,8 @@ FOLDER holds NAME.npz beside NAME.truth.json, and NAME-body.npz with skinning we
 NAME-body.npz with a truth of its own is a sequence too. Generated ones are of four kinds, one body a seed: adults are the
 people adult:SEED with motions as recordings have them; humans and quadrupeds are the figures that ship, seed 0 as they are and
 the others with other proportions, thicknesses and amplitudes; random trees differ in everything. On demand there are clothed
-ones: the same people in loose clothes. Motions take turns with the seeds; --motions says which of the adults'. --seeds is a
-range (0-9), a list (0,4,7) or none. --fps samples each adult's motion at these rates, over the time that --frames frames cover
+ones, the same people in loose clothes, and forks, several of whose limbs hang on one joint. Motions take turns with the seeds;
+--motions says which of the adults'. --seeds is a range (0-9), a list (0,4,7) or none. --fps samples each adult's motion at these rates, over the time that --frames frames cover
 at the first. --fixed gives each one connectivity. --work keeps the stores, so that a second call computes only what changed.
 --set changes every run: geodesics.sum=bases spares the preset paper-2014 Eq. 1 over all vertices, half a minute a frame, for
 what differs by 0.2 % from it.
@@ -41,6 +41,7 @@ from typing import Any
 
 import numpy as np
 import yaml
+from forked import forked
 
 from kinetree.errors import KinetreeError
 from kinetree.pipeline.graph import Graph
@@ -57,8 +58,8 @@ from kinetree.tasks.results.truth import synthetic, truth
 
 PEOPLE = ("walk", "dance", "look", "reach", "run", "squat", "greet", "throw")
 """Motions of the figures adult:SEED, which take turns."""
-KINDS = ("human", "adult", "quadruped", "random", "clothed")
-MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet")}
+KINDS = ("human", "adult", "quadruped", "random", "clothed", "fork")
+MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet"), "fork": ("move",)}
 HEADS = (
     "found", "close", "% err", "spur", "J2J", "J2B", "B2B", "IoU", "P", "R", "edit", "ARI", "mIoU", "R_det", "E_dist", "jit",
     "s/frm",
@@ -110,7 +111,7 @@ def generated(bodies: Bodies, work: Path) -> Iterator[Case]:
             else:
                 path = work / f"{kind}-{seed}.yaml"
                 path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(yaml.safe_dump(varied(kind, seed)))
+                path.write_text(yaml.safe_dump(forked(seed) if kind == "fork" else varied(kind, seed)))
                 synth = {"file": str(path), "motion": MOTIONS[kind][seed % len(MOTIONS[kind])], **options}
                 yield Case(f"{kind}-{seed}", kind, {"source": {"synth": synth}})
 

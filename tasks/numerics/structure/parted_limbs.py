@@ -37,33 +37,32 @@ def parted(
     """
     chosen, out, origin = settings or PartedLimbsSettings(), label.copy(), list(range(R.shape[1]))
     rigid = rigid_share(misfit(body.V, body.x, body.weight, R, t, label), removal_cost) >= chosen.rigid
+    edges = _edges(body)
     for part in range(R.shape[1]):
         own = np.flatnonzero(label == part)
-        piece = _pieces(body, own, rigid[own], chosen.piece)
+        piece = _pieces(csr_array(edges[own][:, own]), body.area[own], rigid[own], chosen.piece)
         for k in range(1, int(piece.max(initial=0)) + 1):
             out[own[piece == k]] = len(origin)
             origin.append(part)
     return out, np.array(origin)
 
 
-def _pieces(body: NormalisedBody, own: Ints, rigid: Flags, share: float) -> Ints:
+def _pieces(edges: csr_array, area: Floats, rigid: Flags, share: float) -> Ints:
     """(own vertex,) the large piece of the rigid surface that lies nearest along the part's edges; 0 where it is one."""
-    edges = _edges(body, own)
     inside = edges * rigid[:, None] * rigid[None]
     inside.eliminate_zeros()
     piece = connected_components(inside, directed=False)[1]
-    area = np.bincount(piece[rigid], body.area[own[rigid]], int(piece.max(initial=0)) + 1)
-    large = np.flatnonzero(area >= share * body.area[own].sum())
+    sizes = np.bincount(piece[rigid], area[rigid], int(piece.max(initial=0)) + 1)
+    large = np.flatnonzero(sizes >= share * area.sum())
     if len(large) < 2:
-        return np.zeros(len(own), np.int64)
+        return np.zeros(len(area), np.int64)
     away = [dijkstra(edges, indices=np.flatnonzero(rigid & (piece == k)), min_only=True) for k in large]
     return np.argmin(away, axis=0)
 
 
-def _edges(body: NormalisedBody, own: Ints) -> csr_array:
-    """(own vertex, own vertex) lengths of the edges between some vertices."""
+def _edges(body: NormalisedBody) -> csr_array:
+    """(vertex, vertex) lengths of the edges."""
     count = len(body.V)
     source = np.repeat(np.arange(count), np.diff(body.start))
     length = np.maximum(np.linalg.norm(body.V[source] - body.V[body.ring], axis=1), np.finfo(float).tiny)
-    whole = csr_array((length, body.ring, body.start), shape=(count, count))
-    return csr_array(whole[own][:, own])
+    return csr_array((length, body.ring, body.start), shape=(count, count))
