@@ -11,10 +11,10 @@ NAME-body.npz with a truth of its own is a sequence too. Generated ones are of f
 people adult:SEED with motions as recordings have them; humans and quadrupeds are the figures that ship, seed 0 as they are and
 the others with other proportions, thicknesses and amplitudes; random trees differ in everything. On demand there are clothed
 ones, the same people in loose clothes, and forks, several of whose limbs hang on one joint. Motions take turns with the seeds;
---motions says which of the adults'. --seeds is a range (0-9), a list (0,4,7) or none. --fps samples each adult's motion at these rates, over the time that --frames frames cover
-at the first. --fixed gives each one connectivity. --work keeps the stores, so that a second call computes only what changed.
---set changes every run: geodesics.sum=bases spares the preset paper-2014 Eq. 1 over all vertices, half a minute a frame, for
-what differs by 0.2 % from it.
+--motions says which of the adults'. --seeds is a range (0-9), a list (0,4,7) or none. --fps samples each adult's motion at
+these rates, over the time that --frames frames cover at the first. --fixed gives each one connectivity. --work keeps the
+stores, so that a second call computes only what changed. --set changes every run: geodesics.sum=bases spares the preset
+paper-2014 Eq. 1 over all vertices, half a minute a frame, for what differs by 0.2 % from it.
 
 A run that fails is not left out: it counts as a body with one joint in its middle. The lines after the bodies average groups.
 Columns: found of scored joints within 5 % and, of these, within 2.5 % of the height; mean error of those found in % of the
