@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 import trimesh
-from articulated import Known, chain, moved, swings, three_arms
+from articulated import ALL_STAY, Known, chain, moved, swings, three_arms
 from limbs import bent, rotation
 from shipped import PARTS, TREE
 from whole_tree import whole_tree
 
-from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
+from kinetree.tasks.numerics.structure.first_tree import in_tree_order
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, tree_joints
 
 
 def both(
@@ -261,3 +262,21 @@ def test_a_cut_that_places_a_joint_elsewhere_moves_it_half_way_and_is_its_spread
     moved_by = np.linalg.norm(found.rest[turning] - same.rest[turning])
     assert 0.002 * size < moved_by < 0.02 * size
     assert told.spread[turning] == pytest.approx(moved_by, rel=0.3)
+
+
+def test_bones_of_one_joint_begin_in_one_place_in_every_frame() -> None:
+    """Two arms turn about one point, and each one's joint is found along its arm, with noise that tells neither wrong."""
+    body = three_arms(reach=4.0)
+    fork = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-3.0, 0.0, 0.0], [-3.0, 0.0, 0.0]])
+    body = moved(body.V, body.F, body.W, fork, body.parents, swings(24, 4))
+    surface, cut = known(body)
+    first = in_tree_order(tree_joints(surface, cut, np.zeros(0, np.int64), settings=ALL_STAY), 4)
+    arms = first.place[[2, 3]]
+    rest, noise = first.rest.copy(), 0.3 * np.random.default_rng(0).normal(size=(24, 2, 3))
+    rest[arms] = fork[2] + np.array([[-0.3, 0.5, 0.0], [-0.3, -0.5, 0.0]])
+    t = first.t.copy()
+    t[:, arms] += noise
+    found, _ = kinematic_tree(surface, first._replace(rest=rest, t=t), np.zeros(0, np.int64))
+    places = [j for j in range(len(found.names)) if np.linalg.norm(found.rest[j] - fork[2]) < 1.0]
+    assert len(places) == 2
+    np.testing.assert_array_equal(found.positions[:, places[0]], found.positions[:, places[1]])

@@ -8,7 +8,7 @@ import pytest
 from articulated import chain
 from smeared import END, Frames, three_parts, turning
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.laid_parts import laid_parts
@@ -23,7 +23,7 @@ HERE = np.zeros(3)
 def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
     mesh_at: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
-    shift: Floats = HERE, hinged: bool = True,
+    shift: Floats = HERE, hinged: bool = True, held: Flags | None = None,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and the body is shifted."""
     surface, found = three_parts(frames, scale)
@@ -36,7 +36,7 @@ def on_surfaces(
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
     if not hinged:
         laid = laid._replace(hinges=laid.hinges._replace(joint=laid.hinges.joint[:0], end=laid.hinges.end[:0]))
-    return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings)
+    return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings, held)
 
 
 def moved(*args: Any, **kwargs: Any) -> tuple[Floats, Floats]:
@@ -55,6 +55,12 @@ def test_a_joint_that_lies_off_along_its_limb_comes_back(way: float) -> None:
 def test_a_joint_that_lies_right_stays_there() -> None:
     _, after = moved(0.0 * OFF)
     np.testing.assert_allclose(after[2], [0.0, 0.0, END], atol=0.1)
+
+
+def test_a_joint_that_is_held_stays_and_knows_how_far_off_the_surfaces_have_it() -> None:
+    before, found = on_surfaces(held=np.array([False, False, True]))
+    np.testing.assert_array_equal(found.rest, before)
+    assert found.offset[2] > 0.3
 
 
 def test_the_same_on_a_body_of_another_size() -> None:
