@@ -66,5 +66,5 @@ class RigidParts(Artifact):
     cost_threshold: float
     """Cost from which on a part stays; above the parameter where the body is soft or badly aligned."""
     origin: Annotated[Ints, Array("int32", PART)]
-    """Part of the first cut that each rigid part has grown from, the same for two halves of one; parts that are in neither list
-    lost all their vertices."""
+    """Part of the first cut that each rigid part has grown from, the same for parts that were cut apart; parts that are in
+    neither list lost all their vertices."""
