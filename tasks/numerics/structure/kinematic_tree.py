@@ -148,7 +148,7 @@ def _posed(
     """The tree in every frame, its joints where all cuts have them, moved to the frames' surfaces."""
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
-    shared = shared_joints(first, consensus.rest, body.size)
+    shared = shared_joints(first, consensus.rest, body.size, body.takes)
     on_surface = SurfaceJoints(shared, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:

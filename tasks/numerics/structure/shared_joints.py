@@ -4,14 +4,15 @@ Bones that leave a joint in a bundle, such as the links from the pelvis to both 
 alone. Each one's rotation centre is then drawn along its bone, away from the joint that all share.
 """
 
+from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
+from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
 class SharedJointsSettings(NamedTuple):
@@ -30,38 +31,55 @@ class SharedJointsSettings(NamedTuple):
 
 
 class _Joint(NamedTuple):
-    """What the frames say of one joint: M c = d with weights that sum to 1; its place, radius of its border and drift there."""
+    """What the frames say of one joint: M c = d, by weight; its place, and the radius of its border."""
 
     M: Floats
     d: Floats
     weight: Floats
     place: Floats
     radius: float
-    drift: float
 
-    def drift_at(self, c: Floats) -> float:
-        """Root mean square distance between a point as both parts carry it."""
-        return float(np.sqrt(self.weight @ ((self.M @ c - self.d) ** 2).sum(axis=1)))
+    def drift_at(self, c: Floats, spans: Ints, noise: float) -> Floats:
+        """(span,) root mean square distance between a point as both parts carry it, at least the noise."""
+        square = self.weight * ((self.M @ c - self.d) ** 2).sum(axis=1)
+        mean = [square[begin:end].sum() / self.weight[begin:end].sum() for begin, end in spans]
+        return np.maximum(np.sqrt(mean), noise)
 
 
 _Groups = list[tuple[tuple[int, ...], Floats]]
 """Parts whose joints are one, and where it is."""
 
 
-def shared_joints(tree: FirstTree, rest: Floats, size: float, settings: SharedJointsSettings | None = None) -> Floats:
+class _Judge(NamedTuple):
+    """What says whether joints are one: those of all parts but the root, the spans of frames, the noise, the limits."""
+
+    joints: list[_Joint]
+    spans: Ints
+    noise: float
+    chosen: SharedJointsSettings
+
+
+def shared_joints(
+    tree: FirstTree,
+    rest: Floats,
+    size: float,
+    takes: Sequence[slice] | None = None,
+    settings: SharedJointsSettings | None = None,
+) -> Floats:
     """The joints in the reference, those that are one at one place.
 
     Of a part's joints with the parts below it, the nearest two become one while a common place explains both motions.
 
     rest    : (part, xyz) mesh unit
     size    : root of the area, mesh unit
+    takes   : positions of the frames of each take, each of which may show that joints are two; None takes all as one
     returns : (part, xyz) mesh unit; `rest` itself where none are one
     """
     chosen, moved = settings or SharedJointsSettings(), rest
-    joints = [None, *_joints(tree.motion, rest[1:], tree.radius[1:], chosen.noise * size)]
+    judge = _Judge(_joints(tree, rest), score_spans(len(tree.R), takes), chosen.noise * size, chosen)
     for above in np.unique(tree.parents[1:]).tolist():
         groups: _Groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
-        while (merged := _nearest_merged(groups, joints, chosen)) is not None:
+        while (merged := _nearest_merged(groups, judge)) is not None:
             groups = merged
         for members, place in groups:
             if len(members) > 1:
@@ -69,36 +87,41 @@ def shared_joints(tree: FirstTree, rest: Floats, size: float, settings: SharedJo
     return moved
 
 
-def _joints(motion: JointMotion, rest: Floats, radius: Floats, noise: float) -> list[_Joint]:
+def _joints(tree: FirstTree, rest: Floats) -> list[_Joint]:
     """Those of all parts but the root."""
-    (own, above), (t_own, t_above) = motion.R, motion.t
-    share = motion.weight / motion.weight.sum(axis=0)
-    joints = []
-    for k, (place, r) in enumerate(zip(rest, radius.tolist(), strict=True)):
-        joint = _Joint(own[:, k] - above[:, k], t_above[:, k] - t_own[:, k], share[:, k], place, r, 0.0)
-        joints.append(joint._replace(drift=max(joint.drift_at(place), noise)))
-    return joints
+    (own, above), (t_own, t_above), weight = tree.motion
+    return [
+        _Joint(own[:, k] - above[:, k], t_above[:, k] - t_own[:, k], weight[:, k], place, float(radius))
+        for k, (place, radius) in enumerate(zip(rest[1:], tree.radius[1:], strict=True))
+    ]
 
 
-def _nearest_merged(groups: _Groups, joints: list[_Joint | None], chosen: SharedJointsSettings) -> _Groups | None:
+def _nearest_merged(groups: _Groups, judge: _Judge) -> _Groups | None:
     """The groups with the two nearest that may be one made one; None where no two may."""
+    chosen = judge.chosen
     apart = {(a, b): float(np.linalg.norm(groups[a][1] - groups[b][1])) for a, b in combinations(range(len(groups)), 2)}
     for (a, b), distance in sorted(apart.items(), key=lambda entry: entry[1]):
         members = groups[a][0] + groups[b][0]
-        of = [joint for k in members if (joint := joints[k]) is not None]
+        of = [judge.joints[k - 1] for k in members]
         if distance >= chosen.near * min(joint.radius for joint in of):
             continue
-        place = _common_place(of, chosen)
-        if all(joint.drift_at(place) <= chosen.rise * joint.drift for joint in of):
+        drifts = [joint.drift_at(joint.place, judge.spans, judge.noise) for joint in of]
+        place = _common_place(of, [float(drift[0]) for drift in drifts], chosen.spread)
+        common = [joint.drift_at(place, judge.spans, judge.noise) for joint in of]
+        if (np.array(common) <= chosen.rise * np.array(drifts)).all():
             return [g for k, g in enumerate(groups) if k not in (a, b)] + [(members, place)]
     return None
 
 
-def _common_place(joints: list[_Joint], chosen: SharedJointsSettings) -> Floats:
-    """(xyz,) argmin_c Σ_j (Σ_t w |M c − d|² / drift² + |c − c_j|² / (ρ r)²), mesh unit."""
+def _common_place(joints: Sequence[_Joint], drifts: Sequence[float], spread: float) -> Floats:
+    """(xyz,) argmin_c Σ_j (Σ_t w |M c − d|² / Σ_t w / drift² + |c − c_j|² / (ρ r)²), mesh unit.
+
+    drifts : of every joint where it is, over all frames, mesh unit
+    spread : ρ
+    """
     A, g = np.zeros((3, 3)), np.zeros(3)
-    for joint in joints:
-        w, hold = joint.weight / joint.drift**2, 1.0 / max(chosen.spread * joint.radius, np.finfo(float).tiny) ** 2
+    for joint, drift in zip(joints, drifts, strict=True):
+        w, hold = joint.weight / joint.weight.sum() / drift**2, 1.0 / max(spread * joint.radius, np.finfo(float).tiny) ** 2
         A += np.einsum("t,tyx,tyz->xz", w, joint.M, joint.M) + hold * np.eye(3)
         g += np.einsum("t,tyx,ty->x", w, joint.M, joint.d) + hold * joint.place
     return np.asarray(np.linalg.solve(A, g))
