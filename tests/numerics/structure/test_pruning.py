@@ -93,3 +93,15 @@ def test_last_part_that_hardly_reaches_beyond_its_border_is_flesh_unless_it_has_
     middle = int(np.argmin(np.linalg.norm(known.V - [1.0, 0.0, 0.0], axis=1)))
     found = of(known, (middle,) if has_leaf else ())
     assert tuple(d.reason for d in found.dropped if d.part == 2) == dropped
+
+
+@pytest.mark.parametrize(("slide", "dropped"), [(0.05, ()), (0.3, (SLIDING,))])
+def test_last_part_that_slides_is_none_unless_it_has_a_leaf(slide: float, dropped: tuple[str, ...]) -> None:
+    """At the larger slide turning moves the part by 1.2 drifts of its joint: 0.5 are asked for with a leaf, 3 without."""
+    body = chain((2.5,), swings(24, 2, 30, axes=1))
+    t = body.t.copy()
+    t[:, 1] += slide * np.random.default_rng(0).normal(size=(24, 3))
+    body = body._replace(t=t)
+    tip = int(body.V[:, 2].argmax())
+    assert [d.reason for d in of(body).dropped] == list(dropped)
+    assert of(body, (tip,)).dropped == ()
