@@ -59,7 +59,7 @@ from kinetree.tasks.results.truth import synthetic, truth
 PEOPLE = ("walk", "dance", "look", "reach", "run", "squat", "greet", "throw")
 """Motions of the figures adult:SEED, which take turns."""
 KINDS = ("human", "adult", "quadruped", "random", "clothed", "fork")
-MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet"), "fork": ("move",)}
+MOTIONS = {"human": ("walk", "wave", "squat"), "quadruped": ("walk", "look"), "adult": ("run", "greet")}
 HEADS = (
     "found", "close", "% err", "spur", "J2J", "J2B", "B2B", "IoU", "P", "R", "edit", "ARI", "mIoU", "R_det", "E_dist", "jit",
     "s/frm",
@@ -111,8 +111,9 @@ def generated(bodies: Bodies, work: Path) -> Iterator[Case]:
             else:
                 path = work / f"{kind}-{seed}.yaml"
                 path.parent.mkdir(parents=True, exist_ok=True)
+                motions = MOTIONS.get(kind, ("move",))
                 path.write_text(yaml.safe_dump(forked(seed) if kind == "fork" else varied(kind, seed)))
-                synth = {"file": str(path), "motion": MOTIONS[kind][seed % len(MOTIONS[kind])], **options}
+                synth = {"file": str(path), "motion": motions[seed % len(motions)], **options}
                 yield Case(f"{kind}-{seed}", kind, {"source": {"synth": synth}})
 
 

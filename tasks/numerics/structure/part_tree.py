@@ -157,7 +157,7 @@ def relative_rotation(R: Floats, above: int, part: int) -> Floats:
 def _border_cost(body: MovingSurface, parts: MovingParts, met: Borders, centres: Joints, chosen: PartTreeSettings) -> Floats:
     """(border,) how bad a joint it would make, mesh unit: by drift, distance from the border, bad blending, a short border.
 
-    A border that does not turn costs the size of the body more than that.
+    A border that does not turn costs more than any that does.
     """
     longest = np.zeros(parts.R.shape[1])
     np.maximum.at(longest, met.pair.ravel(), np.repeat(met.length, 2))
@@ -168,8 +168,8 @@ def _border_cost(body: MovingSurface, parts: MovingParts, met: Borders, centres:
     error = centres.drift * np.hypot(1.0, away) + blend + chosen.noise * body.size
     spans = score_spans(len(body.x), body.takes)
     turns = [widest_turning_range(relative_rotation(parts.R, a, b), spans) for a, b in met.pair]
-    cost: Floats = error * (1.0 + chosen.shortness * shortness) + body.size * (np.array(turns) < chosen.still)
-    return cost
+    cost: Floats = error * (1.0 + chosen.shortness * shortness)
+    return np.where(np.array(turns) < chosen.still, cost + 2.0 * cost.max(initial=0.0), cost)
 
 
 def branch_borders(met: Borders, tree: RootedTree) -> Borders:

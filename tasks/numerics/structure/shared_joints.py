@@ -16,16 +16,18 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
 class SharedJointsSettings(NamedTuple):
-    """When joints are one. Chosen on dance, forks 0 to 5, people and generated bodies; see RESULTS."""
+    """When joints are one. Chosen on dance, six forks, people and generated bodies, where true and false ones overlap; see
+    RESULTS.
+    """
 
     near: float = 1.0
     """Distance between two joints on the same part, in radii of the smaller border, below which they may be one. True ones lie
-    at 0.29 to 0.94; others that would drift no more than `rise` at 1.08 and more."""
+    at 0.3 to 0.99, two false ones that `rise` lets pass at 0.85 and 0.96."""
     rise: float = 1.5
-    """Drift of each joint at the common place, at most, in its drift where it is. Others that are near: mostly 2.1 and more."""
+    """Drift of each joint at the common place, at most, in its drift where it is. At 1.75 one body loses a joint."""
     spread: float = 0.35
-    """Standard deviation of the common place about each joint, in radii of its border, as in `KinematicTreeSettings`: decides
-    where motion leaves it open. Errors of forks are 1.07 % at 0.35 to 0.7 and 1.02 at 1, those of dance 1.04 and 1.22."""
+    """Standard deviation of the common place about each joint, in radii of its border: decides where motion leaves it open.
+    Errors of forks are 1.07 % at 0.35 to 0.7 and 1.02 at 1, those of dance 1.04 and 1.22."""
     noise: float = 0.001
     """Drift that is none, root of the area."""
 
@@ -121,7 +123,7 @@ def _common_place(joints: Sequence[_Joint], drifts: Sequence[float], spread: flo
     """
     A, g = np.zeros((3, 3)), np.zeros(3)
     for joint, drift in zip(joints, drifts, strict=True):
-        w, hold = joint.weight / joint.weight.sum() / drift**2, 1.0 / max(spread * joint.radius, np.finfo(float).tiny) ** 2
+        w, hold = joint.weight / joint.weight.sum() / drift**2, 1.0 / (spread * joint.radius) ** 2
         A += np.einsum("t,tyx,tyz->xz", w, joint.M, joint.M) + hold * np.eye(3)
         g += np.einsum("t,tyx,ty->x", w, joint.M, joint.d) + hold * joint.place
     return np.asarray(np.linalg.solve(A, g))

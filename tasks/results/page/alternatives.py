@@ -109,9 +109,10 @@ def merging_words(parts: RigidParts) -> str:
 
 
 def elimination_words(parts: RigidParts) -> str:
-    """How many parts there were and remained, and how many of these were halved."""
-    left = len(np.unique(parts.origin))
-    halved = f" Cut in two of those left: {len(parts.origin) - left}." if len(parts.origin) > left else ""
+    """How many parts there were and remained, and how many of these were cut apart."""
+    pieces = np.unique(parts.origin, return_counts=True)[1]
+    left, apart = len(pieces), int((pieces > 1).sum())
+    halved = f" Cut apart of those left: {apart}." if apart else ""
     return f"Of {int(parts.initial.max()) + 1} parts of the first cut {left} are left, {len(parts.removed)} removed.{halved}"
 
 

@@ -1,5 +1,7 @@
 """The finished body."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import trimesh
@@ -8,10 +10,12 @@ from limbs import bent, rotation
 from shipped import PARTS, TREE
 from whole_tree import whole_tree
 
+from kinetree.tasks.numerics.structure import kinematic_tree as module
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
+from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, tree_joints
 
 
@@ -264,8 +268,16 @@ def test_a_cut_that_places_a_joint_elsewhere_moves_it_half_way_and_is_its_spread
     assert told.spread[turning] == pytest.approx(moved_by, rel=0.3)
 
 
-def test_bones_of_one_joint_begin_in_one_place_in_every_frame() -> None:
+@pytest.mark.parametrize("laid", [False, True])
+def test_bones_of_one_joint_begin_in_one_place_in_every_frame(laid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two arms turn about one point, and each one's joint is found along its arm, with noise that tells neither wrong."""
+    asked: dict[str, Any] = {}
+
+    def stay(*args: Any, held: Any, takes: Any) -> SurfaceJoints:
+        asked.update(held=held, takes=takes)
+        return SurfaceJoints(args[2], *np.full((2, 4), np.nan))
+
+    monkeypatch.setattr(module, "surface_joints", stay)
     body = three_arms(reach=4.0)
     fork = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-3.0, 0.0, 0.0], [-3.0, 0.0, 0.0]])
     body = moved(body.V, body.F, body.W, fork, body.parents, swings(24, 4))
@@ -276,7 +288,9 @@ def test_bones_of_one_joint_begin_in_one_place_in_every_frame() -> None:
     rest[arms] = fork[2] + np.array([[-0.3, 0.5, 0.0], [-0.3, -0.5, 0.0]])
     t = first.t.copy()
     t[:, arms] += noise
-    found, _ = kinematic_tree(surface, first._replace(rest=rest, t=t), np.zeros(0, np.int64))
+    parts: Any = object() if laid else None
+    found, _ = kinematic_tree(surface, first._replace(rest=rest, t=t), np.zeros(0, np.int64), laid=parts)
+    assert not laid or set(np.flatnonzero(asked["held"])) == set(arms)
     places = [j for j in range(len(found.names)) if np.linalg.norm(found.rest[j] - fork[2]) < 1.0]
     assert len(places) == 2
     np.testing.assert_array_equal(found.positions[:, places[0]], found.positions[:, places[1]])

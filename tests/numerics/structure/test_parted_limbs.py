@@ -16,7 +16,9 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 FRAMES = 8
 
 
-def pieces(soft: tuple[float, float], sway: float = 1.0, label: Ints | None = None) -> tuple[Floats, Ints, Ints]:
+def pieces(
+    soft: tuple[float, float], sway: float = 1.0, label: Ints | None = None, unseen: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Floats, Ints, Ints]:
     """Heights of a tube that turns as one but for the skin between two heights, which sways · labels and origins."""
     V, F = tube(20, 56)
     turn = np.stack([rotation((1.0, 0.0, 0.0), 0.3 * f) for f in range(FRAMES)])
@@ -25,7 +27,7 @@ def pieces(soft: tuple[float, float], sway: float = 1.0, label: Ints | None = No
     own = V + sway * np.cos(np.arange(FRAMES))[:, None, None] * swell[:, None] * [1.0, 0.0, 0.0]
     area = surface_areas(V, F)
     size = np.sqrt(area.sum())
-    weight = np.ones((FRAMES, len(V)))
+    weight = np.ones((FRAMES, len(V))) * ((V[:, 2] <= unseen[0]) | (V[:, 2] >= unseen[1]))
     moved = np.einsum("fxy,fvy->fvx", turn, own) / size
     body = NormalisedBody(
         V / size, vertex_normals(V, F), F, moved, weight, area / size**2, *rings(F, len(V)), score_spans(FRAMES, None)
@@ -62,3 +64,17 @@ def test_other_parts_keep_their_numbers() -> None:
     np.testing.assert_array_equal(origin, [0, 1, 0])
     np.testing.assert_array_equal(label == 1, before == 1)
     assert set(label[before == 0]) == {0, 2}
+
+
+def test_skin_that_no_frame_shows_joins_no_pieces() -> None:
+    _, _, origin = pieces((-2.0, 2.0), unseen=(-1.5, 1.5))
+    np.testing.assert_array_equal(origin, [0, 0])
+
+
+def test_two_pieces_that_are_small_on_the_body_stay_one_part() -> None:
+    """A quarter of the part each, and hardly a hundredth of the body."""
+    V, _ = tube(20, 56)
+    tip = (V[:, 2] > 4.9).astype(np.int64)
+    _, label, origin = pieces((4.93, 4.99), label=tip)
+    np.testing.assert_array_equal(origin, [0, 1])
+    np.testing.assert_array_equal(label, tip)

@@ -191,3 +191,18 @@ def test_what_slides_along_the_surface_counts_only_where_every_vertex_was_follow
     x = np.concatenate([x, np.tile(V[:, 2:], (FRAMES, 1, 1))], axis=2)
     assert rigid_parts(V, F, x).R.shape[1] == 2
     assert rigid_parts(V, F, x, np.ones(x.shape[:2])).R.shape[1] == 1
+
+
+def test_limbs_that_move_alike_are_two_parts_of_one_origin():
+    """Two arms of a Y-pipe turn about one line; the skin between them, in the corner, follows them by six tenths."""
+    V, F, _ = shapes.y_pipe(20, 4)
+    share = np.clip(-2.0 - V[:, 0], 0, 1) * np.clip(np.abs(V[:, 1]) / 4.0, 0.6, 1.0)
+    x = np.empty((FRAMES, *V.shape))
+    for f in range(FRAMES):
+        turned = (V + [2.0, 0.0, 0.0]) @ rotation((0, 1, 0), 0.6 * np.sin(0.8 * f)).T - [2.0, 0.0, 0.0]
+        x[f] = V + share[:, None] * (turned - V)
+    found = rigid_parts(V, F, x)
+    low, high = (np.bincount(found.label[(V[:, 0] < -4) & (side * V[:, 1] > 8)]).argmax() for side in (-1, 1))
+    assert low != high
+    assert found.cut.origin[low] == found.cut.origin[high]
+    assert len(found.cut.origin) == found.R.shape[1]

@@ -84,6 +84,11 @@ def test_joints_that_one_take_tells_apart_stay() -> None:
     assert shared_joints(tree, calm.rest, SIZE, takes) is calm.rest
 
 
+def test_the_smaller_border_says_what_is_near() -> None:
+    tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
+    assert shared_joints(tree._replace(radius=np.array([0.0, 5.0, 0.5])), rest, SIZE) is rest
+
+
 @pytest.mark.parametrize("scale", [0.001, 1000.0])
 def test_the_same_on_a_body_of_another_size(scale: float) -> None:
     one, other = (shared_joints(*star(np.array([AT, AT]), ASIDE, LOOSE, scale=s), SIZE * s) / s for s in (1.0, scale))

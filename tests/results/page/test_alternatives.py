@@ -34,15 +34,15 @@ def test_the_tree_is_told_from_its_root() -> None:
     assert tree_words(spider(), spider().names).startswith("trunk carries arm, tail, knee; arm carries hand")
 
 
-def test_two_halves_of_one_part_count_once_and_are_named() -> None:
+def test_pieces_of_one_part_count_once_and_are_named() -> None:
     parts = parts_of(spider())
     left, origin = len(parts.origin), np.array(parts.origin)
     assert f"{left} are left, {len(parts.removed)} removed." in elimination_words(parts)
     origin[-1] = origin[0]
     halved = SimpleNamespace(**{**vars(parts), "origin": origin})
-    assert elimination_words(halved).endswith(
-        f"{left - 1} are left, {len(parts.removed)} removed. Cut in two of those left: 1."
-    )
+    assert elimination_words(halved).endswith(f"{left - 1} are left, {len(parts.removed)} removed. Cut apart of those left: 1.")
+    origin[-2] = origin[0]
+    assert elimination_words(SimpleNamespace(**{**vars(parts), "origin": origin})).endswith("Cut apart of those left: 1.")
 
 
 def test_every_picture_of_a_page_says_more_than_its_caption() -> None:
