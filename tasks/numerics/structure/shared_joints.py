@@ -20,9 +20,9 @@ class SharedJointsSettings(NamedTuple):
     RESULTS.
     """
 
-    near: float = 1.0
+    near: float = 1.1
     """Distance between two joints on the same part, in radii of the smaller border, below which they may be one. True ones lie
-    at 0.3 to 0.99, two false ones that `rise` lets pass at 0.85 and 0.96."""
+    at 0.3 to 0.99, two false ones that `rise` lets pass at 0.85 and 0.96. From 1 to 1.25 the same joints are one."""
     rise: float = 1.5
     """Drift of each joint at the common place, at most, in its drift where it is. At 1.75 one body loses a joint."""
     spread: float = 0.35
