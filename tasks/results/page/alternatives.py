@@ -112,8 +112,8 @@ def elimination_words(parts: RigidParts) -> str:
     """How many parts there were and remained, and how many of these were cut apart."""
     pieces = np.unique(parts.origin, return_counts=True)[1]
     left, apart = len(pieces), int((pieces > 1).sum())
-    halved = f" Cut apart of those left: {apart}." if apart else ""
-    return f"Of {int(parts.initial.max()) + 1} parts of the first cut {left} are left, {len(parts.removed)} removed.{halved}"
+    cut = f" Cut apart of those left: {apart}." if apart else ""
+    return f"Of {int(parts.initial.max()) + 1} parts of the first cut {left} are left, {len(parts.removed)} removed.{cut}"
 
 
 def structure_words(body: ArticulatedBody, tree: KinematicTree) -> str:

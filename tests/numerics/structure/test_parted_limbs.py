@@ -10,14 +10,18 @@ from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure.elimination import NormalisedBody
-from kinetree.tasks.numerics.structure.parted_limbs import parted
+from kinetree.tasks.numerics.structure.parted_limbs import PartedLimbsSettings, parted
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 FRAMES = 8
 
 
 def pieces(
-    soft: tuple[float, float], sway: float = 1.0, label: Ints | None = None, unseen: tuple[float, float] = (0.0, 0.0)
+    soft: tuple[float, float],
+    sway: float = 1.0,
+    label: Ints | None = None,
+    unseen: tuple[float, float] = (0.0, 0.0),
+    settings: PartedLimbsSettings | None = None,
 ) -> tuple[Floats, Ints, Ints]:
     """Heights of a tube that turns as one but for the skin between two heights, which sways · labels and origins."""
     V, F = tube(20, 56)
@@ -34,7 +38,7 @@ def pieces(
     )
     of = np.zeros(len(V), np.int64) if label is None else label
     R = np.repeat(turn[:, None], of.max() + 1, axis=1)
-    return V[:, 2], *parted(body, of, R, np.zeros((*R.shape[:2], 3)), PARTS.elimination.removal_cost)
+    return V[:, 2], *parted(body, of, R, np.zeros((*R.shape[:2], 3)), PARTS.elimination.removal_cost, settings)
 
 
 def test_two_limbs_that_move_alike_are_two_parts() -> None:
@@ -72,9 +76,12 @@ def test_skin_that_no_frame_shows_joins_no_pieces() -> None:
 
 
 def test_two_pieces_that_are_small_on_the_body_stay_one_part() -> None:
-    """A quarter of the part each, and hardly a hundredth of the body."""
+    """A quarter of the part each, and one of them less than a twenty-fifth of the body."""
     V, _ = tube(20, 56)
-    tip = (V[:, 2] > 4.9).astype(np.int64)
-    _, label, origin = pieces((4.93, 4.99), label=tip)
+    tip = (V[:, 2] > 3.7).astype(np.int64)
+    _, label, origin = pieces((4.0, 4.65), label=tip, sway=3.0)
     np.testing.assert_array_equal(origin, [0, 1])
     np.testing.assert_array_equal(label, tip)
+    np.testing.assert_array_equal(
+        pieces((4.0, 4.65), label=tip, sway=3.0, settings=PartedLimbsSettings(limb=0.0))[2], [0, 1, 1]
+    )
