@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
-Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident"]]
+Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, or the frames show no
 joint."""
 

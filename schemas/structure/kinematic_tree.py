@@ -82,7 +82,7 @@ class KinematicTree(ArticulatedBody):
     """Range of their turning against each other; NaN for borders that the spanning tree of all parts does not have."""
     joint_of_part: Annotated[Ints, Array("int32", PART)]
     """Joint about which each part turns, −1 for parts that were dropped."""
-    dropped: tuple[tuple[int, Literal["flesh", "still", "sliding", "unevident"]], ...]
+    dropped: tuple[tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]], ...]
     """Parts that were dropped, in that order, and why: flesh around a joint, turns too little, drifts more than it turns,
     or the frames show no joint."""
     free_length: Annotated[Floats, Array("float64", JOINT, unit="length")]

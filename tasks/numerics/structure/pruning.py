@@ -13,11 +13,14 @@ from kinetree.tasks.numerics.geometry.neighbours import rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
+from kinetree.tasks.numerics.structure.unpaired_parts import unpaired_part
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
-FLESH, STILL, SLIDING, UNEVIDENT = "flesh", "still", "sliding", "unevident"
-"""Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames."""
+FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED = "flesh", "still", "sliding", "unevident", "unpaired"
+"""Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
+flesh that the mirror image of its limb lacks."""
 
 
 class PruningSettings(NamedTuple):
@@ -57,7 +60,7 @@ class PruningSettings(NamedTuple):
 
 
 class Dropped(NamedTuple):
-    """A part that is none, by its number before any was dropped, and why: `FLESH`, `STILL`, `SLIDING` or `UNEVIDENT`."""
+    """A part that is none, by its number before any was dropped, and why: one of the reasons above."""
 
     part: int
     reason: str
@@ -88,7 +91,8 @@ def pruned(
     *,
     settings: PruningSettings,
 ) -> Pruned:
-    """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows.
+    """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows, and those that
+    the mirror image of their limb lacks.
 
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
@@ -99,6 +103,10 @@ def pruned(
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, chosen)
     while evidence is not None and (gone := least_evident_joint(body, state.parts, state.part_tree, evidence)) >= 0:
         left = _without(body, state, gone, UNEVIDENT, start, ring)
+        state = _pruned_by_motion(body, left, leaves, chosen)
+    pairs = limb_pairs(body.V, body.F, leaves)
+    while (gone := unpaired_part(body.F, state.parts, state.part_tree, pairs)) >= 0:
+        left = _without(body, state, gone, UNPAIRED, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
     return state
 

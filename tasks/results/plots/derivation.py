@@ -22,7 +22,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NO_CONES = "no cones: no leaf is seen on the reference mesh"
-REASONS = {"flesh": "flesh", "still": "turns too little", "sliding": "slides", "unevident": "not shown by the frames"}
+REASONS = {
+    "flesh": "flesh",
+    "still": "turns too little",
+    "sliding": "slides",
+    "unevident": "not shown by the frames",
+    "unpaired": "not in the mirrored limb",
+}
 """Why parts were dropped, in words for people."""
 
 

@@ -1,0 +1,87 @@
+"""Which parts have a joint that the mirror image of their limb lacks, and are flesh."""
+
+import numpy as np
+import pytest
+from articulated import Known, chain, surface, swings
+from limbs import rotation
+from shipped import PRUNING
+
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, part_tree
+from kinetree.tasks.numerics.structure.pruning import UNPAIRED, pruned
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_part
+
+FRAMES = 24
+
+
+def ends(body: Known) -> np.ndarray:
+    return np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+
+
+def pairs_of(body: Known) -> LimbPairs:
+    return limb_pairs(body.V, body.F, ends(body))
+
+
+def found_in(body: Known, settings: UnpairedPartsSettings | None = None) -> int:
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    return unpaired_part(body.F, parts, part_tree(surface(body), parts), pairs_of(body), settings)
+
+
+def bent_at(*heights: float) -> Known:
+    return chain(heights, swings(FRAMES, len(heights) + 1, 25, seed=2), along=60)
+
+
+@pytest.mark.parametrize(
+    ("heights", "part"),
+    [
+        ((-1.0, 1.0), -1),
+        ((-3.5, -1.0, 1.0, 2.2, 3.5), 3),
+        ((-3.5, -2.2, -1.0, 1.0, 3.5), 2),
+        ((-3.5, -2.2, -1.0, 1.0, 2.2, 3.5), -1),
+        ((-1.5, 1.5, 2.5), 2),
+        ((-1.5, 1.5, 3.2), -1),
+    ],
+    ids=["a pair", "a ring on one side", "on the other", "on both sides", "a short end", "a long end"],
+)
+def test_short_part_of_one_limb_alone_is_flesh(heights: tuple[float, ...], part: int) -> None:
+    assert found_in(bent_at(*heights)) == part
+
+
+@pytest.mark.parametrize(("near", "part"), [(1.1, -1), (1.3, 3)])
+def test_how_near_its_joints_may_lie(near: float, part: int) -> None:
+    """They lie 1.2 radii apart, and the next one 1.3."""
+    body = bent_at(-3.5, -1.0, 1.0, 2.2, 3.5)
+    assert found_in(body, UnpairedPartsSettings(near=near)) == part
+
+
+@pytest.mark.parametrize(("axis", "part"), [((0.0, 0.0, 1.0), -1), ((1.0, 0.0, 0.0), 2)], ids=["twists", "bends"])
+def test_part_of_the_trunk_stays_if_the_other_limb_might_hang_on_it(axis: tuple[float, float, float], part: int) -> None:
+    """About its own axis the part carries the far limb's joint as the trunk does, for it lies on the axis."""
+    turn = swings(FRAMES, 4, 25, seed=2)
+    turn[:, 2] = [rotation(axis, 0.5 * np.sin(2 * np.pi * f / FRAMES)) for f in range(FRAMES)]
+    assert found_in(chain((-2.0, 1.0, 2.0), turn, along=60)) == part
+
+
+def test_part_of_which_a_third_limb_hangs_stays() -> None:
+    """A piece of the side above the joint hangs on the ring."""
+    body = bent_at(-4.0, -0.5, 0.5, 1.7, 4.0)
+    assert found_in(body) == 3
+    side = (np.abs(body.V[:, 2] - 1.1) < 0.4) & (body.V[:, 0] > 0.6)
+    label = np.where(side, 6, body.label)
+    lean = np.stack([rotation((0.0, 1.0, 0.0), 0.6 * np.sin(2 * np.pi * f / FRAMES)) for f in range(FRAMES)])
+    own = body.R[:, 3] @ lean
+    joint = np.array([1.0, 0.0, 1.1])
+    t = np.einsum("txy,y->tx", body.R[:, 3], joint) + body.t[:, 3] - np.einsum("txy,y->tx", own, joint)
+    R, t = np.concatenate([body.R, own[:, None]], axis=1), np.concatenate([body.t, t[:, None]], axis=1)
+    x = body.x.copy()
+    x[:, side] = np.einsum("txy,vy->tvx", own, body.V[side]) + t[:, 6][:, None]
+    assert found_in(body._replace(label=label, R=R, t=t, x=x)) == -1
+
+
+def test_pruning_drops_it_and_says_why() -> None:
+    body = bent_at(-3.5, -1.0, 1.0, 2.2, 3.5)
+    left = pruned(surface(body), MovingParts(body.label, body.R, body.t, body.residual), ends(body), settings=PRUNING)
+    assert [(d.part, d.reason) for d in left.dropped] == [(3, UNPAIRED)]
+    assert left.origin.tolist() == [0, 1, 2, 4, 5]
+    lonely = pruned(surface(body), MovingParts(body.label, body.R, body.t, body.residual), ends(body)[:1], settings=PRUNING)
+    assert lonely.dropped == ()
