@@ -11,10 +11,15 @@ from shipped import TREE
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-ALL_STAY = TREE._replace(pruning=TREE.pruning._replace(degrees=0.0, ratio=0.0, flesh_length=0.0))
+ALL_STAY = TREE._replace(
+    pruning=TREE.pruning._replace(
+        degrees=0.0, ratio=0.0, flesh_length=0.0, unpaired=UnpairedPartsSettings(near=0.0, near_end=0.0)
+    )
+)
 """Settings with which no part is dropped."""
 
 

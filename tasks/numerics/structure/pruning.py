@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, leas
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
-from kinetree.tasks.numerics.structure.unpaired_parts import unpaired_part
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_part
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
 FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED = "flesh", "still", "sliding", "unevident", "unpaired"
@@ -57,6 +57,8 @@ class PruningSettings(NamedTuple):
     worse: float = 0.9
     """A part is dropped only if the worst ratio without it is at least this share of the worst ratio with it. Not recorded.
     Halved or doubled it moves no joint of two generated bodies; it guards parts without which the tree would be worse."""
+    unpaired: UnpairedPartsSettings = UnpairedPartsSettings()
+    """What makes a part flesh that the mirror image of its limb lacks."""
 
 
 class Dropped(NamedTuple):
@@ -105,7 +107,7 @@ def pruned(
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
     pairs = limb_pairs(body.V, body.F, leaves)
-    while (gone := unpaired_part(body.F, state.parts, state.part_tree, pairs)) >= 0:
+    while (gone := unpaired_part(body.F, state.parts, state.part_tree, pairs, chosen.unpaired)) >= 0:
         left = _without(body, state, gone, UNPAIRED, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
     return state
