@@ -58,10 +58,10 @@ class _Slice(NamedTuple):
     mirrored: int
 
 
-def unpaired_part(
+def unpaired_parts(
     F: Ints, parts: MovingParts, found: PartTree, pairs: LimbPairs, settings: UnpairedPartsSettings | None = None
-) -> int:
-    """The part that is the most likely ring of flesh, by its number; −1 if there is none.
+) -> Iterator[int]:
+    """The parts that are likely rings of flesh, by their numbers, those whose joints lie nearest to each other first.
 
     F     : (face, corner)
     found : the tree of the parts
@@ -70,8 +70,7 @@ def unpaired_part(
     slices = [s for tips, away in zip(*pairs, strict=True) for s in _slices(F, parts.label, found, tips, away, chosen)]
     for piece in sorted(slices, key=lambda s: (s.distance, s.part)):
         if not piece.on_trunk or not _carries_both(parts, found, piece, chosen):
-            return int(found.tree.order[piece.part])
-    return -1
+            yield int(found.tree.order[piece.part])
 
 
 def _slices(F: Ints, label: Ints, found: PartTree, tips: Ints, away: Floats, chosen: UnpairedPartsSettings) -> Iterator[_Slice]:

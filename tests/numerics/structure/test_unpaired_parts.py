@@ -9,7 +9,7 @@ from shipped import PRUNING
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, part_tree
 from kinetree.tasks.numerics.structure.pruning import UNPAIRED, pruned
-from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_part
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_parts
 
 FRAMES = 24
 
@@ -24,7 +24,7 @@ def pairs_of(body: Known) -> LimbPairs:
 
 def found_in(body: Known, settings: UnpairedPartsSettings | None = None) -> int:
     parts = MovingParts(body.label, body.R, body.t, body.residual)
-    return unpaired_part(body.F, parts, part_tree(surface(body), parts), pairs_of(body), settings)
+    return next(unpaired_parts(body.F, parts, part_tree(surface(body), parts), pairs_of(body), settings), -1)
 
 
 def bent_at(*heights: float) -> Known:
@@ -85,3 +85,11 @@ def test_pruning_drops_it_and_says_why() -> None:
     assert left.origin.tolist() == [0, 1, 2, 4, 5]
     lonely = pruned(surface(body), MovingParts(body.label, body.R, body.t, body.residual), ends(body)[:1], settings=PRUNING)
     assert lonely.dropped == ()
+
+
+def test_pruning_keeps_it_where_other_parts_would_hang_together_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The middle of the trunk is no part between two others once its neighbours hang on each other in another way."""
+    body = bent_at(-3.5, -1.0, 1.0, 2.2, 3.5)
+    moving, parts = surface(body), MovingParts(body.label, body.R, body.t, body.residual)
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.pruning._bonds_across", lambda state, gone: set())
+    assert pruned(moving, parts, ends(body), settings=PRUNING).dropped == ()
