@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.cut_joints import cut_joints
+from kinetree.tasks.numerics.structure.cut_joints import cut_trees
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRings, Fits, end_rings, lay_rings
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
@@ -35,8 +35,12 @@ def whole_tree(
     if surface is not None and confidence is not None:
         ends = joints_at_ends(body, first, confidence, surface)
         first = extended_tree(body, first, ends, confidence, NOISE * body.size) if ends else first
-    joints = [cut_joints(body, other, leaves, confidence, settings)[first.has_bones] for other in further]
-    return kinematic_tree(body, first, leaves, confidence, further=joints, has_second_ends=has_second_ends, has_necks=has_necks)
+    cuts = [cut_trees(body, other, leaves, confidence, settings) for other in further]
+    joints = [(cut.with_bones if first.has_bones else cut.bare) for cut in cuts]
+    carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]
+    return kinematic_tree(
+        body, first, leaves, confidence, further=carried, has_second_ends=has_second_ends, has_necks=has_necks
+    )
 
 
 def joints_at_ends(

@@ -14,7 +14,7 @@ joint."""
 class JointTree(Artifact):
     """The rigid parts in one tree, each with the joint about which it turns, a part after its parent.
 
-    "part" are the parts as RigidParts numbers them, "joint" those of the tree.
+    "part" are the parts as the cut numbers them, RigidParts or one in another pose; "joint" those of the tree.
     """
 
     frames: tuple[int, ...]
@@ -43,6 +43,8 @@ class JointTree(Artifact):
     """Root mean square of what the motion of every joint's part leaves unexplained."""
     radius: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Radius of the border between the joint's two parts; 0 for the root."""
+    part: Annotated[Ints, Array("int32", VERTEX)]
+    """Part of each vertex, before any was dropped."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]
     """Parts that meet, before any was dropped."""
     centre: Annotated[Floats, Array("float64", PAIR, XYZ, unit="length")]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
-from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, XYZ
+from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, VERTEX, XYZ
 from kinetree.schemas.structure.extended_tree import ExtendedTreeParams
 from kinetree.schemas.structure.skeleton import ArticulatedBody
 
@@ -66,12 +66,17 @@ class KinematicTreeParams(NeckParams, ExtendedTreeParams, FirstTreeParams):
 class KinematicTree(ArticulatedBody):
     """A body whose poses come from aligned vertices alone; each run of uncertain frames opens a member of "doubt".
 
-    Parts are numbered as in RigidParts.
+    Parts are numbered as the cut in `cut_frame` numbers them, which is RigidParts where that is the reference.
     """
 
     opens: ClassVar[tuple[str, ...]] = ("doubt", "doubt/frame")
     uncertain: Annotated[Bools, Array("bool", FRAME)]
     """Frames in which some part has so little confidence that the body is fitted to the surface."""
+    cut_frame: int | None = None
+    """Source frame of the cut whose tree this is, if another than that in the reference: of fixed connectivity that of the cut
+    with most joints that other cuts have too."""
+    part: Annotated[Ints, Array("int32", VERTEX)]
+    """Part of each vertex, before any was dropped."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]
     """Parts that meet, before any was dropped."""
     centre: Annotated[Floats, Array("float64", PAIR, XYZ, unit="length")]

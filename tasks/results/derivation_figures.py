@@ -6,7 +6,6 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.results.derivation_figures import DerivationFigures
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
-from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import ArticulatedBody, Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.results.page.alternatives import structure_words
@@ -15,12 +14,10 @@ from kinetree.tasks.results.plots.derivation import structure
 
 
 @task()
-def derivation_figures(
-    rigid_parts: RigidParts, kinematic_tree: KinematicTree, sequence: Sequence, up_direction: UpDirection
-) -> DerivationFigures:
+def derivation_figures(kinematic_tree: KinematicTree, sequence: Sequence, up_direction: UpDirection) -> DerivationFigures:
     """Draws the graph of parts, which waits for no pose and no name (2014, Fig. 15)."""
     unposed = unposed_skeleton(kinematic_tree, sequence)
-    artifacts = {"skeleton": unposed, "rigid_parts": rigid_parts, "kinematic_tree": kinematic_tree}
+    artifacts = {"skeleton": unposed, "kinematic_tree": kinematic_tree}
 
     def fetch(name: str) -> Any:
         return artifacts[name]

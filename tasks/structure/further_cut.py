@@ -13,10 +13,12 @@ from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import CutJointsParams
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.structure.cut_joints import cut_joints
+from kinetree.tasks.numerics.structure.cut_joints import cut_trees
+from kinetree.tasks.numerics.structure.first_tree import in_reference, in_tree_order
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.structure.tree_joints import Cut
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
+from kinetree.tasks.structure.arguments.joint_tree import fields_of
 from kinetree.tasks.structure.first_tree import tree_settings
 from kinetree.tasks.structure.rigid_parts import parts_settings
 
@@ -37,5 +39,8 @@ def further_cut(
     parts = rigid_parts(pose, F, x, body.confidence, body.tips, settings=cut_settings, takes=takes)
     cut = Cut(pose, np.asarray(parts.label, np.int64), np.array(parts.R), np.array(parts.t), np.array(parts.residual))
     settings = tree_settings(params)._replace(hidden_bones=params.hidden_bones and body.is_given)
-    joints, with_bones = cut_joints(body.surface, cut, body.tips, body.confidence, settings)
-    return FurtherCut(frame=frame, joints=joints, joints_with_bones=with_bones)
+    found = cut_trees(body.surface, cut, body.tips, body.confidence, settings)
+    frames = tuple(alignment)
+    tree = in_reference(in_tree_order(found.tree, cut.R.shape[1]), cut, frames.index(reference.frame))
+    bare, with_bones = (joints.motion.carried(joints.rest[1:]) for joints in (found.bare, found.with_bones))
+    return FurtherCut(frame=frame, frames=frames, bare_joints=bare, joints_with_bones=with_bones, **fields_of(tree))

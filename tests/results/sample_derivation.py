@@ -51,7 +51,7 @@ def tree_of(skeleton: Skeleton) -> KinematicTree:
     pair = np.array([*([carriers.index(parents[carriers[k]]), k] for k in below), [0, count]], np.int32)
     fields = {name: getattr(skeleton, name) for name in ArticulatedBody.model_fields}
     return KinematicTree(
-        **fields, uncertain=np.zeros(len(skeleton.frames), bool), pair=pair,
+        **fields, uncertain=np.zeros(len(skeleton.frames), bool), part=parts_of(skeleton).label, pair=pair,
         centre=skeleton.rest[[*(carriers[k] for k in below), 0]], border_drift=np.full(len(pair), 0.01),
         border_degrees=np.full(len(pair), 20.0), joint_of_part=np.array([*carriers, -1]), dropped=((count, "sliding"),),
         free_length=skeleton.lengths, free_deviation=0.01 * skeleton.lengths,

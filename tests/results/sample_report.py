@@ -131,7 +131,7 @@ def derived(skeleton: Skeleton) -> StructureFigures:
     parts, tree = parts_of(skeleton), tree_of(skeleton)
     named = named_figures(parts, tree, plain(skeleton), sequence, UP)
     cut = cut_figures(reference_of(skeleton), parts, UP)
-    return structure_figures(tree, cut, derivation_figures(parts, tree, sequence, UP), named)
+    return structure_figures(tree, cut, derivation_figures(tree, sequence, UP), named)
 
 
 def page_artifacts(params: ExcerptParams, **changes: Any) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """The graph of parts: drawn as soon as the tree is there."""
 
 from results.rigged_bodies import spider
-from results.sample_derivation import parts_of, tree_of
+from results.sample_derivation import tree_of
 from results.sample_report import UP, derived
 
 from kinetree.schemas.input.sequence import Sequence
@@ -12,7 +12,7 @@ from kinetree.tasks.results.derivation_figures import derivation_figures
 def test_it_is_the_same_file_in_the_chapter() -> None:
     body = spider()
     sequence = Sequence(frames=body.frames, fps=body.fps, unit=body.unit)
-    first = derivation_figures(parts_of(body), tree_of(body), sequence, UP)
+    first = derivation_figures(tree_of(body), sequence, UP)
     (chapter,) = derived(body).chapters
     files = derived(body).picture_files(chapter)
     assert (files[3],) == first.files()

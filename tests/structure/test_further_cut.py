@@ -30,15 +30,15 @@ def cut(trust: float = 1.0, settings: CutParams | None = None, **params: float) 
 def test_its_joints_go_where_the_arms_turn_in_every_frame(trust: float) -> None:
     body, found = three_arms(), cut(trust)
     assert found.frame == FRAME
-    assert found.joints.shape == (len(body.x), 3, 3), "one for each arm"
+    assert found.bare_joints.shape == (len(body.x), 3, 3), "one for each arm"
     true = np.einsum("tpxy,py->tpx", body.R, body.joints) + body.t
-    away = np.linalg.norm(found.joints[:, :, None] - true[:, None, 1:], axis=3).mean(axis=0)
+    away = np.linalg.norm(found.bare_joints[:, :, None] - true[:, None, 1:], axis=3).mean(axis=0)
     assert away.min(axis=0).max() < 0.05 * np.ptp(body.V)
-    np.testing.assert_array_equal(found.joints_with_bones, found.joints)
+    np.testing.assert_array_equal(found.joints_with_bones, found.bare_joints)
 
 
 def test_it_is_cut_by_the_settings_of_the_first_cut() -> None:
-    assert cut(settings=CutParams(removal_cost=100.0)).joints.shape[1] == 0
+    assert cut(settings=CutParams(removal_cost=100.0)).bare_joints.shape[1] == 0
 
 
 def test_of_the_block_of_the_tree_it_sees_what_counts_as_a_joint_of_a_cut_and_nothing_else() -> None:
@@ -46,4 +46,4 @@ def test_of_the_block_of_the_tree_it_sees_what_counts_as_a_joint_of_a_cut_and_no
     assert task.block == "kinematic_tree"
     assert task.params is not None
     assert set(task.params.model_fields) == {"degrees", "ratio", "hidden_bones"}
-    assert cut(0.9, degrees=170.0).joints.shape[1] == 0
+    assert cut(0.9, degrees=170.0).bare_joints.shape[1] == 0

@@ -1,5 +1,7 @@
 """The joints of one cut of the body, and where they go; cuts in other poses have theirs elsewhere (ours)."""
 
+from typing import NamedTuple
+
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
@@ -7,6 +9,19 @@ from kinetree.tasks.numerics.structure.loose_parts import tightened
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.slabs import bones_without_slabs
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints
+
+
+class CutTrees(NamedTuple):
+    """What another cut of the body gives.
+
+    tree       : its tree as `cut_tree` would make it without evidence, in its own pose
+    bare       : the same without bones that no cut can find
+    with_bones : the same with them, and with slabs beside them
+    """
+
+    tree: TreeJoints
+    bare: TreeJoints
+    with_bones: TreeJoints
 
 
 def cut_tree(
@@ -30,23 +45,24 @@ def cut_tree(
     return tightened(body, bones_without_slabs(body, found, settings), noise)
 
 
-def cut_joints(
+def cut_trees(
     body: MovingSurface, cut: Cut, leaves: Ints, confidence: Floats | None, settings: KinematicTreeSettings
-) -> tuple[Floats, Floats]:
-    """The joints of another cut of the same body, but for its root; the frames need not show them.
+) -> CutTrees:
+    """The trees of another cut of the same body; the frames need not show its joints.
 
-    Whether the body has bones that no cut can find is for the first cut to say, so that both are given. Slabs beside them stay:
-    their joints have no partner in the first cut, and chests are placed better with them.
+    Whether the body has bones that no cut can find is for the cut to say whose tree is used, so that both are given. Slabs
+    beside them stay for their joints' sake: these have no partner in that tree, and chests are placed better with them.
 
     leaves, confidence : as in `cut_tree`
-    returns            : (frame, joint, xyz) without such bones · (frame, joint, xyz) with them, mesh unit
     """
     posed, noise = body._replace(V=cut.V), settings.noise * body.size
-    whole = found = tree_joints(posed, cut, leaves, confidence, settings=settings)
-    if _looks_for_bones(confidence, settings):
-        whole = tightened(posed, inserted_bones(posed, found, noise), noise)
-        found = tightened(posed, found, noise)
-    return found.motion.carried(found.rest[1:]), whole.motion.carried(whole.rest[1:])
+    found = tree_joints(posed, cut, leaves, confidence, settings=settings)
+    if not _looks_for_bones(confidence, settings):
+        return CutTrees(found, found, found)
+    bare, whole = tightened(posed, found, noise), tightened(posed, inserted_bones(posed, found, noise), noise)
+    if len(body.takes or ()) < 2:
+        return CutTrees(whole, bare, whole)
+    return CutTrees(tightened(posed, bones_without_slabs(posed, found, settings), noise), bare, whole)
 
 
 def _looks_for_bones(confidence: Floats | None, settings: KinematicTreeSettings) -> bool:

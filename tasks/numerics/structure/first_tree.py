@@ -18,6 +18,7 @@ from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSett
 class PartGraph(NamedTuple):
     """The parts before any was dropped, numbered as they were given.
 
+    part           : (vertex,) part
     pair           : (border, 2) parts that meet
     centre         : (border, xyz) the point of the reference that the two turn about best, mesh unit
     border_drift   : (border,) root mean square distance between that point as its two parts carry it, mesh unit
@@ -25,6 +26,7 @@ class PartGraph(NamedTuple):
     dropped        : parts that pruning dropped, in that order, and why
     """
 
+    part: Ints
     pair: Ints
     centre: Floats
     border_drift: Floats
@@ -134,10 +136,32 @@ def in_tree_order(joints: TreeJoints, parts: int) -> FirstTree:
     )
 
 
+def in_reference(tree: FirstTree, cut: Cut, frame: int) -> FirstTree:
+    """The tree of a cut in another pose as the same tree in the reference.
+
+    tree  : without joints at ends
+    cut   : of which it is the tree
+    frame : position of the reference among the frames
+    """
+    back = tree.R[frame].swapaxes(1, 2)
+    R = tree.R @ back
+    rest = np.concatenate(
+        [(tree.R[frame, 0] @ tree.rest[0] + tree.t[frame, 0])[None], tree.motion.carried(tree.rest[1:])[frame]]
+    )
+    sides = np.einsum("bsxy,by->bsx", cut.R[frame, tree.graph.pair], tree.graph.centre) + cut.t[frame, tree.graph.pair]
+    return tree._replace(
+        R=R,
+        t=tree.t - np.einsum("tpxy,py->tpx", R, tree.t[frame]),
+        rest=rest,
+        graph=tree.graph._replace(centre=sides.mean(axis=1)),
+    )
+
+
 def _graph(joints: TreeJoints) -> PartGraph:
     """All parts by the numbers that they were given."""
     before, used = joints.left.before, joints.used
     return PartGraph(
+        part=joints.part,
         pair=used[before.borders.pair],
         centre=before.joints.rest,
         border_drift=before.joints.drift,

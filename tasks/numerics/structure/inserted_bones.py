@@ -85,7 +85,7 @@ def _extended(body: MovingSurface, found: TreeJoints, bones: dict[int, HiddenBon
     rest = rows.both_sides(found.rest, [b.joint for b in new])
     off = rows.both_sides(found.drift, [b.drift for b in new])
     both = both_residuals(residual[:, tree.order], tree.parents)
-    return TreeJoints(left, found.used, label, W, R, t, rest, off, both)
+    return TreeJoints(left, found.used, found.part, label, W, R, t, rest, off, both)
 
 
 class _Rows(NamedTuple):

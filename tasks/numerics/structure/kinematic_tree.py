@@ -63,6 +63,7 @@ class KinematicTree(NamedTuple):
 class Derivation(NamedTuple):
     """How the tree came about; parts are numbered as they were given.
 
+    part           : (vertex,) part, before any was dropped
     pair           : (border, 2) parts that meet, before any was dropped
     centre         : (border, xyz) the point of the reference that the two turn about best, mesh unit
     border_drift   : (border,) root mean square distance between that point as its two parts carry it, mesh unit
@@ -84,6 +85,7 @@ class Derivation(NamedTuple):
     neck_joints    : joints that the shape alone shows, see `necks`
     """
 
+    part: Ints
     pair: Ints
     centre: Floats
     border_drift: Floats
@@ -118,7 +120,7 @@ def kinematic_tree(
     body       : as it was aligned
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
-    further    : (frame, joint, xyz) of every further cut of the body, see `cut_joints`; joints of the tree are then the mean
+    further    : (frame, joint, xyz) of every further cut of the body, see `agreeing_cut`; joints of the tree are then the mean
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`

@@ -67,10 +67,11 @@ class Cut(NamedTuple):
 
 
 class TreeJoints(NamedTuple):
-    """A tree of joints; but for `used` and `left`, parts are in the tree's order.
+    """A tree of joints; but for `used`, `part` and `left`, parts are in the tree's order.
 
     left     : the parts that are left, and their tree
     used     : (part,) number of each part before pruning, as it was given
+    part     : (vertex,) part before pruning, as it was given; vertices without one have that of the nearest with one
     label    : (vertex,) part
     W        : (vertex, part) skinning weights
     R, t     : (frame, part, 3, 3) · (frame, part, xyz) from the reference
@@ -81,6 +82,7 @@ class TreeJoints(NamedTuple):
 
     left: Pruned
     used: Ints
+    part: Ints
     label: Ints
     W: Floats
     R: Floats
@@ -128,16 +130,16 @@ def tree_joints(
     used, label, R, t, residual = _used(label, cut.R, cut.t, cut.residual)
     seen = None if confidence is None else confident_share(label, body.area, confidence, len(body.x), R.shape[1])
     left = pruned(body, MovingParts(label, R, t, residual, seen), leaves, evidence, settings=settings.pruning)
-    return _of_parts(body, left, used, confidence, settings)
+    return _of_parts(body, left, used, used[label], confidence, settings)
 
 
 def without_part(body: MovingSurface, found: TreeJoints, part: int, settings: KinematicTreeSettings) -> TreeJoints:
     """The tree without a part that is flesh, by its number among those that are left; every vertex of the body was followed."""
-    return _of_parts(body, without_flesh(body, found.left, part), found.used, None, settings)
+    return _of_parts(body, without_flesh(body, found.left, part), found.used, found.part, None, settings)
 
 
 def _of_parts(
-    body: MovingSurface, left: Pruned, used: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
+    body: MovingSurface, left: Pruned, used: Ints, part: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
 ) -> TreeJoints:
     """The joints of the parts that are left."""
     V, F, x, area, _ = body
@@ -150,7 +152,7 @@ def _of_parts(
     W = skinning(V, F, x, label, R, t, tree.parents, tau, chosen.noise * body.size)
     rest, off = _joints(V, area, label, W, left, chosen)
     both = both_residuals(left.parts.residual[:, tree.order], tree.parents)
-    return TreeJoints(left, used, label, W, R, t, rest, off, both)
+    return TreeJoints(left, used, part, label, W, R, t, rest, off, both)
 
 
 def _by_cores(body: MovingSurface, parts: MovingParts) -> MovingParts:

@@ -99,7 +99,7 @@ def elimination(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
 
 def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     """Left, all parts that meet, by the drift of their joint; right, the tree at the end."""
-    skeleton, parts, tree = fetch("skeleton"), fetch("rigid_parts"), fetch("kinematic_tree")
+    skeleton, tree = fetch("skeleton"), fetch("kinematic_tree")
     axis = view([skeleton.vertices], up)
     figure, (before, after) = blank(10.4, 5.4, 2)
     pale = np.full((len(skeleton.faces), 4), 0.93)
@@ -108,7 +108,7 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     drift = 100 * tree.border_drift / float(np.linalg.norm(np.ptp(skeleton.vertices, axis=0)))
     shade = graded(float(drift.max(initial=1e-3)))
     area = surface_areas(skeleton.vertices, skeleton.faces)
-    middle = centroids(skeleton.vertices, parts.label, area, len(tree.joint_of_part))
+    middle = centroids(skeleton.vertices, tree.part, area, len(tree.joint_of_part))
     _graph(before, tree, middle @ axis, tree.centre @ axis, shade.to_rgba(drift))
     bar = figure.colorbar(shade, ax=before, shrink=0.7, location="left", pad=0.0)
     bar.set_label("drift of the joint between two parts, % of the body's diagonal", fontsize=8)

@@ -4,9 +4,9 @@ import numpy as np
 from articulated import Known, chain, neck, swings
 from shipped import TREE
 
-from kinetree.tasks.numerics.structure.cut_joints import cut_joints, cut_tree
+from kinetree.tasks.numerics.structure.cut_joints import cut_tree, cut_trees
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import Cut
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 NO_LEAVES = np.zeros(0, int)
 SETTINGS = TREE._replace(hidden_bones=False)
@@ -14,6 +14,11 @@ SETTINGS = TREE._replace(hidden_bones=False)
 
 def surface(body: Known) -> MovingSurface:
     return MovingSurface(body.V, body.F, body.x, body.area, None)
+
+
+def of(tree: TreeJoints) -> np.ndarray:
+    """(frame, joint, xyz) where its parts carry its joints."""
+    return tree.motion.carried(tree.rest[1:])
 
 
 def in_pose(body: Known, k: int) -> Cut:
@@ -25,11 +30,11 @@ def in_pose(body: Known, k: int) -> Cut:
 def test_a_cut_in_another_pose_has_its_joints_in_the_same_places() -> None:
     body = chain((0.0,), swings(16, 2))
     own = Cut(body.V, body.label, body.R, body.t, body.residual)
-    (first, _), (other, _) = (cut_joints(surface(body), cut, NO_LEAVES, None, SETTINGS) for cut in (own, in_pose(body, 3)))
+    first, other = (of(cut_trees(surface(body), cut, NO_LEAVES, None, SETTINGS).bare) for cut in (own, in_pose(body, 3)))
     assert first.shape == (len(body.x), 1, 3)
     np.testing.assert_allclose(other, first, atol=0.01 * np.sqrt(body.area.sum()))
     found = cut_tree(surface(body), own, NO_LEAVES, None, None, SETTINGS)
-    np.testing.assert_array_equal(found.motion.carried(found.rest[1:]), first)
+    np.testing.assert_array_equal(of(found), first)
 
 
 def test_joints_are_given_with_hidden_bones_and_without() -> None:
@@ -38,6 +43,7 @@ def test_joints_are_given_with_hidden_bones_and_without() -> None:
     cut = Cut(body.V, (body.V[:, 2] > 0.0).astype(np.int64), body.R[:, ends], body.t[:, ends], body.residual[:, ends])
     tips, counts = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()]), []
     for is_asked, confidence in ((True, None), (False, None), (True, np.full(body.x.shape[:2], 0.99))):
-        both = cut_joints(surface(body), cut, tips, confidence, TREE._replace(hidden_bones=is_asked))
-        counts.append([joints.shape[1] for joints in both])
+        found = cut_trees(surface(body), cut, tips, confidence, TREE._replace(hidden_bones=is_asked))
+        counts.append([of(found.bare).shape[1], of(found.with_bones).shape[1]])
+        np.testing.assert_array_equal(of(found.tree), of(found.with_bones))
     assert counts == [[1, 2], [1, 1], [1, 1]]
