@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, leas
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
-from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_parts
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_joints, unpaired_parts
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
 FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED = "flesh", "still", "sliding", "unevident", "unpaired"
@@ -107,11 +107,15 @@ def pruned(
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
     pairs = limb_pairs(body.V, body.F, leaves)
+
+    def unpaired(of: Pruned) -> int:
+        return unpaired_joints(body.F, of.parts.label, of.part_tree, pairs, chosen.unpaired)
+
     while True:
         for gone in unpaired_parts(body.F, state.parts, state.part_tree, pairs, chosen.unpaired):
-            left = _without(body, state, gone, UNPAIRED, start, ring)
-            if _bonds(left) == _bonds_across(state, gone):
-                state = _pruned_by_motion(body, left, leaves, chosen)
+            left = _pruned_by_motion(body, _without(body, state, gone, UNPAIRED, start, ring), leaves, chosen)
+            if unpaired(left) < unpaired(state):
+                state = left
                 break
         else:
             return state
@@ -141,19 +145,6 @@ def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: 
     fewer = parts.without(gone, reassigned(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring))
     dropped = (*state.dropped, Dropped(int(state.origin[gone]), reason))
     return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
-
-
-def _bonds(state: Pruned) -> set[frozenset[int]]:
-    """Which parts hang on each other, by their numbers before any was dropped."""
-    tree, number = state.part_tree.tree, state.origin[state.part_tree.tree.order].tolist()
-    return {frozenset((number[k], number[tree.parents[k]])) for k in range(1, len(number))}
-
-
-def _bonds_across(state: Pruned, gone: int) -> set[frozenset[int]]:
-    """The same if the two parts beside one that is gone hang on each other instead, and all others as before."""
-    number = int(state.origin[gone])
-    beside = {bond for bond in _bonds(state) if number in bond}
-    return _bonds(state) - beside | {frozenset().union(*beside) - {number}}
 
 
 def _weak_parts(

@@ -73,6 +73,22 @@ def unpaired_parts(
             yield int(found.tree.order[piece.part])
 
 
+def unpaired_joints(
+    F: Ints, label: Ints, found: PartTree, pairs: LimbPairs, settings: UnpairedPartsSettings | None = None
+) -> int:
+    """How many joints of all pairs of limbs have no partner.
+
+    F     : (face, corner)
+    label : (vertex,) part
+    """
+    chosen, radius = settings or UnpairedPartsSettings(), found.borders.radius[found.tree.border]
+    place, count = np.argsort(found.tree.order)[label], 0
+    for tips, away in zip(*pairs, strict=True):
+        limbs = _limbs(F, place, found.tree.parents, tips, away)
+        count += sum(int((~has).sum()) for has in _have_partners(*limbs, radius, chosen))
+    return count
+
+
 def _slices(F: Ints, label: Ints, found: PartTree, tips: Ints, away: Floats, chosen: UnpairedPartsSettings) -> Iterator[_Slice]:
     """The parts between an unpaired joint and a paired one near it, of both limbs of a pair."""
     parents, row = found.tree.parents, found.tree.border

@@ -9,7 +9,7 @@ from shipped import PRUNING
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, part_tree
 from kinetree.tasks.numerics.structure.pruning import UNPAIRED, pruned
-from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_parts
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_joints, unpaired_parts
 
 FRAMES = 24
 
@@ -87,9 +87,18 @@ def test_pruning_drops_it_and_says_why() -> None:
     assert lonely.dropped == ()
 
 
-def test_pruning_keeps_it_where_other_parts_would_hang_together_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The middle of the trunk is no part between two others once its neighbours hang on each other in another way."""
+@pytest.mark.parametrize(("heights", "count"), [((-1.0, 1.0), 0), ((-3.5, -1.0, 1.0, 2.2, 3.5), 1), ((-3.0, -1.0, 2.9), 1)])
+def test_joints_without_a_partner_are_counted(heights: tuple[float, ...], count: int) -> None:
+    body = bent_at(*heights)
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    assert unpaired_joints(body.F, body.label, part_tree(surface(body), parts), pairs_of(body)) == count
+
+
+def test_pruning_keeps_it_where_as_many_joints_would_be_without_a_partner(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without it a thigh may hang on the other thigh, and its hip has no partner then."""
     body = bent_at(-3.5, -1.0, 1.0, 2.2, 3.5)
-    moving, parts = surface(body), MovingParts(body.label, body.R, body.t, body.residual)
-    monkeypatch.setattr("kinetree.tasks.numerics.structure.pruning._bonds_across", lambda state, gone: set())
-    assert pruned(moving, parts, ends(body), settings=PRUNING).dropped == ()
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.pruning.unpaired_joints", lambda *of: 1)
+    assert (
+        pruned(surface(body), MovingParts(body.label, body.R, body.t, body.residual), ends(body), settings=PRUNING).dropped
+        == ()
+    )
