@@ -69,7 +69,7 @@ def articulation(known: Known, uncertain: tuple[int, ...] = SPOILT) -> Kinematic
         rest=rest, degrees=np.zeros(5), drift=np.zeros(5), support=np.zeros(5, int), vertices=known.V, faces=known.F, label=own,
         influence=np.stack([own, *np.zeros((3, len(own)), int)], axis=1), weight=np.tile(np.eye(4)[0], (len(own), 1)),
         uncertain=np.isin(np.arange(FRAMES), uncertain), pair=np.zeros((0, 2), int), centre=np.zeros((0, 3)),
-        border_drift=np.zeros(0), border_degrees=np.zeros(0), joint_of_part=np.array([0, 1, 3, 4]), dropped=(),
+        part=own, border_drift=np.zeros(0), border_degrees=np.zeros(0), joint_of_part=np.array([0, 1, 3, 4]), dropped=(),
         free_length=np.zeros(5), free_deviation=np.zeros(5), spread=np.full(5, np.nan), agreeing=np.zeros(5, int),
         joint_residual=np.zeros(5), surface_offset=np.full(5, np.nan), hinge_offset=np.full(5, np.nan),
         border_radius=np.full(5, np.nan),

@@ -12,10 +12,12 @@ from smeared import END, Frames, aligned, turning
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
-from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams
+from kinetree.schemas.structure.cut_poses import CutPoses
+from kinetree.schemas.structure.kinematic_tree import CutJointsParams, KinematicTree, KinematicTreeParams
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import first_tree as numerics
 from kinetree.tasks.structure.first_tree import first_tree
+from kinetree.tasks.structure.further_cut import further_cut
 from kinetree.tasks.structure.kinematic_tree import kinematic_tree
 from kinetree.tasks.structure.laid_parts import laid_parts
 
@@ -25,7 +27,12 @@ def surface(V: np.ndarray, F: np.ndarray) -> Mesh:
 
 
 def tree_of(
-    body: Known, trust: np.ndarray | None = None, tips: tuple[int, ...] = (), surfaces: Frames | None = None, **params: float
+    body: Known,
+    trust: np.ndarray | None = None,
+    tips: tuple[int, ...] = (),
+    surfaces: Frames | None = None,
+    cut_frames: tuple[int, ...] = (),
+    **params: float,
 ) -> KinematicTree:
     frames = tuple(range(FIRST, FIRST + len(body.x)))
     count = len(frames)
@@ -54,7 +61,9 @@ def tree_of(
     )
     runs = [first.members("laid/frame", (k,)) for k in first.members("laid", ())]
     laid = tuple(laid_parts(reference, first, {f: mesh[f] for f in run}) for run in runs)
-    return kinematic_tree(reference, first, {}, laid, aligned, leaves, chosen)
+    poses = CutPoses(frames=cut_frames)
+    cuts = {f: further_cut(poses, reference, aligned, leaves, CutJointsParams(), (f,)) for f in cut_frames}
+    return kinematic_tree(reference, first, cuts, laid, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:
@@ -171,3 +180,20 @@ def test_bones_of_rigid_arms_hardly_vary_before_their_lengths_are_held() -> None
     assert sorted(found.joint_of_part.tolist()) == [0, 1, 3, 5]
     assert found.length_variation.max() < 0.5
     assert found.length_variation[0] == 0.0
+
+
+def test_of_fixed_connectivity_the_cut_that_another_agrees_with_gives_the_tree() -> None:
+    """The first cut lacks one of three arms."""
+    body = three_arms()
+    merged = body._replace(label=np.where(body.label == 3, 0, body.label), R=body.R[:, :3], t=body.t[:, :3])
+    frames = (FIRST + 5, FIRST + 9)
+    found = tree_of(merged, cut_frames=frames)
+    assert (found.cut_frame, found.cuts, found.kinds.count("joint")) == (frames[0], 3, 3)
+    assert len(found.part) == len(body.V)
+    assert found.part.max() + 1 == len(found.joint_of_part) > 3
+    joints = [j for j, kind in enumerate(found.kinds) if kind == "joint"]
+    true = np.einsum("tpxy,py->tpx", body.R, body.joints)[:, 1:] + body.t[:, 1:]
+    away = np.linalg.norm(found.positions[:, joints][:, :, None] - true[:, None], axis=3).mean(axis=0)
+    assert away.min(axis=0).max() < 0.05 * np.ptp(body.V)
+    followed = tree_of(merged, np.full(body.x.shape[:2], 0.9), cut_frames=frames, end_joints=False)
+    assert (followed.cut_frame, followed.kinds.count("joint")) == (None, 2)

@@ -5,7 +5,7 @@ from articulated import chain, neck, swings
 from shipped import TREE
 from smeared import moving
 
-from kinetree.tasks.numerics.structure.first_tree import first_tree, in_tree_order
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree, in_reference, in_tree_order
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 NO_LEAVES = np.zeros(0, int)
@@ -39,3 +39,24 @@ def test_joints_drift_as_much_as_where_they_were_found() -> None:
     np.testing.assert_allclose(tree.drift_at(tree.rest), found.drift, atol=1e-12)
     assert tree.drift_at(tree.rest + 1.0)[1] > tree.drift[1]
     np.testing.assert_array_equal(tree.motion.R, found.motion.R)
+
+
+def test_the_tree_of_a_cut_in_another_pose_is_the_same_tree_in_the_reference() -> None:
+    """The reference is the second frame, the pose the sixth."""
+    body, frame, pose = chain((-1.0, 2.0), swings(16, 3)), 1, 5
+
+    def tree_in(k: int) -> tuple[FirstTree, Cut]:
+        R = np.einsum("tpxy,pzy->tpxz", body.R, body.R[k])
+        cut = Cut(body.x[k], body.label, R, body.t - np.einsum("tpxy,py->tpx", R, body.t[k]), body.residual)
+        return in_tree_order(tree_joints(moving(body)._replace(V=body.x[k]), cut, NO_LEAVES, settings=TREE), 3), cut
+
+    (own, _), (other, cut) = tree_in(frame), tree_in(pose)
+    found = in_reference(other, cut, frame)
+    np.testing.assert_allclose(found.R[frame], np.tile(np.eye(3), (3, 1, 1)), atol=1e-9)
+    np.testing.assert_allclose(found.t[frame], 0.0, atol=1e-9)
+    for name in ("R", "t"):
+        np.testing.assert_allclose(getattr(found, name), getattr(own, name), atol=1e-6)
+    np.testing.assert_allclose(found.rest, own.rest, atol=0.05)
+    np.testing.assert_allclose(found.graph.centre, own.graph.centre, atol=0.05)
+    np.testing.assert_allclose(found.motion.carried(found.rest[1:]), other.motion.carried(other.rest[1:]), atol=0.05)
+    np.testing.assert_array_equal(found.graph.part, body.label)
