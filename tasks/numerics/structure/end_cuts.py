@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 
 
@@ -69,7 +69,7 @@ def end_cuts(
     """
     chosen = settings or EndCutsSettings()
     start, ring = rings(F, len(V))
-    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
+    edge = ring_edges(start, ring)
     for part in range(1, len(parents)):
         own = np.flatnonzero(label == part)
         if (parents == part).any() or len(own) < 2 * chosen.least_vertices:

@@ -4,12 +4,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges, rings
 
 
 def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) -> Ints:
@@ -24,7 +23,7 @@ def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) 
     returns : (end, 2) part and vertex, by part, a part's most distant first
     """
     start, ring = rings(F, len(V))
-    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
+    edge = ring_edges(start, ring)
     ends: list[tuple[int, int]] = []
     for part in range(len(parents)):
         tips = [int(v) for v in leaves if label[v] == part]
@@ -57,7 +56,5 @@ def from_border(V: Floats, edge: Ints, label: Ints, part: int) -> Floats:
     edge = edge[inside]
     if not len(border):
         return np.where(label == part, np.linalg.norm(V - V[label == part].mean(axis=0), axis=1), 0.0)
-    length = np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1)
-    links = coo_array((np.maximum(length, 1e-300), (edge[:, 0], edge[:, 1])), shape=(len(V), len(V)))
-    far = dijkstra(links.tocsr(), directed=False, indices=border, min_only=True)
+    far = dijkstra(edge_lengths(V, edge), directed=False, indices=border, min_only=True)
     return np.where(np.isfinite(far), far, 0.0)

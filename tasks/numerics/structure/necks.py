@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths
 
 
 class NecksSettings(NamedTuple):
@@ -76,8 +76,7 @@ def necks(
     border  : (part,) radius of the border at each joint, mesh unit
     """
     chosen, edge = settings or NecksSettings(), np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    length = np.maximum(np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1), 1e-300)
-    links = coo_array((length, (edge[:, 0], edge[:, 1])), shape=(len(V), len(V))).tocsr()
+    links = edge_lengths(V, edge)
     pairs, faces = np.unique(np.sort(edge, axis=1), axis=0, return_counts=True)
     rim = pairs[faces == 1].ravel()
     for part in range(1, len(parents)):

@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges
 from kinetree.tasks.numerics.geometry.rigid_fit import moments
 from kinetree.tasks.numerics.geometry.sampling import farthest_points
 from kinetree.tasks.numerics.geometry.surface import Surface
@@ -142,9 +142,7 @@ def patches(surface: Surface, V: Floats, start: Ints, ring: Ints, count: int) ->
     count       : patches
     """
     centre = farthest_points(surface, np.ones(len(V)), count)
-    tail = np.repeat(np.arange(len(V)), np.diff(start))
-    length = np.linalg.norm(V[tail] - V[ring], axis=1)
-    graph = csr_array((length, ring, start), shape=(len(V), len(V)))
+    graph = edge_lengths(V, ring_edges(start, ring))
     nearest: Ints = dijkstra(graph, indices=centre, return_predecessors=True, min_only=True)[2]
     return np.unique(nearest, return_inverse=True)[1].reshape(-1)
 

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges
 from kinetree.tasks.numerics.structure.elimination import NormalisedBody
 from kinetree.tasks.numerics.structure.part_motion import misfit, rigid_share
 
@@ -40,7 +41,8 @@ def parted(
     chosen, out, origin = settings or PartedLimbsSettings(), label.copy(), list(range(R.shape[1]))
     rigid = rigid_share(misfit(body.V, body.x, body.weight, R, t, label), removal_cost) >= chosen.rigid
     rigid &= body.weight.any(axis=0)
-    edges, least = _edges(body), chosen.limb * float(body.area.sum())
+    edges = edge_lengths(body.V, ring_edges(body.start, body.ring))
+    least = chosen.limb * float(body.area.sum())
     for part in range(R.shape[1]):
         own = np.flatnonzero(label == part)
         area = body.area[own]
@@ -62,11 +64,3 @@ def _pieces(edges: csr_array, area: Floats, rigid: Flags, least: float) -> Ints:
         return np.zeros(len(area), np.int64)
     away = [dijkstra(edges, indices=np.flatnonzero(rigid & (piece == k)), min_only=True) for k in large]
     return np.argmin(away, axis=0)
-
-
-def _edges(body: NormalisedBody) -> csr_array:
-    """(vertex, vertex) lengths of the edges."""
-    count = len(body.V)
-    source = np.repeat(np.arange(count), np.diff(body.start))
-    length = np.maximum(np.linalg.norm(body.V[source] - body.V[body.ring], axis=1), np.finfo(float).tiny)
-    return csr_array((length, body.ring, body.start), shape=(count, count))

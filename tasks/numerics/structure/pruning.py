@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
@@ -180,7 +180,7 @@ def _flat_parts(body: MovingSurface, label: Ints, found: PartTree, has_leaf: Fla
     if not bare:
         return {}
     start, ring = rings(body.F, len(body.V))
-    edge = np.stack([np.repeat(np.arange(len(body.V)), np.diff(start)), ring], axis=1)
+    edge = ring_edges(start, ring)
     radius = np.maximum(found.borders.radius[found.tree.border], np.finfo(float).tiny)
     return {int(order[k]): float(from_border(body.V, edge, label, int(order[k])).max() / radius[k]) for k in bare}
 

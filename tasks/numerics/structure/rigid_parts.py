@@ -5,14 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.components import largest_component
 from kinetree.tasks.numerics.geometry.decimation import decimated
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges, rings
 from kinetree.tasks.numerics.geometry.normals import vertex_normals
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings, NormalisedBody, eliminated
@@ -149,9 +148,7 @@ def _nearest(V: Floats, F: npt.NDArray[np.integer[Any]], sample: Ints) -> Ints:
     if len(sample) == len(V):
         return number
     start, ring = rings(np.array(F, np.int64), len(V))
-    length = np.linalg.norm(V[np.repeat(np.arange(len(V)), np.diff(start))] - V[ring], axis=1)
-    graph = csr_array((np.maximum(length, 1e-300), ring, start), shape=(len(V), len(V)))
-    source = dijkstra(graph, indices=sample, return_predecessors=True, min_only=True)[2]
+    source = dijkstra(edge_lengths(V, ring_edges(start, ring)), indices=sample, return_predecessors=True, min_only=True)[2]
     unreached = source < 0
     out = np.where(unreached, -1, number[np.maximum(source, 0)])
     if unreached.any():

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.geometry.neighbours import rings
+from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.topology.persistence import superlevel_peaks
 
@@ -41,7 +41,7 @@ def second_ends(
     """
     limits = settings or SecondEndsSettings()
     start, ring = rings(np.array(F, np.int64), len(V))
-    edge = np.stack([np.repeat(np.arange(len(V)), np.diff(start)), ring], axis=1)
+    edge = ring_edges(start, ring)
     ends: list[int] = []
     for part in range(1, len(parents)):
         if (parents == part).any() or (label[leaves] == part).sum() > 1:
