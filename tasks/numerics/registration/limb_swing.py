@@ -99,7 +99,7 @@ def swung(
     limb, other = linear_sum_assignment(np.linalg.norm(now[:, None] - (seen - centre)[None], axis=3).mean(axis=2))
     row = (limb[:, None] * stems.shape[1] + np.arange(stems.shape[1])).ravel()
     swing = _Swing.of(graph, pose, StemPoints(*(array[row] for array in points)), chosen)
-    return _least_bent(swing, seen, other)
+    return _least_energy_exchange(swing, seen, other)
 
 
 def stem_points(graph: DeformationGraph, stems: Floats, settings: LimbSwingSettings | None = None) -> StemPoints:
@@ -197,7 +197,7 @@ def _applied(A: csr_array, x: Floats) -> Floats:
     return np.stack([A @ one for one in x])
 
 
-def _least_bent(swing: _Swing, stems: Floats, given: Ints) -> Pose:
+def _least_energy_exchange(swing: _Swing, stems: Floats, given: Ints) -> Pose:
     """The pose with stems as given (limb,) or with pairs exchanged, for as long as an exchange has clearly less energy."""
     chosen = swing.settings
 
