@@ -151,11 +151,10 @@ def _posed(
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
     shared = shared_joints(first, consensus.rest, body.size, body.takes)
-    on_surface = SurfaceJoints(shared, *np.full((2, parts), np.nan))
+    on_surface = SurfaceJoints(shared.rest, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        held = (shared != consensus.rest).any(axis=1)
-        on_surface = surface_joints(first, laid, shared, share, held=held, takes=body.takes)
+        on_surface = surface_joints(first, laid, shared.rest, share, held=shared.is_shared, takes=body.takes)
     rest = on_surface.rest
     start = Motion(rest, first.R, first.t[:, 0].copy())
     poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 
@@ -30,6 +30,17 @@ class SharedJointsSettings(NamedTuple):
     Errors of forks are 1.07 % at 0.35 to 0.7 and 1.02 at 1, those of dance 1.04 and 1.22."""
     noise: float = 0.001
     """Drift that is none, root of the area."""
+
+
+class SharedJoints(NamedTuple):
+    """The joints in the reference, those that are one at one place.
+
+    rest      : (part, xyz) mesh unit; the array that was given where none are one
+    is_shared : (part,) whether the joint is one with another
+    """
+
+    rest: Floats
+    is_shared: Flags
 
 
 class _Joint(NamedTuple):
@@ -67,17 +78,16 @@ def shared_joints(
     size: float,
     takes: Sequence[slice] | None = None,
     settings: SharedJointsSettings | None = None,
-) -> Floats:
-    """The joints in the reference, those that are one at one place.
+) -> SharedJoints:
+    """Puts joints that are one at one place.
 
     Of a part's joints with the parts below it, the nearest two become one while a common place explains both motions.
 
-    rest    : (part, xyz) mesh unit
-    size    : root of the area, mesh unit
-    takes   : positions of the frames of each take, each of which may show that joints are two; None takes all as one
-    returns : (part, xyz) mesh unit; `rest` itself where none are one
+    rest  : (part, xyz) in the reference, mesh unit
+    size  : root of the area, mesh unit
+    takes : positions of the frames of each take, each of which may show that joints are two; None takes all as one
     """
-    chosen, moved = settings or SharedJointsSettings(), rest
+    chosen, moved, is_shared = settings or SharedJointsSettings(), rest, np.zeros(len(rest), np.bool_)
     judge = _Judge(_joints(tree, rest), score_spans(len(tree.R), takes), chosen.noise * size, chosen)
     for above in np.unique(tree.parents[1:]).tolist():
         groups: _Groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
@@ -85,8 +95,9 @@ def shared_joints(
             groups = merged
         for members, place in groups:
             if len(members) > 1:
-                moved = np.where(np.isin(np.arange(len(rest)), members)[:, None], place, moved)
-    return moved
+                of_one = np.isin(np.arange(len(rest)), members)
+                moved, is_shared = np.where(of_one[:, None], place, moved), is_shared | of_one
+    return SharedJoints(moved, is_shared)
 
 
 def _joints(tree: FirstTree, rest: Floats) -> list[_Joint]:

@@ -41,36 +41,50 @@ LOOSE = 0.2
 
 def test_bones_of_one_joint_meet_where_all_of_them_turn() -> None:
     tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
-    places = shared_joints(tree, rest, SIZE)
+    places, is_shared = shared_joints(tree, rest, SIZE)
     np.testing.assert_array_equal(places[1], places[2])
     assert np.linalg.norm(places[1] - AT) < 0.15
     np.testing.assert_array_equal(places[0], rest[0])
+    assert is_shared.tolist() == [False, True, True]
 
 
 def test_three_bones_of_one_joint_meet() -> None:
     tree, rest = star(np.array([AT] * 3), np.array([*ASIDE, [0.0, 0.3, 0.0]]), LOOSE)
-    places = shared_joints(tree, rest, SIZE)
+    places, is_shared = shared_joints(tree, rest, SIZE)
     assert (places[1:] == places[1]).all()
     assert np.linalg.norm(places[1] - AT) < 0.15
+    assert is_shared.tolist() == [False, True, True, True]
 
 
 def test_near_joints_that_both_motions_tell_apart_stay() -> None:
     tree, rest = star(np.array([AT, AT + [0.6, 0.0, 0.0]]), np.zeros((2, 3)))
-    assert shared_joints(tree, rest, SIZE) is rest
+    places, is_shared = shared_joints(tree, rest, SIZE)
+    assert places is rest
+    assert not is_shared.any()
 
 
 def test_joints_farther_apart_than_their_borders_are_wide_stay_whatever_the_motion_says() -> None:
     """Both hinges turn about the line through both joints, so that each explains the other's motion."""
     apart = np.array([AT, AT + [1.2, 0.0, 0.0]])
     tree, rest = star(apart, np.zeros((2, 3)), axes=1)
-    assert shared_joints(tree, rest, SIZE) is rest
-    wide = shared_joints(tree, rest, SIZE, settings=SharedJointsSettings(near=1.5))
+    assert shared_joints(tree, rest, SIZE).rest is rest
+    wide = shared_joints(tree, rest, SIZE, settings=SharedJointsSettings(near=1.5)).rest
     np.testing.assert_array_equal(wide[1], wide[2])
 
 
 def test_joints_on_different_parts_stay() -> None:
     tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
-    assert shared_joints(tree._replace(parents=np.array([-1, 0, 1])), rest, SIZE) is rest
+    assert shared_joints(tree._replace(parents=np.array([-1, 0, 1])), rest, SIZE).rest is rest
+
+
+def test_of_four_joints_on_a_part_only_those_that_are_one_are_shared() -> None:
+    at = np.array([[-5.0, 0.0, 1.0], AT, [0.0, 5.0, 1.0], AT])
+    off = np.array([[0.0, 0.0, 0.0], ASIDE[0], [0.0, 0.0, 0.0], ASIDE[1]])
+    tree, rest = star(at, off, LOOSE)
+    places, is_shared = shared_joints(tree, rest, SIZE)
+    assert is_shared.tolist() == [False, False, True, False, True]
+    np.testing.assert_array_equal(places[~is_shared], rest[~is_shared])
+    np.testing.assert_array_equal(places[2], places[4])
 
 
 def test_joints_that_one_take_tells_apart_stay() -> None:
@@ -79,22 +93,22 @@ def test_joints_that_one_take_tells_apart_stay() -> None:
     R, t = (np.concatenate([getattr(calm, name), *[getattr(loose, name)] * 3]) for name in ("R", "t"))
     takes = [slice(k * FRAMES, (k + 1) * FRAMES) for k in range(4)]
     tree = calm._replace(R=R, t=t)
-    as_one = shared_joints(tree, calm.rest, SIZE)
+    as_one = shared_joints(tree, calm.rest, SIZE).rest
     np.testing.assert_array_equal(as_one[1], as_one[2])
-    assert shared_joints(tree, calm.rest, SIZE, takes) is calm.rest
+    assert shared_joints(tree, calm.rest, SIZE, takes).rest is calm.rest
 
 
 def test_the_smaller_border_says_what_is_near() -> None:
     tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
-    assert shared_joints(tree._replace(radius=np.array([0.0, 5.0, 0.5])), rest, SIZE) is rest
+    assert shared_joints(tree._replace(radius=np.array([0.0, 5.0, 0.5])), rest, SIZE).rest is rest
 
 
 @pytest.mark.parametrize("scale", [0.001, 1000.0])
 def test_the_same_on_a_body_of_another_size(scale: float) -> None:
-    one, other = (shared_joints(*star(np.array([AT, AT]), ASIDE, LOOSE, scale=s), SIZE * s) / s for s in (1.0, scale))
+    one, other = (shared_joints(*star(np.array([AT, AT]), ASIDE, LOOSE, scale=s), SIZE * s).rest / s for s in (1.0, scale))
     np.testing.assert_allclose(other, one, rtol=1e-9)
 
 
 def test_a_body_that_is_one_part_has_none() -> None:
     tree, rest = star(np.zeros((0, 3)), np.zeros((0, 3)))
-    assert shared_joints(tree, rest, SIZE) is rest
+    assert shared_joints(tree, rest, SIZE).rest is rest
