@@ -77,14 +77,32 @@ def test_joints_on_different_parts_stay() -> None:
     assert shared_joints(tree._replace(parents=np.array([-1, 0, 1])), rest, SIZE).rest is rest
 
 
-def test_of_four_joints_on_a_part_only_those_that_are_one_are_shared() -> None:
-    at = np.array([[-5.0, 0.0, 1.0], AT, [0.0, 5.0, 1.0], AT])
-    off = np.array([[0.0, 0.0, 0.0], ASIDE[0], [0.0, 0.0, 0.0], ASIDE[1]])
-    tree, rest = star(at, off, LOOSE)
+@pytest.mark.parametrize(("apart", "is_one"), [(0.85, True), (0.95, False)])
+def test_joints_are_one_until_the_common_place_drifts_half_as_much_again(apart: float, is_one: bool) -> None:
+    tree, rest = star(AT + np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * apart, np.zeros((2, 3)), noise=0.08)
+    rise = (tree.drift_at(np.array([rest[0], AT, AT]))[1:] / tree.drift_at(rest)[1:]).max()
+    assert rise == pytest.approx(1.45 if is_one else 1.55, abs=0.04)
+    assert shared_joints(tree, rest, SIZE).is_shared[1:].tolist() == [is_one, is_one]
+
+
+@pytest.mark.parametrize(("noise", "least", "most"), [(0.02, 0.3, 0.9), (0.5, 0.0, 0.1)])
+def test_the_common_place_leaves_its_joints_as_far_as_motion_is_clear(noise: float, least: float, most: float) -> None:
+    """Both joints lie off where the bones turn, by a third of the border: clear motion brings them half way, loose none."""
+    off = np.array([0.0, 0.3, 0.0])
+    tree, rest = star(np.array([AT, AT]), ASIDE / 3 + off, noise)
     places, is_shared = shared_joints(tree, rest, SIZE)
-    assert is_shared.tolist() == [False, False, True, False, True]
+    assert is_shared[1:].all()
+    assert least < np.linalg.norm(places[1] - AT - off) / 0.3 < most
+
+
+def test_of_five_joints_on_a_part_two_pairs_are_one_each() -> None:
+    alone, there = np.array([-5.0, 0.0, 1.0]), np.array([0.0, 5.0, 1.0])
+    tree, rest = star(np.array([AT, there, alone, AT, there]), np.array([ASIDE[0], ASIDE[0], [0.0] * 3, *ASIDE[[1, 1]]]), LOOSE)
+    places, is_shared = shared_joints(tree, rest, SIZE)
+    assert is_shared.tolist() == [False, True, True, False, True, True]
     np.testing.assert_array_equal(places[~is_shared], rest[~is_shared])
-    np.testing.assert_array_equal(places[2], places[4])
+    np.testing.assert_array_equal(places[[1, 2]], places[[4, 5]])
+    assert np.linalg.norm(places[1] - places[2]) > 1.0
 
 
 def test_joints_that_one_take_tells_apart_stay() -> None:
