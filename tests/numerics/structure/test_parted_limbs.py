@@ -61,6 +61,15 @@ def test_one_rigid_piece_and_one_with_a_small_one_beside_it_stay_whole(soft: tup
     assert not label.any()
 
 
+@pytest.mark.parametrize(("share", "parts"), [(0.4, 1), (0.2, 2)])
+def test_skin_of_whose_motion_the_part_explains_a_third_joins_the_pieces(share: float, parts: int) -> None:
+    """The softest skin between both ends is explained by so much."""
+    V, F = tube(20, 56)
+    square = PARTS.elimination.removal_cost**2 * (1.0 / share - 1.0) / 4.0 * surface_areas(V, F).sum()
+    sway = np.sqrt(square / (np.cos(np.arange(FRAMES)) ** 2).mean())
+    assert len(pieces((-2.0, 2.0), sway)[2]) == parts
+
+
 def test_other_parts_keep_their_numbers() -> None:
     V, _ = tube(20, 56)
     before = (V[:, 2] > 3.5).astype(np.int64)
