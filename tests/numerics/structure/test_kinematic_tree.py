@@ -11,7 +11,7 @@ from shipped import PARTS, TREE
 from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.structure import kinematic_tree as module
-from kinetree.tasks.numerics.structure.first_tree import in_tree_order
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
@@ -268,6 +268,25 @@ def test_a_cut_that_places_a_joint_elsewhere_moves_it_half_way_and_is_its_spread
     assert told.spread[turning] == pytest.approx(moved_by, rel=0.3)
 
 
+def forked(at: np.ndarray, apart: np.ndarray, noise: np.ndarray) -> tuple[MovingSurface, FirstTree, np.ndarray]:
+    """Three arms, two of which turn about places beside `at`, with noise in where these two are; and their places in the tree.
+
+    apart : (arm, xyz) of these places from `at`, noise : (frame,)
+    """
+    arms = three_arms(reach=4.0)
+    joints = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], *(at + apart)])
+    surface, cut = known(moved(arms.V, arms.F, arms.W, joints, arms.parents, np.resize(swings(24, 4), (len(noise), 4, 3, 3))))
+    first = in_tree_order(tree_joints(surface, cut, np.zeros(0, np.int64), settings=ALL_STAY), 4)
+    places, t = first.place[[2, 3]], first.t.copy()
+    t[:, places] += noise[:, None, None] * np.random.default_rng(0).normal(size=(len(noise), 2, 3))
+    return surface, first._replace(t=t), places
+
+
+def near(found: KinematicTree, place: np.ndarray) -> list[int]:
+    """The joints that lie near a place."""
+    return np.flatnonzero(np.linalg.norm(found.rest - place, axis=1) < 1.0).tolist()
+
+
 @pytest.mark.parametrize("laid", [False, True])
 def test_bones_of_one_joint_begin_in_one_place_in_every_frame(laid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two arms turn about one point, and each one's joint is found along its arm, with noise that tells neither wrong."""
@@ -278,19 +297,24 @@ def test_bones_of_one_joint_begin_in_one_place_in_every_frame(laid: bool, monkey
         return SurfaceJoints(args[2], *np.full((2, 4), np.nan))
 
     monkeypatch.setattr(module, "surface_joints", stay)
-    body = three_arms(reach=4.0)
-    fork = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-3.0, 0.0, 0.0], [-3.0, 0.0, 0.0]])
-    body = moved(body.V, body.F, body.W, fork, body.parents, swings(24, 4))
-    surface, cut = known(body)
-    first = in_tree_order(tree_joints(surface, cut, np.zeros(0, np.int64), settings=ALL_STAY), 4)
-    arms = first.place[[2, 3]]
-    rest, noise = first.rest.copy(), 0.3 * np.random.default_rng(0).normal(size=(24, 2, 3))
-    rest[arms] = fork[2] + np.array([[-0.3, 0.5, 0.0], [-0.3, -0.5, 0.0]])
-    t = first.t.copy()
-    t[:, arms] += noise
+    at = np.array([-3.0, 0.0, 0.0])
+    surface, first, arms = forked(at, np.zeros((2, 3)), np.full(24, 0.3))
+    rest = first.rest.copy()
+    rest[arms] = at + np.array([[-0.3, 0.5, 0.0], [-0.3, -0.5, 0.0]])
     parts: Any = object() if laid else None
-    found, _ = kinematic_tree(surface, first._replace(rest=rest, t=t), np.zeros(0, np.int64), laid=parts)
+    found, _ = kinematic_tree(surface, first._replace(rest=rest), np.zeros(0, np.int64), laid=parts)
     assert not laid or set(np.flatnonzero(asked["held"])) == set(arms)
-    places = [j for j in range(len(found.names)) if np.linalg.norm(found.rest[j] - fork[2]) < 1.0]
-    assert len(places) == 2
-    np.testing.assert_array_equal(found.positions[:, places[0]], found.positions[:, places[1]])
+    one, other = near(found, at)
+    np.testing.assert_array_equal(found.positions[:, one], found.positions[:, other])
+
+
+def test_bones_whose_joints_one_take_tells_apart_do_not_begin_in_one_place() -> None:
+    """Three other takes are so noisy that over all frames one place would do."""
+    at, apart = np.array([-3.0, 0.0, 0.0]), np.array([[0.0, 0.6, 0.0], [0.0, -0.6, 0.0]])
+    surface, first, _ = forked(at, apart, np.repeat([0.01, 1.0, 1.0, 1.0], 24))
+    takes = [slice(24 * k, 24 * (k + 1)) for k in range(4)]
+    as_one, told_apart = (kinematic_tree(surface._replace(takes=t), first, np.zeros(0, np.int64))[0] for t in (None, takes))
+    one, other = near(as_one, at)
+    np.testing.assert_array_equal(as_one.rest[one], as_one.rest[other])
+    one, other = near(told_apart, at)
+    assert np.linalg.norm(told_apart.rest[one] - told_apart.rest[other]) > 1.0
