@@ -14,7 +14,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTr
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
-from kinetree.tasks.numerics.structure.agreeing_cut import PosedCut, agreeing_cut, first_cut
+from kinetree.tasks.numerics.structure.agreeing_cut import CutJoints, agreeing_cut, first_cut
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import restored
@@ -33,8 +33,12 @@ def kinematic_tree(
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
     frames, body, first = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
-    others = [PosedCut(restored(c), np.array(c.bare_joints), np.array(c.joints_with_bones)) for c in further_cut.values()]
-    chosen = agreeing_cut(first, others, body.surface.size) if body.is_given else first_cut(first, others)
+    cuts = list(further_cut.values())
+    joints = [CutJoints(np.array(cut.bare_joints), np.array(cut.joints_with_bones)) for cut in cuts]
+    if body.is_given:
+        chosen = agreeing_cut(first, [restored(cut) for cut in cuts], joints, body.surface.size)
+    else:
+        chosen = first_cut(first, joints)
     tree, derivation = numerics.kinematic_tree(
         body.surface,
         chosen.tree,
@@ -49,7 +53,7 @@ def kinematic_tree(
         vertices=reference.vertices,
         faces=reference.faces,
         cuts=1 + len(further_cut),
-        cut_frame=list(further_cut)[chosen.which - 1] if chosen.which else None,
+        cut_frame=cuts[chosen.which - 1].frame if chosen.which else None,
         is_given=body.is_given,
         uncertain=np.zeros(len(frames), np.bool_) if body.is_given else needs_refinement(tree.confidence),
         **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},

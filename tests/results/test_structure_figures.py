@@ -1,5 +1,7 @@
 """Figures of the structure: chapters whose pictures are complete files."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from matplotlib.text import Text
@@ -10,11 +12,12 @@ from results.sample_report import derived
 
 from kinetree.schemas.array import Artifact
 from kinetree.schemas.results.structure_figures import StructureFigures
+from kinetree.schemas.structure.first_tree import Drop
 from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.results.page.document import rendered
-from kinetree.tasks.results.plots.derivation import cones, elimination, lengths, merging, structure
+from kinetree.tasks.results.plots.derivation import REASONS, cones, elimination, lengths, merging, structure
 
 FIGURES = (cones, merging, elimination, structure, lengths)
 
@@ -67,6 +70,11 @@ def test_pictures_count_what_was_cut_removed_and_dropped() -> None:
     assert f"2 removed, {len(parts.origin)} parts at the end" in text[2]
     assert "crossed: 1 dropped (1 slides)" in text[3]
     assert f"{body.kinds.count('joint')} joints left" in text[3]
+
+
+def test_every_reason_for_which_parts_are_dropped_has_words() -> None:
+    reasons = get_args(get_args(Drop)[1])
+    assert set(REASONS) == set(reasons)
 
 
 @pytest.mark.parametrize("removed", [0, 2])

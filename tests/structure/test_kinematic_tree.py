@@ -32,6 +32,7 @@ def tree_of(
     tips: tuple[int, ...] = (),
     surfaces: Frames | None = None,
     cut_frames: tuple[int, ...] = (),
+    residual: float = 0.0,
     **params: float,
 ) -> KinematicTree:
     frames = tuple(range(FIRST, FIRST + len(body.x)))
@@ -44,7 +45,9 @@ def tree_of(
     parts = rigid(body, frames)
     zero, one = np.zeros(len(body.V)), np.ones(len(body.V))
     aligned = {
-        f: Alignment(vertices=x, residual=zero, stretch=one, confidence=one if trust is None else trust[k], uncovered=0.0)
+        f: Alignment(
+            vertices=x, residual=zero + residual, stretch=one, confidence=one if trust is None else trust[k], uncovered=0.0
+        )
         for k, (f, x) in enumerate(zip(frames, body.x, strict=True))
     }
     positions = np.broadcast_to(body.V[list(tips), None], (len(tips), count, 3))
@@ -89,6 +92,13 @@ def test_same_input_gives_the_same_bytes() -> None:
 def test_stiff_sequence_has_a_root_alone() -> None:
     found = tree_of(chain((0.0,), np.tile(np.eye(3), (12, 2, 1, 1))))
     assert found.kinds == ("root",)
+
+
+def test_stiff_body_with_four_ends_has_a_root_and_ends_alone() -> None:
+    body = chain((0.0,), np.tile(np.eye(3), (12, 2, 1, 1)))
+    V = body.V
+    tips = (int(V[:, 2].argmin()), int(V[:, 2].argmax()), int(V[:, 0].argmin()), int(V[:, 0].argmax()))
+    assert set(tree_of(body, tips=tips).kinds[1:]) == {"leaf"}
 
 
 def test_what_counts_as_a_joint_can_be_set() -> None:
@@ -195,5 +205,7 @@ def test_of_fixed_connectivity_the_cut_that_another_agrees_with_gives_the_tree()
     true = np.einsum("tpxy,py->tpx", body.R, body.joints)[:, 1:] + body.t[:, 1:]
     away = np.linalg.norm(found.positions[:, joints][:, :, None] - true[:, None], axis=3).mean(axis=0)
     assert away.min(axis=0).max() < 0.05 * np.ptp(body.V)
-    followed = tree_of(merged, np.full(body.x.shape[:2], 0.9), cut_frames=frames, end_joints=False)
-    assert (followed.cut_frame, followed.kinds.count("joint")) == (None, 2)
+    followed = tree_of(merged, cut_frames=frames, residual=0.01 * float(np.ptp(body.V)))
+    unsure = tree_of(merged, np.full(body.x.shape[:2], 0.9), cut_frames=frames, end_joints=False)
+    for tree in (followed, unsure):
+        assert (tree.cut_frame, tree.kinds.count("joint")) == (None, 2)

@@ -1,7 +1,8 @@
 """Whose tree is used where every vertex was followed: the tree of the cut that the other cuts agree with most (ours).
 
 Which joints a cut shows depends on where its rings and patches fall. A joint that two cuts have is likely one, a joint that one
-cut has alone is likely flesh. Aligned vertices err alike in all cuts, so that there the first cut's tree is used.
+cut has alone is likely flesh; of two cuts neither is in the majority. Aligned vertices err alike in all cuts, so that there the
+first cut's tree is used.
 """
 
 from collections.abc import Sequence
@@ -15,17 +16,19 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_consensus import GATE, same_joints
 
 
-class PosedCut(NamedTuple):
-    """A cut of the body in another pose.
+class CutJoints(NamedTuple):
+    """The joints of a cut in another pose.
 
-    tree              : in the reference
-    bare_joints       : (frame, joint, xyz) its joints without bones that no cut can find, mesh unit
-    joints_with_bones : (frame, bone, xyz) the same with them
+    bare       : (frame, joint, xyz) without bones that no cut can find, mesh unit
+    with_bones : (frame, bone, xyz) with them, mesh unit
     """
 
-    tree: FirstTree
-    bare_joints: Floats
-    joints_with_bones: Floats
+    bare: Floats
+    with_bones: Floats
+
+    def beside(self, tree: FirstTree) -> Floats:
+        """Those with bones that no cut can find if the tree has some."""
+        return self.with_bones if tree.has_bones else self.bare
 
 
 class AgreeingCut(NamedTuple):
@@ -33,7 +36,7 @@ class AgreeingCut(NamedTuple):
 
     which   : 0 for the first one, k for the k-th of the others
     tree    : its tree, in the reference
-    further : by other cut, (frame, joint, xyz) its joints, with bones that no cut can find if the tree has some
+    further : by other cut, (frame, joint, xyz) its joints, see `CutJoints.beside`; those of the first cut as its tree has them
     """
 
     which: int
@@ -41,30 +44,29 @@ class AgreeingCut(NamedTuple):
     further: list[Floats]
 
 
-def agreeing_cut(first: FirstTree, others: Sequence[PosedCut], size: float) -> AgreeingCut:
+def agreeing_cut(first: FirstTree, others: Sequence[FirstTree], joints: Sequence[CutJoints], size: float) -> AgreeingCut:
     """The cut with most joints that another cut has too, less those that it has alone; of equals the first.
 
-    size : root of the area, mesh unit
+    It has no fewer such joints than the first cut, so that a cut which shows little never wins. Of two cuts it is the first.
+
+    others, joints : trees of the other cuts, in the reference, and their joints
+    size           : root of the area, mesh unit
     """
-    trees = [first, *(cut.tree for cut in others)]
-    joints = [tree.motion.carried(tree.rest[1:]) for tree in trees]
-    shared = [np.zeros(X.shape[1], np.bool_) for X in joints]
+    if len(others) < 2:
+        return first_cut(first, joints)
+    trees = [first, *others]
+    carried = [tree.motion.carried(tree.rest[1:]) for tree in trees]
+    shared = [np.zeros(X.shape[1], np.bool_) for X in carried]
     for a, b in permutations(range(len(trees)), 2):
-        shared[a][[i for i, _ in same_joints(joints[a], joints[b], GATE * size)]] = True
-    which = int(np.argmax([has.sum() - (~has).sum() for has in shared]))
-    if not which:
-        return first_cut(first, others)
-    tree = trees[which]
-    further = _joints(others, tree)
-    further[which - 1] = joints[0]
-    return AgreeingCut(which, tree, further)
+        shared[a][[i for i, _ in same_joints(carried[a], carried[b], GATE * size)]] = True
+    least = shared[0].sum()
+    which = int(np.argmax([has.sum() - (~has).sum() if has.sum() >= least else -np.inf for has in shared]))
+    chosen = AgreeingCut(which, trees[which], [cut.beside(trees[which]) for cut in joints])
+    if which:
+        chosen.further[which - 1] = carried[0]
+    return chosen
 
 
-def first_cut(first: FirstTree, others: Sequence[PosedCut]) -> AgreeingCut:
+def first_cut(first: FirstTree, joints: Sequence[CutJoints]) -> AgreeingCut:
     """The first cut, whatever the others say."""
-    return AgreeingCut(0, first, _joints(others, first))
-
-
-def _joints(others: Sequence[PosedCut], tree: FirstTree) -> list[Floats]:
-    """By cut, its joints, with bones that no cut can find if the tree has some."""
-    return [cut.joints_with_bones if tree.has_bones else cut.bare_joints for cut in others]
+    return AgreeingCut(0, first, [cut.beside(first) for cut in joints])

@@ -143,18 +143,20 @@ def in_reference(tree: FirstTree, cut: Cut, frame: int) -> FirstTree:
     cut   : of which it is the tree
     frame : position of the reference among the frames
     """
-    back = tree.R[frame].swapaxes(1, 2)
-    R = tree.R @ back
-    rest = np.concatenate(
-        [(tree.R[frame, 0] @ tree.rest[0] + tree.t[frame, 0])[None], tree.motion.carried(tree.rest[1:])[frame]]
-    )
-    sides = np.einsum("bsxy,by->bsx", cut.R[frame, tree.graph.pair], tree.graph.centre) + cut.t[frame, tree.graph.pair]
-    return tree._replace(
-        R=R,
-        t=tree.t - np.einsum("tpxy,py->tpx", R, tree.t[frame]),
-        rest=rest,
-        graph=tree.graph._replace(centre=sides.mean(axis=1)),
-    )
+    R, t = _from(tree.R, tree.t, frame)
+    root = tree.R[frame, 0] @ tree.rest[0] + tree.t[frame, 0]
+    rest = np.concatenate([root[None], tree.motion.carried(tree.rest[1:])[frame]])
+    moved, pair = tree._replace(R=R, t=t, rest=rest), tree.graph.pair
+    sides = np.einsum("bsxy,by->bsx", cut.R[frame, pair], tree.graph.centre) + cut.t[frame, pair]
+    centre = sides.mean(axis=1)
+    graph = tree.graph._replace(centre=centre, border_drift=drift(*_from(cut.R, cut.t, frame), pair, centre))
+    return moved._replace(drift=moved.drift_at(rest), graph=graph)
+
+
+def _from(R: Floats, t: Floats, frame: int) -> tuple[Floats, Floats]:
+    """Motions (frame, part, 3, 3) · (frame, part, xyz) from a frame instead of from the pose of a cut."""
+    back = R @ R[frame].swapaxes(1, 2)
+    return back, t - np.einsum("tpxy,py->tpx", back, t[frame])
 
 
 def _graph(joints: TreeJoints) -> PartGraph:

@@ -66,6 +66,8 @@ def unpaired_parts(
     F     : (face, corner)
     found : the tree of the parts
     """
+    if len(found.tree.order) < 2:
+        return
     chosen = settings or UnpairedPartsSettings()
     slices = [s for tips, away in zip(*pairs, strict=True) for s in _slices(F, parts.label, found, tips, away, chosen)]
     for piece in sorted(slices, key=lambda s: (s.distance, s.part)):
@@ -81,6 +83,8 @@ def unpaired_joints(
     F     : (face, corner)
     label : (vertex,) part
     """
+    if len(found.tree.order) < 2:
+        return 0
     chosen, radius = settings or UnpairedPartsSettings(), found.borders.radius[found.tree.border]
     place, count = np.argsort(found.tree.order)[label], 0
     for tips, away in zip(*pairs, strict=True):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from articulated import Known, chain, cut_by_height, swings
 
-from kinetree.tasks.numerics.structure.agreeing_cut import PosedCut, agreeing_cut, first_cut
+from kinetree.tasks.numerics.structure.agreeing_cut import CutJoints, agreeing_cut, first_cut
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 
 FRAMES = 16
@@ -19,9 +19,8 @@ def tree_at(*heights: float) -> FirstTree:
     return in_tree_order(cut_by_height(body(), heights), len(heights) + 1)
 
 
-def posed(tree: FirstTree) -> PosedCut:
-    """With other joints for each kind, so that one sees which were taken."""
-    return PosedCut(tree, np.full((FRAMES, 1, 3), 1.0), np.full((FRAMES, 1, 3), 2.0))
+JOINTS = CutJoints(np.full((FRAMES, 1, 3), 1.0), np.full((FRAMES, 1, 3), 2.0))
+"""Other joints for each kind, so that one sees which were taken."""
 
 
 def size() -> float:
@@ -36,14 +35,16 @@ def size() -> float:
         (((-2.0, 0.0, 2.0), (2.0,), (-2.0, 2.0)), 2),
         (((-2.0,), (-2.0, 0.0, 2.0), (-2.0, 2.0)), 2),
         (((-2.0,), (-2.0, 0.0, 2.0), (-2.0, 0.0, 2.0)), 1),
+        (((-3.5, -2.0, 0.0, 2.0, 3.5), (-2.0,), (2.0,)), 0),
+        (((-2.0, 0.0, 2.0), (-2.0, 2.0)), 0),
     ],
-    ids=["all alike", "flesh in the first", "too few in the second", "both", "two have it"],
+    ids=["all alike", "flesh in the first", "too few in the second", "both", "two have it", "others show less", "two cuts"],
 )
 def test_the_cut_with_most_joints_that_others_have_less_those_of_its_own(
     cuts: tuple[tuple[float, ...], ...], which: int
 ) -> None:
     first, *others = (tree_at(*heights) for heights in cuts)
-    found = agreeing_cut(first, [posed(tree) for tree in others], size())
+    found = agreeing_cut(first, others, [JOINTS] * len(others), size())
     assert found.which == which
     assert found.tree is [first, *others][which]
     own = first.motion.carried(first.rest[1:])
@@ -56,10 +57,10 @@ def test_joints_of_other_cuts_have_hidden_bones_if_the_tree_has_some() -> None:
     with_bone = tree._replace(place=np.append(tree.place[:-1], -1))
     assert with_bone.has_bones
     for first, kind in ((tree, 1.0), (with_bone, 2.0)):
-        for found in (agreeing_cut(first, [posed(tree)], size()), first_cut(first, [posed(tree)])):
+        for found in (agreeing_cut(first, [tree] * 2, [JOINTS] * 2, size()), first_cut(first, [JOINTS])):
             assert (found.which, found.further[0][0, 0, 0]) == (0, kind)
 
 
 def test_one_cut_alone_is_the_one() -> None:
     tree = tree_at(2.0)
-    assert agreeing_cut(tree, [], size()) == (0, tree, [])
+    assert agreeing_cut(tree, [], [], size()) == (0, tree, [])

@@ -60,3 +60,5 @@ def test_the_tree_of_a_cut_in_another_pose_is_the_same_tree_in_the_reference() -
     np.testing.assert_allclose(found.graph.centre, own.graph.centre, atol=0.05)
     np.testing.assert_allclose(found.motion.carried(found.rest[1:]), other.motion.carried(other.rest[1:]), atol=0.05)
     np.testing.assert_array_equal(found.graph.part, body.label)
+    np.testing.assert_allclose(found.drift, found.drift_at(found.rest), atol=1e-12)
+    np.testing.assert_allclose(found.graph.border_drift, own.graph.border_drift, atol=0.05)

@@ -15,7 +15,9 @@ FRAMES = 24
 
 
 def ends(body: Known) -> np.ndarray:
-    return np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    """Of both limbs, and two on the sides of the trunk, without which no pair is known."""
+    sides = [int(np.argmin(np.linalg.norm(body.V - [x, 0.0, 0.0], axis=1))) for x in (1.0, -1.0)]
+    return np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax(), *sides])
 
 
 def pairs_of(body: Known) -> LimbPairs:
@@ -38,11 +40,17 @@ def bent_at(*heights: float) -> Known:
         ((-3.5, -1.0, 1.0, 2.2, 3.5), 3),
         ((-3.5, -2.2, -1.0, 1.0, 3.5), 2),
         ((-3.5, -2.2, -1.0, 1.0, 2.2, 3.5), -1),
-        ((-1.5, 1.5, 2.5), 2),
-        ((-1.5, 1.5, 3.2), -1),
+        ((-3.5, -1.0, 1.0, 2.35, 3.5), 4),
+        ((-4.3, -0.2, 0.2, 1.9, 4.3), 3),
+        ((-4.3, -0.2, 0.2, 2.2, 4.3), -1),
+        ((-1.5, 1.5, 2.7), 2),
+        ((-1.5, 1.5, 2.9), -1),
     ],
-    ids=["a pair", "a ring on one side", "on the other", "on both sides", "a short end", "a long end"],
-)
+    ids=[
+        "a pair", "a ring on one side", "on the other", "on both sides", "the shorter one first", "1.7 radii", "2 radii",
+        "an end of 1.2 radii", "of 1.4",
+    ],
+)  # fmt: skip
 def test_short_part_of_one_limb_alone_is_flesh(heights: tuple[float, ...], part: int) -> None:
     assert found_in(bent_at(*heights)) == part
 
@@ -60,6 +68,35 @@ def test_part_of_the_trunk_stays_if_the_other_limb_might_hang_on_it(axis: tuple[
     turn = swings(FRAMES, 4, 25, seed=2)
     turn[:, 2] = [rotation(axis, 0.5 * np.sin(2 * np.pi * f / FRAMES)) for f in range(FRAMES)]
     assert found_in(chain((-2.0, 1.0, 2.0), turn, along=60)) == part
+
+
+@pytest.mark.parametrize(("slide", "part"), [(0.7, -1), (1.3, 2)], ids=["1.2 times", "1.6 times"])
+def test_its_joint_may_drift_a_third_more_there_than_where_it_hangs(slide: float, part: int) -> None:
+    """The far limb slides on the trunk, and the part slides so many times as far."""
+    turn = swings(FRAMES, 4, 25, seed=2)
+    turn[:, 2] = [rotation((0.0, 0.0, 1.0), 0.5 * np.sin(2 * np.pi * f / FRAMES)) for f in range(FRAMES)]
+    body, t = chain((-2.0, 1.0, 2.0), turn, along=60), np.random.default_rng(0).normal(size=(2, FRAMES, 3))
+    off = body.t.copy()
+    off[:, 0] += 0.1 * t[0]
+    off[:, [2, 3]] += 0.1 * slide * t[1][:, None]
+    assert found_in(body._replace(t=off)) == part
+
+
+def test_part_within_a_limb_carries_nothing_but_the_limb() -> None:
+    """It twists about the axis on which the far limb's joint lies, and is flesh all the same."""
+    turn = swings(FRAMES, 8, 25, seed=2)
+    for part in (4, 5):
+        turn[:, part] = [rotation((0.0, 0.0, 1.0), 0.5 * np.sin(2 * np.pi * f * part / FRAMES)) for f in range(FRAMES)]
+    assert found_in(chain((-4.2, -1.9, -0.5, 0.5, 1.9, 3.0, 4.2), turn, along=60)) == 5
+
+
+def test_body_of_one_part_has_no_joints_and_none_goes() -> None:
+    body = chain((), swings(8, 1))
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    left = pruned(surface(body), parts, ends(body), settings=PRUNING)
+    assert left.parts.R.shape[1] == 1
+    assert unpaired_joints(body.F, body.label, left.part_tree, pairs_of(body)) == 0
+    assert found_in(body) == -1
 
 
 def test_part_of_which_a_third_limb_hangs_stays() -> None:
