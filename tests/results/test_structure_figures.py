@@ -72,6 +72,15 @@ def test_pictures_count_what_was_cut_removed_and_dropped() -> None:
     assert f"{body.kinds.count('joint')} joints left" in text[3]
 
 
+def test_parts_stand_where_the_tree_has_them_and_not_where_the_first_cut_has() -> None:
+    body = spider()
+    parts, tree = parts_of(body), tree_of(body)
+    one = RigidParts(**{name: getattr(parts, name) for name in RigidParts.model_fields} | {"label": np.zeros_like(parts.label)})
+    before = structure(fetched(body, one, tree).__getitem__, []).axes[0]
+    (squares,) = (line.get_xydata() for line in before.lines if line.get_marker() == "s")
+    assert len(np.unique(squares.round(6), axis=0)) == len(squares) == len(tree.joint_of_part) - 1
+
+
 def test_every_reason_for_which_parts_are_dropped_has_words() -> None:
     reasons = get_args(get_args(Drop)[1])
     assert set(REASONS) == set(reasons)

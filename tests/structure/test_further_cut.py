@@ -30,6 +30,8 @@ def cut(trust: float = 1.0, settings: CutParams | None = None, **params: float) 
 def test_its_joints_go_where_the_arms_turn_in_every_frame(trust: float) -> None:
     body, found = three_arms(), cut(trust)
     assert found.frame == FRAME
+    np.testing.assert_allclose(found.rotation[2], np.tile(np.eye(3), (len(found.parents), 1, 1)), atol=1e-9)
+    np.testing.assert_allclose(found.translation[2], 0.0, atol=1e-6, err_msg="the reference is the third frame")
     assert found.bare_joints.shape == (len(body.x), 3, 3), "one for each arm"
     true = np.einsum("tpxy,py->tpx", body.R, body.joints) + body.t
     away = np.linalg.norm(found.bare_joints[:, :, None] - true[:, None, 1:], axis=3).mean(axis=0)

@@ -47,7 +47,8 @@ class AgreeingCut(NamedTuple):
 def agreeing_cut(first: FirstTree, others: Sequence[FirstTree], joints: Sequence[CutJoints], size: float) -> AgreeingCut:
     """The cut with most joints that another cut has too, less those that it has alone; of equals the first.
 
-    It has no fewer such joints than the first cut, so that a cut which shows little never wins. Of two cuts it is the first.
+    It has such a joint, and no fewer of them than the first cut, so that a cut which shows little never wins. Of two cuts it is
+    the first.
 
     others, joints : trees of the other cuts, in the reference, and their joints
     size           : root of the area, mesh unit
@@ -59,8 +60,9 @@ def agreeing_cut(first: FirstTree, others: Sequence[FirstTree], joints: Sequence
     shared = [np.zeros(X.shape[1], np.bool_) for X in carried]
     for a, b in permutations(range(len(trees)), 2):
         shared[a][[i for i, _ in same_joints(carried[a], carried[b], GATE * size)]] = True
-    least = shared[0].sum()
-    which = int(np.argmax([has.sum() - (~has).sum() if has.sum() >= least else -np.inf for has in shared]))
+    least = max(shared[0].sum(), 1)
+    scores = [has.sum() - (~has).sum() if has.sum() >= least else -np.inf for has in shared]
+    which = int(np.argmax(scores))
     chosen = AgreeingCut(which, trees[which], [cut.beside(trees[which]) for cut in joints])
     if which:
         chosen.further[which - 1] = carried[0]

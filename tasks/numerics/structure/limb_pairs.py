@@ -18,8 +18,11 @@ ALIKE = 0.06
 are a pair. Pairs of people, humans and four-legged bodies have 0.003 to 0.037; two ends of a random tree may have as little."""
 
 CLEAR = 0.5
-"""That change in the change with the next best partner of either, at most: of three alike limbs none is the other's mirror
-image. Pairs of people and humans have 0.04 to 0.3, of recorded bodies 0.1 to 0.49."""
+"""That change in the change with the next best partner of either, at most. Pairs of people and humans have 0.04 to 0.3, of
+recorded bodies 0.1 to 0.49."""
+OTHERS = 0.03
+"""That change with the next best partner, at least: of three alike limbs none is the other's mirror image. People and humans
+have 0.074 and more, recorded bodies 0.036; a fore and a hind leg of a four-legged body may have less."""
 FEWEST = 4
 """Ends of a body with pairs, at least. Two can always be exchanged, and of three one distance alone says whether two can."""
 
@@ -66,6 +69,6 @@ def _partners(between: Floats) -> Ints:
     clear = [
         (a, b)
         for a, b in enumerate(best.tolist())
-        if a < b and change[a, b] < min(ALIKE, CLEAR * next_best[a], CLEAR * next_best[b])
+        if a < b and change[a, b] < min(ALIKE, *(CLEAR * next_best[[a, b]])) and next_best[[a, b]].min() > OTHERS
     ]
     return np.array(clear, np.int64).reshape(-1, 2)

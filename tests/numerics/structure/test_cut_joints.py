@@ -1,7 +1,7 @@
 """The joints of a cut in another pose."""
 
 import numpy as np
-from articulated import Known, chain, neck, swings
+from articulated import ALL_STAY, Known, chain, cut_by_height, neck, swings
 from shipped import TREE
 
 from kinetree.tasks.numerics.structure.cut_joints import cut_tree, cut_trees
@@ -47,3 +47,16 @@ def test_joints_are_given_with_hidden_bones_and_without() -> None:
         counts.append([of(found.bare).shape[1], of(found.with_bones).shape[1]])
         np.testing.assert_array_equal(of(found.tree), of(found.with_bones))
     assert counts == [[1, 2], [1, 1], [1, 1]]
+
+
+def test_of_several_takes_the_tree_has_no_slab_and_the_joints_beside_the_first_cut_have_it() -> None:
+    body = chain((-0.9, 0.9), swings(24, 3, 20.0, seed=3), blend=2.4, along=60)
+    amiss = cut_by_height(body, (0.0, 1.7)).left.parts
+    cut = Cut(body.V, amiss.label, amiss.R, amiss.t, np.zeros(amiss.R.shape[:2]))
+    tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    counts = []
+    for takes in (None, [slice(0, 12), slice(12, 24)]):
+        moving, settings = surface(body)._replace(takes=takes), ALL_STAY._replace(hidden_bones=True)
+        found = cut_trees(moving, cut, tips, None, settings)
+        counts.append([of(tree).shape[1] for tree in (found.bare, found.with_bones, found.tree)])
+    assert counts == [[2, 3, 3], [2, 3, 2]]

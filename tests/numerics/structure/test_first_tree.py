@@ -1,7 +1,8 @@
 """The tree of the first cut, as other steps read it."""
 
 import numpy as np
-from articulated import chain, neck, swings
+import pytest
+from articulated import ALL_STAY, chain, neck, swings
 from shipped import TREE
 from smeared import moving
 
@@ -62,3 +63,29 @@ def test_the_tree_of_a_cut_in_another_pose_is_the_same_tree_in_the_reference() -
     np.testing.assert_array_equal(found.graph.part, body.label)
     np.testing.assert_allclose(found.drift, found.drift_at(found.rest), atol=1e-12)
     np.testing.assert_allclose(found.graph.border_drift, own.graph.border_drift, atol=0.05)
+
+
+def test_its_borders_lie_midway_between_where_both_parts_carry_them() -> None:
+    body, frame, pose = chain((-1.0, 2.0), swings(16, 3)), 1, 5
+    R = np.einsum("tpxy,pzy->tpxz", body.R, body.R[pose])
+    t = body.t - np.einsum("tpxy,py->tpx", R, body.t[pose]) + 0.3 * np.random.default_rng(0).normal(size=body.t.shape)
+    cut = Cut(body.x[pose], body.label, R, t, body.residual)
+    tree = in_tree_order(tree_joints(moving(body)._replace(V=body.x[pose]), cut, NO_LEAVES, settings=ALL_STAY), 3)
+    found = in_reference(tree, cut, frame)
+    for (a, b), before, after, off in zip(
+        tree.graph.pair, tree.graph.centre, found.graph.centre, found.graph.border_drift, strict=True
+    ):
+        sides = [R[frame, part] @ before + t[frame, part] for part in (a, b)]
+        np.testing.assert_allclose(after, np.mean(sides, axis=0), atol=1e-9)
+        back = [np.linalg.inv(R[frame, part]) @ (after - t[frame, part]) for part in (a, b)]
+        apart = [R[f, a] @ back[0] + t[f, a] - R[f, b] @ back[1] - t[f, b] for f in range(len(R))]
+        assert off == pytest.approx(np.sqrt((np.array(apart) ** 2).sum(axis=1).mean()))
+
+
+def test_every_vertex_keeps_the_number_of_its_part_though_another_part_has_no_vertices() -> None:
+    body = chain((0.0,), swings(16, 2))
+    R, t = (np.insert(a, 1, a[:, 0], axis=1) for a in (body.R, body.t))
+    cut = Cut(body.V, np.where(body.label == 1, 2, 0), R, t, np.zeros(R.shape[:2]))
+    tree = first_tree(moving(body), cut, NO_LEAVES, settings=TREE)
+    np.testing.assert_array_equal(tree.graph.part, cut.label)
+    assert tree.graph.pair.tolist() == [[0, 2]]

@@ -40,8 +40,15 @@ def test_ends_that_do_not_are_none(z: float, paired: bool) -> None:
 
 
 def test_of_three_alike_ends_none_is_the_mirror_image_of_another() -> None:
-    around = [at(3.0, degrees) for degrees in (0.0, 120.0, 240.0)]
-    assert tips(limb_pairs(V, F, np.array([LOW, *around]))) == []
+    """By chance two of them may be more alike than either is to the third."""
+    for heights in ((3.0, 3.0, 3.0), (3.0, 3.2, 2.9), (2.8, 3.0, 3.2)):
+        around = [at(z, degrees) for z, degrees in zip(heights, (0.0, 120.0, 240.0), strict=True)]
+        assert tips(limb_pairs(V, F, np.array([LOW, *around]))) == []
+
+
+def test_a_third_end_that_is_clearly_another_hides_no_pair() -> None:
+    around = [at(3.0), at(-1.0, 120.0), at(3.0, 240.0)]
+    assert tips(limb_pairs(V, F, np.array([LOW, *around]))) == [{around[0], around[2]}]
 
 
 @pytest.mark.parametrize("leaves", [[], [LOW], [LOW, HIGH], [LOW, HIGH, at(0.0)]], ids=len)

@@ -124,7 +124,10 @@ def test_pruning_drops_it_and_says_why() -> None:
     assert lonely.dropped == ()
 
 
-@pytest.mark.parametrize(("heights", "count"), [((-1.0, 1.0), 0), ((-3.5, -1.0, 1.0, 2.2, 3.5), 1), ((-3.0, -1.0, 2.9), 1)])
+@pytest.mark.parametrize(
+    ("heights", "count"),
+    [((-1.0, 1.0), 0), ((-2.5, 1.0), 0), ((-4.0, 1.0), 2), ((-3.5, -1.0, 1.0, 2.2, 3.5), 1), ((-3.0, -1.0, 2.9), 1)],
+)
 def test_joints_without_a_partner_are_counted(heights: tuple[float, ...], count: int) -> None:
     body = bent_at(*heights)
     parts = MovingParts(body.label, body.R, body.t, body.residual)
