@@ -89,7 +89,7 @@ class KinematicTree(ArticulatedBody):
     """Joint about which each part turns, −1 for parts that were dropped."""
     dropped: tuple[tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]], ...]
     """Parts that were dropped, in that order, and why: flesh around a joint, turns too little, drifts more than it turns,
-    or the frames show no joint."""
+    the frames show no joint, or the mirror image of the limb has none there."""
     free_length: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Mean length of each joint's bone as the parts alone carry its ends, before lengths are held; 0 for the root."""
     free_deviation: Annotated[Floats, Array("float64", JOINT, unit="length")]

@@ -61,11 +61,11 @@ class JointConsensus(NamedTuple):
 
 
 def joint_consensus(rest: Floats, motion: JointMotion, others: Sequence[Floats], size: float) -> JointConsensus:
-    """Gathers for each joint of the first cut the joints of other cuts that move as it does, and averages them.
+    """Gathers for each joint of one cut the joints of other cuts that move as it does, and averages them.
 
-    Which joints there are, and how they hang together, is the first cut's alone.
+    Which joints there are, and how they hang together, is that cut's alone: the first one's, or see `agreeing_cut`.
 
-    rest   : (joint, xyz) of the first cut, in the reference, mesh unit
+    rest   : (joint, xyz) of the cut whose tree is used, in the reference, mesh unit
     motion : of the parts at these joints
     others : by cut, (frame, joint, xyz) its joints in every frame, mesh unit
     size   : root of the area, mesh unit

@@ -1,4 +1,4 @@
-"""From the first cut's tree to the finished articulated body: joints, poses, end effectors, names (2014, Sec. 6.3)."""
+"""From the tree of a cut to the finished articulated body: joints, poses, end effectors, names (2014, Sec. 6.3)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -179,7 +179,7 @@ def _posed(
 
 
 def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
-    """Joints of the first cut as all cuts place them; the root as it is."""
+    """Joints of the tree as all cuts place them; the root as it is."""
     count = len(first.rest)
     if not further:
         return JointConsensus(first.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))

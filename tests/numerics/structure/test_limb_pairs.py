@@ -41,7 +41,7 @@ def test_ends_that_do_not_are_none(z: float, paired: bool) -> None:
 
 def test_of_three_alike_ends_none_is_the_mirror_image_of_another() -> None:
     """By chance two of them may be more alike than either is to the third."""
-    for heights in ((3.0, 3.0, 3.0), (3.0, 3.2, 2.9), (2.8, 3.0, 3.2)):
+    for heights in ((3.0, 3.0, 3.0), (3.0, 3.2, 2.9), (2.8, 3.0, 3.2), (3.0, 2.5, 1.7)):
         around = [at(z, degrees) for z, degrees in zip(heights, (0.0, 120.0, 240.0), strict=True)]
         assert tips(limb_pairs(V, F, np.array([LOW, *around]))) == []
 
