@@ -7,8 +7,8 @@ from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
 Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]]
-"""A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no joint,
-or the mirror image of its limb has none there."""
+"""A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no
+joint, or the mirror image of its limb has none there."""
 
 
 class JointTree(Artifact):

@@ -1,4 +1,4 @@
-"""The tree of a cut, the first or another: which joints there are, before all cuts say where these lie (2014, Sec. 6.3; ours)."""
+"""The tree of a cut: which joints there are, before all cuts say where these lie (2014, Sec. 6.3; ours)."""
 
 from typing import NamedTuple
 

@@ -22,7 +22,7 @@ CLEAR = 0.5
 recorded bodies 0.1 to 0.49."""
 OTHERS = 0.03
 """That change with the next best partner, at least: of three alike limbs none is the other's mirror image. People and humans
-have 0.074 and more, recorded bodies 0.036; a fore and a hind leg of a four-legged body may have less."""
+have 0.085 and more, recorded bodies 0.036; a fore and a hind leg of a four-legged body may have less."""
 FEWEST = 4
 """Ends of a body with pairs, at least. Two can always be exchanged, and of three one distance alone says whether two can."""
 
