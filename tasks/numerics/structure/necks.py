@@ -76,9 +76,8 @@ def necks(
     border  : (part,) radius of the border at each joint, mesh unit
     """
     chosen, edge = settings or NecksSettings(), np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    links = edge_lengths(V, edge)
     pairs, faces = np.unique(np.sort(edge, axis=1), axis=0, return_counts=True)
-    rim = pairs[faces == 1].ravel()
+    links, rim = edge_lengths(V, pairs), pairs[faces == 1].ravel()
     for part in range(1, len(parents)):
         crossing = edge[(label[edge] == part).sum(axis=1) == 1]
         if border[part] > 0.0 and len(crossing) and not (parents == part).any():
