@@ -34,7 +34,8 @@ def edge_lengths(V: Floats, edge: Ints) -> csr_array:
     returns : (vertex, vertex) mesh unit, above 0 for every edge
     """
     length = np.maximum(np.linalg.norm(V[edge[:, 0]] - V[edge[:, 1]], axis=1), _SHORTEST)
-    return coo_array((length, (edge[:, 0], edge[:, 1])), shape=(len(V), len(V))).tocsr()
+    tail, head = edge.astype(np.int32).T  # older versions of scipy find paths over no others
+    return coo_array((length, (tail, head)), shape=(len(V), len(V))).tocsr()
 
 
 def distinct(code: Ints) -> Ints:

@@ -24,8 +24,8 @@ def pairs_of(body: Known) -> LimbPairs:
     return limb_pairs(body.V, body.F, ends(body))
 
 
-def found_in(body: Known, settings: UnpairedPartsSettings | None = None) -> int:
-    parts = MovingParts(body.label, body.R, body.t, body.residual)
+def found_in(body: Known, settings: UnpairedPartsSettings | None = None, is_aligned: bool = False) -> int:
+    parts = MovingParts(body.label, body.R, body.t, body.residual, np.ones(body.R.shape[:2]) if is_aligned else None)
     return next(unpaired_parts(body.F, parts, part_tree(surface(body), parts), pairs_of(body), settings), -1)
 
 
@@ -80,6 +80,18 @@ def test_its_joint_may_drift_a_third_more_there_than_where_it_hangs(slide: float
     off[:, 0] += 0.1 * t[0]
     off[:, [2, 3]] += 0.1 * slide * t[1][:, None]
     assert found_in(body._replace(t=off)) == part
+
+
+@pytest.mark.parametrize(("slide", "part"), [(0.02, -1), (0.05, 2)], ids=["0.05 radii", "0.13 radii"])
+def test_drift_within_the_noise_of_an_alignment_is_none(slide: float, part: int) -> None:
+    """The far limb slides by nothing on the trunk, and a little on the part."""
+    turn = swings(FRAMES, 4, 25, seed=2)
+    turn[:, 2] = [rotation((0.0, 0.0, 1.0), 0.5 * np.sin(2 * np.pi * f / FRAMES)) for f in range(FRAMES)]
+    body = chain((-2.0, 1.0, 2.0), turn, along=60)
+    off = body.t.copy()
+    off[:, [2, 3]] += slide * np.random.default_rng(0).normal(size=(FRAMES, 1, 3))
+    assert found_in(body._replace(t=off), is_aligned=True) == part
+    assert found_in(body._replace(t=off)) == 2
 
 
 def test_part_within_a_limb_carries_nothing_but_the_limb() -> None:
