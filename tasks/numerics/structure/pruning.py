@@ -106,19 +106,7 @@ def pruned(
     while evidence is not None and (gone := least_evident_joint(body, state.parts, state.part_tree, evidence)) >= 0:
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
-    pairs = limb_pairs(body.V, body.F, leaves)
-
-    def unpaired(of: Pruned) -> int:
-        return unpaired_joints(body.F, of.parts.label, of.part_tree, pairs, chosen.unpaired)
-
-    while True:
-        for gone in unpaired_parts(body.F, state.parts, state.part_tree, pairs, chosen.unpaired):
-            left = _pruned_by_motion(body, _without(body, state, gone, UNPAIRED, start, ring), leaves, chosen)
-            if unpaired(left) < unpaired(state):
-                state = left
-                break
-        else:
-            return state
+    return _pruned_by_partners(body, state, leaves, chosen)
 
 
 def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
@@ -134,6 +122,22 @@ def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, chosen: 
             fewer = _without(body, state, part, reason, start, ring)
             if fewer.part_tree.ratio.min() >= chosen.worse * state.part_tree.ratio.min():
                 state = fewer
+                break
+        else:
+            return state
+
+
+def _pruned_by_partners(body: MovingSurface, state: Pruned, leaves: Ints, chosen: PruningSettings) -> Pruned:
+    """Drops parts that the mirror image of their limb lacks, as long as fewer joints are without a partner then."""
+    start, ring = rings(body.F, len(body.V))
+    pairs = limb_pairs(body.V, body.F, leaves)
+    lonely = unpaired_joints(body.F, state.parts.label, state.part_tree, pairs, chosen.unpaired)
+    while True:
+        for gone in unpaired_parts(body.F, state.parts, state.part_tree, pairs, chosen.unpaired):
+            left = _pruned_by_motion(body, _without(body, state, gone, UNPAIRED, start, ring), leaves, chosen)
+            fewer = unpaired_joints(body.F, left.parts.label, left.part_tree, pairs, chosen.unpaired)
+            if fewer < lonely:
+                state, lonely = left, fewer
                 break
         else:
             return state

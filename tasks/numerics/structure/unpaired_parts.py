@@ -30,7 +30,6 @@ class UnpairedPartsSettings(NamedTuple):
     carries: float = 1.33
     """Drift of the mirrored limb's joint on a part of the trunk, in its drift where it hangs, below which that part carries
     both."""
-
     noise: float = 0.065
     """That drift, in radii of its border, below which the part carries both whatever it is where the limb hangs; not used where
     every vertex was followed. A slice of wave's pelvis has 0.060, flesh beside a shoulder of human 9 0.077."""
@@ -120,10 +119,10 @@ def _limbs(F: Ints, place: Ints, parents: Ints, tips: Ints, away: Floats) -> tup
     """Both limbs of a pair up to the part that carries both; place (vertex,) of each vertex's part in the tree."""
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     below = beyond(parents) > 0
-    chains = [_upwards(parents, int(place[tip])) for tip in tips]
+    carrying = below[:, place[tips]]
     limbs = []
-    for chain, others, distance in zip(chains, chains[::-1], away, strict=True):
-        part = np.array([k for k in chain if k not in others], np.int64)
+    for own, distance in zip(carrying.T, away, strict=True):
+        part = np.flatnonzero(own & ~carrying.all(axis=1))[::-1]
         inside = below[part][:, place]
         level = [_mean_distance(distance[edge[within[edge].sum(axis=1) == 1]]) for within in inside]
         limbs.append(_Limb(part, np.array(level)))
@@ -134,15 +133,6 @@ def _mean_distance(distance: Floats) -> float:
     """Of those that a path leads to; infinite where there is none."""
     reached = distance[np.isfinite(distance)]
     return float(reached.mean()) if len(reached) else np.inf
-
-
-def _upwards(parents: Ints, part: int) -> list[int]:
-    """The part and all that carry it."""
-    chain = []
-    while part >= 0:
-        chain.append(part)
-        part = int(parents[part])
-    return chain
 
 
 def _have_partners(one: _Limb, other: _Limb, radius: Floats, chosen: UnpairedPartsSettings) -> tuple[Flags, Flags]:
