@@ -5,12 +5,18 @@ from types import SimpleNamespace
 
 import numpy as np
 from results.rigged_bodies import spider
-from results.sample_derivation import parts_of
+from results.sample_derivation import parts_of, tree_of
 from results.sample_report import page_artifacts
 
 from kinetree.schemas.results.excerpt import ExcerptParams
 from kinetree.schemas.results.report import ReportParams
-from kinetree.tasks.results.page.alternatives import angles_words, confidence_words, elimination_words, tree_words
+from kinetree.tasks.results.page.alternatives import (
+    angles_words,
+    confidence_words,
+    elimination_words,
+    structure_words,
+    tree_words,
+)
 from kinetree.tasks.results.plots.motion import joint_angles
 from kinetree.tasks.results.report import report
 
@@ -43,6 +49,14 @@ def test_pieces_of_one_part_count_once_and_are_named() -> None:
     assert elimination_words(halved).endswith(f"{left - 1} are left, {len(parts.removed)} removed. Cut apart of those left: 1.")
     origin[-2] = origin[0]
     assert elimination_words(SimpleNamespace(**{**vars(parts), "origin": origin})).endswith("Cut apart of those left: 1.")
+
+
+def test_a_tree_of_another_cut_than_the_first_says_whose_it_is() -> None:
+    body, tree = spider(), tree_of(spider())
+    own = structure_words(body, tree)
+    assert own.endswith(f"beside it the tree with {body.kinds.count('joint')} joints.")
+    other = structure_words(body, SimpleNamespace(**{**vars(tree), "cut_frame": 9}))
+    assert other == f"{own} It is of the cut in frame 9, which others agree with most."
 
 
 def test_every_picture_of_a_page_says_more_than_its_caption() -> None:
