@@ -4,7 +4,8 @@ An alignment slides, most of all about the axes of thin limbs that are cut diffe
 together looks like a part that turns. So two parts are laid on the surface as one rigid piece, by iterated closest points
 (Besl, McKay 1992), and the smaller of them once more by itself: only if that is nearer does the surface show a joint. A part
 that moves much farther than its own triangles are rough has a joint without a test. Where the body has such a joint, the
-other joints need less evidence.
+other joints need less evidence. A joint whose mirror image in the other limb of a pair is shown needs none: a wrist that hardly
+turns has the place that the other one has.
 """
 
 from collections.abc import Callable
@@ -128,10 +129,14 @@ class FrameEvidence(NamedTuple):
         return self.known[key]
 
 
-def least_evident_joint(body: MovingSurface, parts: MovingParts, tree: PartTree, evidence: FrameEvidence) -> int:
-    """The smaller part at the joint that the frames show least; −1 where they show all joints.
+def least_evident_joint(
+    body: MovingSurface, parts: MovingParts, tree: PartTree, evidence: FrameEvidence, partner: Ints | None = None
+) -> int:
+    """The smaller part at the joint that the frames show least; −1 where they show all joints, or the mirror images of those
+    that they do not.
 
     body, parts, tree : the reference and its vertices in all frames · its rigid parts · their tree
+    partner           : (part,) see `joint_partners`; None where no joint has one
     """
     chosen = evidence.settings
     roughness = _roughness(body)
@@ -141,7 +146,11 @@ def least_evident_joint(body: MovingSurface, parts: MovingParts, tree: PartTree,
     pairs = [sorted(both, key=lambda p: (mass[p], p)) for both in sides]
     scores = np.array([_score(body, parts, evidence, roughness, small, large) for small, large in pairs])
     needed = chosen.misfit_ratio_if_moving if np.isinf(scores).any() else chosen.misfit_ratio
-    return pairs[int(scores.argmin())][0] if (scores < needed).any() else -1
+    is_shown = scores >= needed
+    if partner is not None:
+        is_shown |= (partner[1:] > 0) & is_shown[np.maximum(partner[1:], 1) - 1]
+    unseen = np.where(is_shown, np.inf, scores)
+    return pairs[int(unseen.argmin())][0] if not is_shown.all() else -1
 
 
 def _score(

@@ -12,8 +12,9 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
+from kinetree.tasks.numerics.structure.joint_partners import joint_partners
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
-from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
 from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_joints, unpaired_parts
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
@@ -103,10 +104,15 @@ def pruned(
     start, ring = rings(body.F, len(body.V))
     tree = part_tree(body, parts)
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, chosen)
-    while evidence is not None and (gone := least_evident_joint(body, state.parts, state.part_tree, evidence)) >= 0:
+    pairs = limb_pairs(body.V, body.F, leaves)
+    while evidence is not None:
+        partner = joint_partners(body.F, state.parts.label, state.part_tree, pairs, chosen.unpaired.paired)
+        gone = least_evident_joint(body, state.parts, state.part_tree, evidence, partner)
+        if gone < 0:
+            break
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, chosen)
-    return _pruned_by_partners(body, state, leaves, chosen)
+    return _pruned_by_partners(body, state, leaves, pairs, chosen)
 
 
 def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
@@ -127,10 +133,9 @@ def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, chosen: 
             return state
 
 
-def _pruned_by_partners(body: MovingSurface, state: Pruned, leaves: Ints, chosen: PruningSettings) -> Pruned:
+def _pruned_by_partners(body: MovingSurface, state: Pruned, leaves: Ints, pairs: LimbPairs, chosen: PruningSettings) -> Pruned:
     """Drops parts that the mirror image of their limb lacks, as long as fewer joints are without a partner then."""
     start, ring = rings(body.F, len(body.V))
-    pairs = limb_pairs(body.V, body.F, leaves)
     lonely = unpaired_joints(body.F, state.parts.label, state.part_tree, pairs, chosen.unpaired)
     while True:
         for gone in unpaired_parts(body.F, state.parts, state.part_tree, pairs, chosen.unpaired):

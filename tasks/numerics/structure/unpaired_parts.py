@@ -9,10 +9,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.structure.articulated_fit import beyond
+from kinetree.tasks.numerics.arrays import Flags, Ints
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, MirroredLimbs, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
@@ -21,8 +20,8 @@ from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
 class UnpairedPartsSettings(NamedTuple):
     """What makes a part with an unpaired joint flesh; lengths in radii of the smaller border. See RESULTS."""
 
-    paired: float = 2.5
-    """By how much two joints of mirrored limbs may differ in their distance from the end of the limb to be partners."""
+    paired: float = PAIRED
+    """See `joint_partners`."""
     near: float = 1.8
     """Distance of the unpaired joint from a paired one beside it, at most."""
     near_end: float = 1.25
@@ -33,17 +32,6 @@ class UnpairedPartsSettings(NamedTuple):
     noise: float = 0.065
     """That drift, in radii of its border, below which the part carries both whatever it is where the limb hangs; not used where
     every vertex was followed. A slice of wave's pelvis has 0.060, flesh beside a shoulder of human 9 0.077."""
-
-
-class _Limb(NamedTuple):
-    """A limb from its end inwards.
-
-    part  : (part,) place of each part in the tree
-    level : (part,) distance of its joint from the end over the surface, mesh unit
-    """
-
-    part: Ints
-    level: Floats
 
 
 class _Slice(NamedTuple):
@@ -72,7 +60,8 @@ def unpaired_parts(
     if len(found.tree.order) < 2:
         return
     chosen = settings or UnpairedPartsSettings()
-    slices = [s for tips, away in zip(*pairs, strict=True) for s in _slices(F, parts.label, found, tips, away, chosen)]
+    limbs = mirrored_limbs(F, parts.label, found, pairs, chosen.paired)
+    slices = [piece for pair in limbs for piece in _slices(found, pair, chosen)]
     for piece in sorted(slices, key=lambda s: (s.distance, s.part)):
         if not piece.on_trunk or not _carries_both(parts, found, piece, chosen):
             yield int(found.tree.order[piece.part])
@@ -88,22 +77,17 @@ def unpaired_joints(
     """
     if len(found.tree.order) < 2:
         return 0
-    chosen, radius = settings or UnpairedPartsSettings(), found.borders.radius[found.tree.border]
-    place, count = np.argsort(found.tree.order)[label], 0
-    for tips, away in zip(*pairs, strict=True):
-        limbs = _limbs(F, place, found.tree.parents, tips, away)
-        count += sum(int((~has).sum()) for has in _have_partners(*limbs, radius, chosen))
-    return count
+    paired = (settings or UnpairedPartsSettings()).paired
+    return sum(int((~has).sum()) for limbs in mirrored_limbs(F, label, found, pairs, paired) for has in _have_partners(limbs))
 
 
-def _slices(F: Ints, label: Ints, found: PartTree, tips: Ints, away: Floats, chosen: UnpairedPartsSettings) -> Iterator[_Slice]:
+def _slices(found: PartTree, limbs: MirroredLimbs, chosen: UnpairedPartsSettings) -> Iterator[_Slice]:
     """The parts between an unpaired joint and a paired one near it, of both limbs of a pair."""
-    parents, row = found.tree.parents, found.tree.border
+    parents, row, (one, other, _) = found.tree.parents, found.tree.border, limbs
     radius, rest = found.borders.radius[row], found.joints.rest[row]
-    one, other = _limbs(F, np.argsort(found.tree.order)[label], parents, tips, away)
     if not len(one.part) or not len(other.part):
         return
-    for limb, mirror, has_partner in zip((one, other), (other, one), _have_partners(one, other, radius, chosen), strict=True):
+    for limb, mirror, has_partner in zip((one, other), (other, one), _have_partners(limbs), strict=True):
         for joint in np.flatnonzero(~has_partner).tolist():
             for beside in (joint - 1, joint + 1):
                 if 0 <= beside < len(limb.part) and has_partner[beside]:
@@ -115,36 +99,11 @@ def _slices(F: Ints, label: Ints, found: PartTree, tips: Ints, away: Floats, cho
                         yield _Slice(part, distance, inner == len(limb.part) - 1, int(mirror.part[-1]))
 
 
-def _limbs(F: Ints, place: Ints, parents: Ints, tips: Ints, away: Floats) -> tuple[_Limb, _Limb]:
-    """Both limbs of a pair up to the part that carries both; place (vertex,) of each vertex's part in the tree."""
-    edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    below = beyond(parents) > 0
-    carrying = below[:, place[tips]]
-    limbs = []
-    for own, distance in zip(carrying.T, away, strict=True):
-        part = np.flatnonzero(own & ~carrying.all(axis=1))[::-1]
-        inside = below[part][:, place]
-        level = [_mean_distance(distance[edge[within[edge].sum(axis=1) == 1]]) for within in inside]
-        limbs.append(_Limb(part, np.array(level)))
-    return limbs[0], limbs[1]
-
-
-def _mean_distance(distance: Floats) -> float:
-    """Of those that a path leads to; infinite where there is none."""
-    reached = distance[np.isfinite(distance)]
-    return float(reached.mean()) if len(reached) else np.inf
-
-
-def _have_partners(one: _Limb, other: _Limb, radius: Floats, chosen: UnpairedPartsSettings) -> tuple[Flags, Flags]:
-    """Which joints of two limbs are as far from their ends as one of the other limb."""
-    with np.errstate(invalid="ignore"):  # joints that no path leads to have no partner
-        apart = np.abs(one.level[:, None] - other.level) / np.minimum(radius[one.part][:, None], radius[other.part])
-    cost = np.minimum(np.nan_to_num(apart, nan=chosen.paired, posinf=chosen.paired), chosen.paired)
-    rows, columns = linear_sum_assignment(cost)
-    close = cost[rows, columns] < chosen.paired
-    flags = np.zeros(len(one.part), np.bool_), np.zeros(len(other.part), np.bool_)
-    flags[0][rows[close]] = True
-    flags[1][columns[close]] = True
+def _have_partners(limbs: MirroredLimbs) -> tuple[Flags, Flags]:
+    """Which joints of two limbs have a partner."""
+    flags = np.zeros(len(limbs.one.part), np.bool_), np.zeros(len(limbs.other.part), np.bool_)
+    for has, row in zip(flags, limbs.row.T, strict=True):
+        has[row] = True
     return flags
 
 

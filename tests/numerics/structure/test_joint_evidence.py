@@ -121,3 +121,45 @@ def test_joint_needs_less_where_another_moves_clearly(
     monkeypatch.setattr(numerics, "_score", scored)
     found = least_evident_joint(body, parts, part_tree(body, parts), evidence)
     assert found == (asked[1] if goes else -1)
+
+
+@pytest.mark.parametrize(
+    ("scores", "partner", "goes"),
+    [
+        ((2.0, 1.3), None, 1),
+        ((2.0, 1.3), (-1, 2, 1), None),
+        ((1.4, 1.3), (-1, 2, 1), 1),
+        ((1.3, 2.0), (-1, 2, 1), None),
+        ((2.0, 1.3), (-1, -1, -1), 1),
+    ],
+    ids=["no partners known", "the partner is shown", "neither is", "the first one's is", "none has one"],
+)
+def test_joint_whose_mirror_image_is_shown_stays(
+    scores: tuple[float, float], partner: tuple[int, ...] | None, goes: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
+    told, asked = iter(scores), []
+
+    def scored(*of: object) -> float:
+        asked.append(int(str(of[4])))
+        return next(told)
+
+    monkeypatch.setattr(numerics, "_score", scored)
+    found = least_evident_joint(body, parts, part_tree(body, parts), evidence, None if partner is None else np.array(partner))
+    assert found == (-1 if goes is None else asked[goes])
+
+
+def test_pruning_asks_for_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two joints of mirrored limbs the frames show one; alone it would go."""
+    body, parts, evidence = looked_at(chain((-2.0, 2.0)), chain((-2.0, 2.0)))
+    sides = [int(np.argmin(np.linalg.norm(body.V - [x, 0.0, 0.0], axis=1))) for x in (1.0, -1.0)]
+    tips = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax(), *sides])
+
+    def score(body: MovingSurface, parts: MovingParts, *of: object) -> float:
+        return 2.0 if body.V[parts.label == of[2], 2].mean() > 0 else 1.3
+
+    monkeypatch.setattr(numerics, "_score", score)
+    count = [
+        pruned(body, parts, ends, evidence, settings=PRUNING._replace(degrees=0.0, ratio=0.0)) for ends in (tips, tips[1:])
+    ]
+    assert [left.parts.R.shape[1] for left in count] == [3, 2]

@@ -1,0 +1,67 @@
+"""Joints of mirrored limbs that lie equally far from the ends of their limbs are partners."""
+
+import numpy as np
+import pytest
+from articulated import Known, chain, surface, swings
+
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, joint_partners, mirrored_limbs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, part_tree
+
+
+def looked_at(*heights: float) -> tuple[Known, PartTree, LimbPairs]:
+    """A tube in parts that bend at these heights, whose ends are a pair; two more on its sides, without which none is known."""
+    body = chain(heights, swings(24, len(heights) + 1, 25, seed=2), along=60)
+    sides = [int(np.argmin(np.linalg.norm(body.V - [x, 0.0, 0.0], axis=1))) for x in (1.0, -1.0)]
+    ends = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax(), *sides])
+    tree = part_tree(surface(body), MovingParts(body.label, body.R, body.t, body.residual))
+    return body, tree, limb_pairs(body.V, body.F, ends)
+
+
+def partners(*heights: float, paired: float = PAIRED) -> dict[float, float]:
+    """By height of a joint, that of its partner."""
+    body, tree, pairs = looked_at(*heights)
+    found = joint_partners(body.F, body.label, tree, pairs, paired)
+    height = np.append(np.nan, tree.joints.rest[tree.tree.border[1:], 2]).round(1)
+    return {float(height[k]): float(height[p]) for k, p in enumerate(found) if p >= 0}
+
+
+@pytest.mark.parametrize(
+    ("heights", "found"),
+    [
+        ((-1.0, 1.0), {-1.0: 1.0, 1.0: -1.0}),
+        ((-3.5, -1.0, 1.0, 3.5), {-3.5: 3.5, -1.0: 1.0, 1.0: -1.0, 3.5: -3.5}),
+        ((-3.5, -1.0, 1.0), {-1.0: 1.0, 1.0: -1.0}),
+        ((-4.0, 1.0), {}),
+    ],
+    ids=["a pair", "two pairs", "one without", "too far apart"],
+)
+def test_equally_far_from_the_ends(heights: tuple[float, ...], found: dict[float, float]) -> None:
+    assert partners(*heights) == found
+
+
+@pytest.mark.parametrize(("paired", "found"), [(0.9, {}), (1.1, {-2.0: 1.0, 1.0: -2.0})])
+def test_how_far_apart_they_may_be(paired: float, found: dict[float, float]) -> None:
+    """In radii: they differ by one."""
+    assert partners(-2.0, 1.0, paired=paired) == found
+
+
+def test_limb_is_told_from_its_end_inwards() -> None:
+    body, tree, pairs = looked_at(-3.5, -1.0, 1.0)
+    limbs = next(found for found in mirrored_limbs(body.F, body.label, tree, pairs) if len(found.one.part))
+    levels = sorted((limbs.one.level, limbs.other.level), key=len)
+    assert [len(level) for level in levels] == [1, 2]
+    np.testing.assert_allclose(levels[1][1] - levels[1][0], 2.5, atol=0.2)
+    assert [tree.tree.parents[limb.part[-1]] for limb in (limbs.one, limbs.other)] == [0, 0]
+    assert limbs.row.tolist() in ([[1, 0]], [[0, 1]])
+
+
+def test_body_of_one_part_has_no_partners() -> None:
+    body, tree, pairs = looked_at()
+    assert joint_partners(body.F, body.label, tree, pairs).tolist() == [-1]
+
+
+def test_body_without_pairs_has_none() -> None:
+    body, tree, _ = looked_at(-1.0, 1.0)
+    none = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, len(body.V))))
+    assert joint_partners(body.F, body.label, tree, none).tolist() == [-1, -1, -1]
