@@ -7,11 +7,15 @@ from smeared import Frames, aligned, turning
 from kinetree.schemas.input.mesh import Cleaning, Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
 from kinetree.schemas.structure.first_tree import FirstTree
+from kinetree.schemas.structure.further_cut import FurtherCut
+from kinetree.schemas.structure.kinematic_tree import AgreedTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.structure.agreed_tree import agreed_tree
 from kinetree.tasks.structure.end_rings import end_rings
 from kinetree.tasks.structure.extended_tree import extended_tree
 
@@ -48,19 +52,31 @@ def task_inputs(V: np.ndarray, F: np.ndarray, x: np.ndarray) -> tuple[Reference,
     return reference, aligned, leaves
 
 
-def judged(
+def agreed(
     first: FirstTree,
+    reference: Reference,
+    alignment: dict[int, Alignment],
+    leaves: Leaves,
+    further: dict[int, FurtherCut] | None = None,
+    params: AgreedTreeParams | None = None,
+) -> AgreedTree:
+    """The first tree as further cuts leave it; without any as it is."""
+    return agreed_tree(reference, first, further or {}, alignment, leaves, params or AgreedTreeParams())
+
+
+def judged(
+    tree: AgreedTree,
     reference: Reference,
     alignment: dict[int, Alignment],
     mesh: dict[int, Mesh],
 ) -> tuple[EndRings, ...]:
     """What the frames of every run show of rings at ends."""
-    runs = [first.members("judged/frame", (k,)) for k in first.members("judged", ())]
-    return tuple(end_rings(reference, first, {f: alignment[f] for f in run}, {f: mesh[f] for f in run}) for run in runs)
+    runs = [tree.members("judged/frame", (k,)) for k in tree.members("judged", ())]
+    return tuple(end_rings(reference, tree, {f: alignment[f] for f in run}, {f: mesh[f] for f in run}) for run in runs)
 
 
 def extended(
-    first: FirstTree,
+    tree: AgreedTree,
     reference: Reference,
     alignment: dict[int, Alignment],
     mesh: dict[int, Mesh],
@@ -68,8 +84,8 @@ def extended(
     surface_joints: bool = True,
 ) -> ExtendedTree:
     """The tree with joints at ends."""
-    rings, params = judged(first, reference, alignment, mesh), ExtendedTreeParams(surface_joints=surface_joints)
-    return extended_tree(reference, first, rings, alignment, mesh, leaves, params)
+    rings, params = judged(tree, reference, alignment, mesh), ExtendedTreeParams(surface_joints=surface_joints)
+    return extended_tree(reference, tree, rings, alignment, mesh, leaves, params)
 
 
 def tube(trust: float) -> tuple[Reference, RigidParts, dict[int, Alignment], dict[int, Mesh], Leaves]:

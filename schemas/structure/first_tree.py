@@ -1,14 +1,13 @@
 """The tree of the first cut: which joints there are, and how far off its joints may be (2014, Sec. 6.3)."""
 
-from collections.abc import Sequence
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
-from kinetree.schemas.array import Array, Artifact, Floats, Index, Ints
+from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
-Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]]
+Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired", "alone"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no
-joint, or the mirror image of its limb has none there."""
+joint, the mirror image of its limb has none there, or no other cut has it and it is not needed."""
 
 
 class JointTree(Artifact):
@@ -59,14 +58,3 @@ class JointTree(Artifact):
 
 class FirstTree(JointTree):
     """The joints that the first cut shows."""
-
-    opens: ClassVar[tuple[str, ...]] = ("judged", "judged/frame")
-    judged: tuple[tuple[int, ...], ...] = ()
-    """Source frames in which rings at ends of limbs are judged, in runs of a few that follow each other: each is a member of
-    "judged". Empty where joints at ends are not looked for."""
-    is_given: bool = False
-    """Whether the frames give the correspondence, so that their surfaces say nothing more."""
-
-    def members(self, space: str, index: Index) -> Sequence[int]:
-        """The runs of frames in which rings are judged, numbered from 0, or the source frames of one."""
-        return range(len(self.judged)) if space == "judged" else self.judged[index[0]]

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from pydantic import Field
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, VERTEX, XYZ
 from kinetree.schemas.structure.extended_tree import ExtendedTreeParams
+from kinetree.schemas.structure.first_tree import Drop
 from kinetree.schemas.structure.skeleton import ArticulatedBody
 
 MOST_TOGETHER = 2
@@ -47,6 +48,10 @@ class CutJointsParams(PruningParams):
 class FirstTreeParams(JointParams, CutJointsParams):
     """What counts as a joint, and where joints are looked for."""
 
+
+class AgreedTreeParams(PruningParams):
+    """What counts as a joint, and whether joints at ends of limbs are looked for."""
+
     end_joints: bool = True
     """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
 
@@ -59,7 +64,7 @@ class NeckParams(Params):
     not where connectivity is fixed, since motion shows both there."""
 
 
-class KinematicTreeParams(NeckParams, ExtendedTreeParams, FirstTreeParams):
+class KinematicTreeParams(NeckParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
     """What counts as a joint, and where joints are looked for and placed."""
 
 
@@ -87,9 +92,8 @@ class KinematicTree(ArticulatedBody):
     """Range of their turning against each other; NaN for borders that the spanning tree of all parts does not have."""
     joint_of_part: Annotated[Ints, Array("int32", PART)]
     """Joint about which each part turns, −1 for parts that were dropped."""
-    dropped: tuple[tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired"]], ...]
-    """Parts that were dropped, in that order, and why: flesh around a joint, turns too little, drifts more than it turns,
-    the frames show no joint, or the mirror image of the limb has none there."""
+    dropped: tuple[Drop, ...]
+    """Parts that were dropped, in that order."""
     free_length: Annotated[Floats, Array("float64", JOINT, unit="length")]
     """Mean length of each joint's bone as the parts alone carry its ends, before lengths are held; 0 for the root."""
     free_deviation: Annotated[Floats, Array("float64", JOINT, unit="length")]

@@ -1,5 +1,6 @@
 """Step III, the mesoscopic view: rigid parts, their tree, poses (2014, Sec. 6 and 7.3)."""
 
+from kinetree.tasks.structure.agreed_tree import agreed_tree
 from kinetree.tasks.structure.cut_poses import cut_poses
 from kinetree.tasks.structure.end_rings import end_rings
 from kinetree.tasks.structure.error_bars import error_bars
@@ -19,6 +20,7 @@ STRUCTURE = (
     cut_poses,
     further_cut,
     first_tree,
+    agreed_tree,
     end_rings,
     extended_tree,
     laid_parts,

@@ -9,8 +9,8 @@ from kinetree.pipeline.task import task
 from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
-from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure import end_rings as numerics
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
@@ -18,14 +18,14 @@ from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
 
 @task(over="judged")
 def end_rings(
-    reference: Reference, first_tree: FirstTree, alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh]
+    reference: Reference, agreed_tree: AgreedTree, alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh]
 ) -> EndRings:
     """Lays the last parts of limbs on the frames' surfaces, as one piece and with a hinge at several rings (ours)."""
     V, F, area = area_of(reference)
-    tree, frame = restored(first_tree), np.array([first_tree.frames.index(f) for f in mesh])
+    tree, frame = restored(agreed_tree), np.array([agreed_tree.frames.index(f) for f in mesh])
     rings = numerics.end_rings(V, F, area, tree)
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
-    surface = cache(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
+    surface = cache(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
     fits: list[numerics.Fits] = [{} for _ in rings]
     numerics.lay_rings(numerics.EndFrames.of(tree, area, frame, confidence, surface), frame, rings, fits)
     return EndRings(**numerics.EndRings.of(frame, fits)._asdict())

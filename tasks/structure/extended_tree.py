@@ -10,9 +10,9 @@ from kinetree.schemas.input.mesh import Mesh
 from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
+from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
-from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import end_rings as rings_numerics
@@ -32,7 +32,7 @@ READY = 64
 @task(among=Sequence, block="kinematic_tree")
 def extended_tree(
     reference: Reference,
-    first_tree: FirstTree,
+    agreed_tree: AgreedTree,
     end_rings: tuple[EndRings, ...],
     alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
@@ -40,12 +40,12 @@ def extended_tree(
     params: ExtendedTreeParams,
 ) -> ExtendedTree:
     """Adds the joints at ends of limbs that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
-    frames, tree = first_tree.frames, restored(first_tree)
-    ends = _ends(reference, first_tree, tree, end_rings, alignment, mesh)
+    frames, tree = agreed_tree.frames, restored(agreed_tree)
+    ends = _ends(reference, agreed_tree, tree, end_rings, alignment, mesh)
     if ends:
         body = aligned_body(reference, alignment, leaves)
         tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
-    laid = laid_frames(len(frames)).tolist() if params.surface_joints and not first_tree.is_given else []
+    laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
     return ExtendedTree(
         frames=frames, laid=tuple(frames[t] for t in laid), ends=len(ends), end_positions=tree.end_x, **fields_of(tree)
     )
@@ -53,7 +53,7 @@ def extended_tree(
 
 def _ends(
     reference: Reference,
-    first_tree: FirstTree,
+    agreed_tree: AgreedTree,
     tree: tree_numerics.FirstTree,
     end_rings: tuple[EndRings, ...],
     alignment: Mapping[int, Alignment],
@@ -64,8 +64,8 @@ def _ends(
         return []
     names, (V, F, area) = rings_numerics.EndRings._fields, area_of(reference)
     runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
-    surface = lru_cache(maxsize=READY)(prepared(mesh, first_tree.frames, float(np.sqrt(area.sum()))))
+    surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
     frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
     rings = rings_numerics.end_rings(V, F, area, tree)
-    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(first_tree.frames))
+    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(agreed_tree.frames))

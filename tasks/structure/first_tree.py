@@ -14,7 +14,6 @@ from kinetree.schemas.structure.kinematic_tree import FirstTreeParams, JointPara
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import first_tree as numerics
-from kinetree.tasks.numerics.structure.end_joints import judged_runs
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, JointEvidenceSettings
 from kinetree.tasks.numerics.structure.pruning import PruningSettings
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
@@ -48,10 +47,7 @@ def first_tree(
         None if body.is_given else evidence,
         settings=tree_settings(params)._replace(hidden_bones=params.hidden_bones and body.is_given),
     )
-    is_judged = params.end_joints and body.confidence is not None
-    runs = judged_runs(len(frames), body.surface.takes) if is_judged else []
-    judged = tuple(tuple(frames[t] for t in run) for run in runs)
-    return FirstTree(frames=frames, judged=judged, is_given=body.is_given, **fields_of(tree))
+    return FirstTree(frames=frames, **fields_of(tree))
 
 
 def evidence_settings(params: JointParams) -> JointEvidenceSettings:

@@ -1,7 +1,7 @@
 """Rings at ends of limbs as the task gives them."""
 
 import numpy as np
-from aligned_body import judged, tube
+from aligned_body import agreed, judged, tube
 
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.structure.kinematic_tree import FirstTreeParams
@@ -11,7 +11,7 @@ from kinetree.tasks.structure.first_tree import first_tree
 def runs() -> tuple[EndRings, ...]:
     reference, parts, alignment, mesh, leaves = tube(0.99)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    return judged(first, reference, alignment, mesh)
+    return judged(agreed(first, reference, alignment, leaves), reference, alignment, mesh)
 
 
 def test_runs_of_frames_together_are_all_frames_and_have_the_same_rings() -> None:

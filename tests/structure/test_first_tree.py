@@ -12,8 +12,8 @@ from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.first_tree import first_tree
 
 
-def tree_of_tube(trust: float, **params: float) -> FirstTree:
-    return first_tree(*tube(trust), FirstTreeParams(**params))
+def tree_of_tube(trust: float) -> FirstTree:
+    return first_tree(*tube(trust), FirstTreeParams())
 
 
 @pytest.mark.parametrize("trust", [0.99, 1.0])
@@ -28,15 +28,6 @@ def test_other_tasks_read_what_the_numerics_gave(trust: float, monkeypatch: pyte
                 np.testing.assert_array_equal(value, getattr(other, name), err_msg=name)
             elif not isinstance(value, tuple):
                 assert value == getattr(other, name), name
-
-
-def test_frames_in_which_rings_are_judged_are_a_few_at_a_time_and_none_where_all_is_given_or_it_is_not_asked() -> None:
-    tree = tree_of_tube(0.99)
-    runs = [tree.members("judged/frame", (k,)) for k in tree.members("judged", ())]
-    assert [len(run) for run in runs] == [5, 5, 5, 5, 4]
-    assert [frame for run in runs for frame in run] == list(tree.frames)
-    assert tree_of_tube(1.0).judged == tree_of_tube(0.99, end_joints=False).judged == ()
-    assert (tree.is_given, tree_of_tube(1.0).is_given) == (False, True)
 
 
 def test_it_is_made_beside_further_cuts() -> None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from aligned_body import FIRST, extended, rigid
+from aligned_body import FIRST, agreed, extended, rigid
 from articulated import Known, chain, swings, three_arms
 from pydantic import ValidationError
 from smeared import END, Frames, aligned, turning
@@ -59,14 +59,14 @@ def tree_of(
         f: surface(*(surfaces(k) if surfaces else (x, body.F))) for k, (f, x) in enumerate(zip(frames, body.x, strict=True))
     }
     chosen = KinematicTreeParams(**params)
-    first = extended(
-        first_tree(reference, parts, aligned, mesh, leaves, chosen), reference, aligned, mesh, leaves, chosen.surface_joints
-    )
-    runs = [first.members("laid/frame", (k,)) for k in first.members("laid", ())]
-    laid = tuple(laid_parts(reference, first, {f: mesh[f] for f in run}) for run in runs)
     poses = CutPoses(frames=cut_frames)
     cuts = {f: further_cut(poses, reference, aligned, leaves, CutJointsParams(), (f,)) for f in cut_frames}
-    return kinematic_tree(reference, first, cuts, laid, aligned, leaves, chosen)
+    first = first_tree(reference, parts, aligned, mesh, leaves, chosen)
+    agreeing = agreed(first, reference, aligned, leaves, cuts, chosen)
+    tree = extended(agreeing, reference, aligned, mesh, leaves, chosen.surface_joints)
+    runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
+    laid = tuple(laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in runs)
+    return kinematic_tree(reference, tree, cuts, laid, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

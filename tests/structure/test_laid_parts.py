@@ -1,7 +1,7 @@
 """Parts on surfaces as the task gives them."""
 
 import numpy as np
-from aligned_body import extended, tube
+from aligned_body import agreed, extended, tube
 
 from kinetree.schemas.structure.kinematic_tree import FirstTreeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
@@ -14,7 +14,7 @@ def runs() -> list[LaidParts]:
     """A few frames at a time."""
     reference, parts, alignment, mesh, leaves = tube(0.99)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    tree = extended(first, reference, alignment, mesh, leaves)
+    tree = extended(agreed(first, reference, alignment, leaves), reference, alignment, mesh, leaves)
     members = (tree.members("laid/frame", (k,)) for k in tree.members("laid", ()))
     return [laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in members]
 

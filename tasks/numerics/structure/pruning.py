@@ -19,9 +19,9 @@ from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurfa
 from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_joints, unpaired_parts
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
-FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED = "flesh", "still", "sliding", "unevident", "unpaired"
+FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE = "flesh", "still", "sliding", "unevident", "unpaired", "alone"
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
-flesh that the mirror image of its limb lacks."""
+flesh that the mirror image of its limb lacks, or that no other cut has."""
 
 
 class PruningSettings(NamedTuple):
@@ -59,7 +59,7 @@ class PruningSettings(NamedTuple):
     """A part is dropped only if the worst ratio without it is at least this share of the worst ratio with it. Not recorded.
     Halved or doubled it moves no joint of two generated bodies; it guards parts without which the tree would be worse."""
     unpaired: UnpairedPartsSettings = UnpairedPartsSettings()
-    """What makes a part flesh that the mirror image of its limb lacks."""
+    """What makes a part flesh that the mirror image of its limb lacks, or that no other cut has."""
 
 
 class Dropped(NamedTuple):
@@ -100,7 +100,7 @@ def pruned(
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
     """
-    chosen = settings if len(body.takes or ()) > 1 else settings._replace(slab_length=0.0)
+    chosen = _by_takes(body, settings)
     start, ring = rings(body.F, len(body.V))
     tree = part_tree(body, parts)
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, chosen)
@@ -118,6 +118,22 @@ def pruned(
 def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
     """The same without a part that turned out to be flesh, whose vertices go to the parts around it."""
     return _without(body, state, gone, FLESH, *rings(body.F, len(body.V)))
+
+
+def pruned_without(
+    body: MovingSurface, state: Pruned, gone: int, reason: str, leaves: Ints, settings: PruningSettings
+) -> Pruned:
+    """The same without one part, by its number among those that are left, and without those that are weak then.
+
+    leaves : (leaf,) vertices at the ends of limbs
+    """
+    left = _without(body, state, gone, reason, *rings(body.F, len(body.V)))
+    return _pruned_by_motion(body, left, leaves, _by_takes(body, settings))
+
+
+def _by_takes(body: MovingSurface, settings: PruningSettings) -> PruningSettings:
+    """Slabs count where there are several takes."""
+    return settings if len(body.takes or ()) > 1 else settings._replace(slab_length=0.0)
 
 
 def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, chosen: PruningSettings) -> Pruned:

@@ -130,18 +130,22 @@ def tree_joints(
     used, label, R, t, residual = _used(label, cut.R, cut.t, cut.residual)
     seen = None if confidence is None else confident_share(label, body.area, confidence, len(body.x), R.shape[1])
     left = pruned(body, MovingParts(label, R, t, residual, seen), leaves, evidence, settings=settings.pruning)
-    return _of_parts(body, left, used, used[label], confidence, settings)
+    return tree_of_parts(body, left, used, used[label], confidence, settings)
 
 
 def without_part(body: MovingSurface, found: TreeJoints, part: int, settings: KinematicTreeSettings) -> TreeJoints:
     """The tree without a part that is flesh, by its number among those that are left; every vertex of the body was followed."""
-    return _of_parts(body, without_flesh(body, found.left, part), found.used, found.part, None, settings)
+    return tree_of_parts(body, without_flesh(body, found.left, part), found.used, found.part, None, settings)
 
 
-def _of_parts(
+def tree_of_parts(
     body: MovingSurface, left: Pruned, used: Ints, part: Ints, confidence: Floats | None, chosen: KinematicTreeSettings
 ) -> TreeJoints:
-    """The joints of the parts that are left."""
+    """The joints of the parts that are left.
+
+    used, part : see `TreeJoints`
+    confidence : (frame, vertex) 0 to 1; None where every vertex was followed
+    """
     V, F, x, area, _ = body
     tree = left.part_tree.tree
     label = np.argsort(tree.order)[left.parts.label]

@@ -1,0 +1,125 @@
+"""Joints that one cut alone has go if the tree needs them not."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from articulated import ALL_STAY, Known, chain, swings
+from smeared import moving
+
+from kinetree.tasks.numerics.structure import agreed_tree as numerics
+from kinetree.tasks.numerics.structure.agreed_tree import agreed_tree
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
+from kinetree.tasks.numerics.structure.joint_consensus import GATE
+from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
+
+FRAMES = 24
+HEIGHTS = (-3.0, 0.0, 2.6)
+"""Of the true joints."""
+TIPS = np.zeros(0, np.int64)
+
+
+def body() -> Known:
+    return chain(HEIGHTS, swings(FRAMES, len(HEIGHTS) + 1, 25, seed=2), along=60)
+
+
+def ringed(slide: float, at: tuple[float, float] = (0.0, 0.9)) -> tuple[Known, FirstTree]:
+    """The body with a ring between two heights as a part, which turns a little against the part above and slides; its tree."""
+    true = body()
+    above = int(true.label[np.abs(true.V[:, 2] - at[1]).argmin()])
+    ring = (true.V[:, 2] > at[0]) & (true.V[:, 2] < at[1])
+    off = slide * np.random.default_rng(0).normal(size=(FRAMES, 1, 3))
+    R, t = (np.concatenate([a, a[:, above : above + 1]], axis=1) for a in (true.R, true.t))
+    middle, turn = np.array([0.0, 0.0, sum(at) / 2]), swings(FRAMES, 1, 8, seed=3)[:, 0]
+    R[:, -1] = R[:, -1] @ turn
+    t[:, -1] += off[:, 0] + np.einsum("txy,y->tx", R[:, above], middle) - np.einsum("txy,y->tx", R[:, -1], middle)
+    label = np.where(ring, R.shape[1] - 1, true.label)
+    cut = Cut(true.V, label, R, t, np.zeros(R.shape[:2]))
+    return true._replace(label=label, R=R, t=t), first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+
+
+def joints_at(*heights: float) -> np.ndarray:
+    """(frame, joint, xyz) of a cut whose joints are the true ones at these heights, or that far above the middle one."""
+    true = body()
+    places = [(HEIGHTS.index(z) if z in HEIGHTS else 1, z) for z in heights]
+    return np.stack([true.R[:, k + 1] @ [0.0, 0.0, z] + true.t[:, k + 1] for k, z in places], axis=1)
+
+
+def left(tree: FirstTree, others: list[np.ndarray], confidence: np.ndarray | None = None) -> FirstTree:
+    return agreed_tree(moving(body()), tree, TIPS, confidence, others, settings=ALL_STAY)
+
+
+def heights(tree: FirstTree) -> list[float]:
+    return sorted(tree.rest[1:, 2].round(1).tolist())
+
+
+def test_ring_that_no_other_cut_has_goes_and_says_why() -> None:
+    _, tree = ringed(0.15)
+    assert len(heights(tree)) == 4
+    found = left(tree, [joints_at(*HEIGHTS)] * 2)
+    np.testing.assert_allclose(heights(found), HEIGHTS, atol=0.1)
+    assert [(d.part, d.reason) for d in found.graph.dropped] == [(4, "alone")]
+    assert found.place[4] == -1
+    assert sorted(found.place[:4].tolist()) == [0, 1, 2, 3]
+    true = body()
+    for part in range(4):
+        np.testing.assert_allclose(found.R[:, found.place[part]], true.R[:, part], atol=1e-9)
+    np.testing.assert_array_equal(found.graph.part, tree.graph.part)
+
+
+@pytest.mark.parametrize(
+    "others",
+    [[], [joints_at(*HEIGHTS), joints_at(-3.0, 0.0, 0.9, 2.6)]],
+    ids=["no other cut", "one of two has it"],
+)
+def test_it_stays_where_no_other_cut_is_or_one_has_it(others: list[np.ndarray]) -> None:
+    _, tree = ringed(0.15)
+    assert left(tree, others) is tree
+
+
+def test_true_joint_that_other_cuts_miss_stays_since_its_neighbours_would_drift_more() -> None:
+    _, tree = ringed(0.0, (4.0, 4.1))
+    others = [joints_at(-3.0, 2.6), joints_at(-3.0, 2.6)]
+    assert left(tree, others) is tree
+
+
+def test_last_part_of_a_limb_stays() -> None:
+    """Without it no joint would come in the place of its own."""
+    _, tree = ringed(0.15, (4.0, 5.1))
+    assert left(tree, [joints_at(*HEIGHTS)] * 2) is tree
+
+
+@pytest.mark.parametrize(("rise", "stays"), [(0.9, False), (0.05, True)])
+def test_how_much_more_joints_may_drift_without_it(rise: float, stays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, tree = ringed(0.15)
+    monkeypatch.setattr(numerics, "_rise", lambda *of: 0.5)
+    monkeypatch.setattr(numerics, "RISE", rise)
+    assert (left(tree, [joints_at(*HEIGHTS)]) is tree) == stays
+
+
+def tree_of(parents: list[int], order: list[int], origin: list[int], drift: list[float]) -> TreeJoints:
+    """A tree of which no more than this is known."""
+    tree = SimpleNamespace(parents=np.array(parents), order=np.array(order))
+    left = SimpleNamespace(part_tree=SimpleNamespace(tree=tree), origin=np.array(origin))
+    return cast(TreeJoints, SimpleNamespace(left=left, drift=np.array(drift)))
+
+
+def test_rise_is_the_largest_drift_of_new_joints_in_that_of_those_gone() -> None:
+    """Part 1 goes from the chain 2 – 0 – 1 – 3, and 0 meets 3; the numbers after it move up."""
+    before = tree_of([-1, 0, 1, 2], [2, 0, 1, 3], [0, 1, 2, 3], [0.0, 9.0, 0.2, 0.5])
+    after = tree_of([-1, 0, 1], [1, 0, 2], [0, 2, 3], [0.0, 9.0, 0.4])
+    assert numerics._rise(before, after) == pytest.approx(0.4 / 0.5)
+
+
+def test_joint_that_others_have_is_not_lost_for_it() -> None:
+    """Another cut has a joint in the ring's place and none at the true one."""
+    _, tree = ringed(0.15)
+    assert left(tree, [joints_at(-3.0, 0.9, 2.6)]) is tree
+
+
+def test_how_far_a_joint_of_another_cut_may_lie() -> None:
+    size = moving(body()).size
+    X = joints_at(*HEIGHTS)
+    for share, has in ((0.9, True), (1.1, False)):
+        assert numerics._shared(X, [X + [share * GATE * size, 0.0, 0.0]], size).tolist() == [has] * 3
