@@ -49,6 +49,7 @@ def joints_at_ends(
     confidence: np.ndarray,
     surface: Callable[[int], Target],
     settings: EndJointsSettings | None = None,
+    mirrored: tuple[int, ...] = (),
 ) -> list[EndJoint]:
     """The joints at ends, judged in runs of frames as tasks judge them."""
     count = len(body.x)
@@ -58,4 +59,4 @@ def joints_at_ends(
         fits: list[Fits] = [{} for _ in rings]
         lay_rings(frames, run, rings, fits)
         runs.append(EndRings.of(run, fits))
-    return end_joints(frames, rings, EndRings.joined(runs).fits, body.takes, settings)
+    return end_joints(frames, rings, EndRings.joined(runs).fits, body.takes, mirrored, settings)

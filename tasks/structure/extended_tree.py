@@ -14,16 +14,16 @@ from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
 from kinetree.schemas.topology.leaves import Leaves
-from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import end_rings as rings_numerics
 from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure import first_tree as tree_numerics
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.tree_joints import NOISE
-from kinetree.tasks.structure.arguments.aligned_body import aligned_body
+from kinetree.tasks.structure.arguments.aligned_body import AlignedBody, aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import fields_of, restored
-from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
+from kinetree.tasks.structure.arguments.surfaces import prepared
 
 READY = 64
 """Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take."""
@@ -41,9 +41,9 @@ def extended_tree(
 ) -> ExtendedTree:
     """Adds the joints at ends of limbs that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
     frames, tree = agreed_tree.frames, restored(agreed_tree)
-    ends = _ends(reference, agreed_tree, tree, end_rings, alignment, mesh)
+    body = aligned_body(reference, alignment, leaves)
+    ends = _ends(body, agreed_tree, tree, end_rings, mesh)
     if ends:
-        body = aligned_body(reference, alignment, leaves)
         tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
     laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
     return ExtendedTree(
@@ -52,20 +52,20 @@ def extended_tree(
 
 
 def _ends(
-    reference: Reference,
+    body: AlignedBody,
     agreed_tree: AgreedTree,
     tree: tree_numerics.FirstTree,
     end_rings: tuple[EndRings, ...],
-    alignment: Mapping[int, Alignment],
     mesh: Mapping[int, Mesh],
 ) -> list[EndJoint]:
     """The joints at ends; none where no frame was judged."""
     if not end_rings:
         return []
-    names, (V, F, area) = rings_numerics.EndRings._fields, area_of(reference)
+    names, (V, F, _, area, takes) = rings_numerics.EndRings._fields, body.surface
     runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
-    surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
-    confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
+    surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, body.surface.size))
+    confidence = np.asarray(body.trust, np.float64)
     frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
     rings = rings_numerics.end_rings(V, F, area, tree)
-    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, take_spans(agreed_tree.frames))
+    mirrored = np.unique(tree.label[limb_pairs(V, F, body.tips).tip]).tolist()
+    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, takes, mirrored)

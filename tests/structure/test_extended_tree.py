@@ -1,11 +1,14 @@
 """The tree with joints at ends as the task gives it."""
 
+import sys
+
 import numpy as np
 import pytest
 from aligned_body import agreed, extended, tube
 
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.kinematic_tree import AgreedTreeParams, FirstTreeParams
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.first_tree import first_tree
 
@@ -21,6 +24,21 @@ def test_a_joint_that_the_frames_alone_show_comes_last() -> None:
     tree = tree_of_tube(0.99)
     assert (tree.ends, tree.parents) == (1, (-1, 0, 1))
     assert tree.end_positions.shape == (24, int(restored(tree).at_ends.sum()), 3)
+
+
+@pytest.mark.parametrize(("tips", "mirrored"), [((0, -1), [0, 1]), ((-1, -1), [1]), ((), [])])
+def test_parts_that_end_limbs_with_a_mirror_image_are_told(
+    tips: tuple[int, ...], mirrored: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A tip at the lower end of the tube, or two at the upper one."""
+    told: list[list[int]] = []
+    task = sys.modules["kinetree.tasks.structure.extended_tree"]
+    whole, V = task.end_joints, tube(0.99)[0].vertices
+    tip = np.argsort(V[:, 2])[list(tips)].reshape(-1, 2)
+    monkeypatch.setattr(task, "limb_pairs", lambda *of: LimbPairs(tip, np.zeros((len(tip), 2, len(V)))))
+    monkeypatch.setattr(task, "end_joints", lambda *of: told.append(of[4]) or whole(*of))
+    tree_of_tube(0.99)
+    assert told == [mirrored]
 
 
 @pytest.mark.parametrize(("trust", "end_joints"), [(1.0, True), (0.99, False)])

@@ -5,7 +5,7 @@ can find it. The frames show it: with one more hinge the last part of the limb l
 surface of its own, so the hinge's turn in one frame agrees with that in the next only where something turns.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -40,8 +40,10 @@ class EndJointsSettings(NamedTuple):
     """Root mean square turn that agrees from frame to frame, at least: that of a swing over 6°, which other joints need."""
     slice_length: float = 2.1
     """Length of the nearer piece, from joint to ring, in radii of the ring, from which on it may turn less than the piece
-    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off. Chosen on people
-    5, 7, 14 to 18 and 20 in three takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more."""
+    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off; in a limb with a
+    mirror image any shorter one is, for necks alone are as short. Chosen on people 5, 7, 14 to 18 and 20 in three takes: four
+    such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had 2.9 to 5.2, two
+    false ones 1.5 and 1.7."""
     most_frames: int = 40
     """Frames of a take in which rings are judged in all of them; of more, in as many pairs of neighbours, in evenly spread runs
     of four frames, 52 in all; for time."""
@@ -82,17 +84,19 @@ def end_joints(
     rings: Sequence[EndRing],
     judged: Sequence[Fits],
     takes: Sequence[slice] | None = None,
+    mirrored: Collection[int] = (),
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
     """The joints that the frames show within the last parts of limbs, at most one in a part.
 
     judged : by ring, how its part lies in the frames of `judged_frames`
     takes  : positions of the frames of each take, in order; None takes all as one
+    mirrored : parts, in the tree's order, that end limbs with a mirror image
     """
     chosen, count = settings or EndJointsSettings(), len(frames.tree.R)
     at, pairs = judged_frames(count, takes, chosen.most_frames)
     laid = [_RingFits(ring, fits) for ring, fits in zip(rings, judged, strict=True)]
-    evident = _evident(frames, laid, pairs, score_spans(count, takes), chosen)
+    evident = _evident(frames, laid, pairs, score_spans(count, takes), mirrored, chosen)
     own = [one for one, _ in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
     return [_joint(frames.tree, one, score) for one, score in evident]
@@ -108,7 +112,12 @@ def judged_runs(count: int, takes: Sequence[slice] | None, settings: EndJointsSe
 
 
 def _evident(
-    frames: EndFrames, laid: Sequence[_RingFits], pairs: Ints, spans: Ints, chosen: EndJointsSettings
+    frames: EndFrames,
+    laid: Sequence[_RingFits],
+    pairs: Ints,
+    spans: Ints,
+    mirrored: Collection[int],
+    chosen: EndJointsSettings,
 ) -> list[tuple[_RingFits, float]]:
     """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score.
 
@@ -120,15 +129,15 @@ def _evident(
         best = table[int(np.argmax([max(row[k].score for k in own) for row in table]))]
         enough = [(best[k].gain, k) for k in own if best[k].score >= chosen.least_score]
         k = max(enough)[1] if enough else own[0]
-        if enough and _is_joint(laid[k].ring, best[k], chosen):
+        if enough and _is_joint(laid[k].ring, best[k], part in mirrored, chosen):
             evident.append((laid[k], best[k].score))
     return evident
 
 
-def _is_joint(ring: EndRing, shown: RingEvidence, chosen: EndJointsSettings) -> bool:
+def _is_joint(ring: EndRing, shown: RingEvidence, is_mirrored: bool, chosen: EndJointsSettings) -> bool:
     """Whether both pieces turn enough, and the nearer one is no slice of a joint that is there already."""
     length = float(np.linalg.norm(ring.cut.centre - ring.piece.joint))
-    is_slice = length < chosen.slice_length * ring.cut.radius and shown.near < shown.far
+    is_slice = length < chosen.slice_length * ring.cut.radius and (is_mirrored or shown.near < shown.far)
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice
 
 

@@ -13,11 +13,15 @@ from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
 def joints_at(
-    degrees: float, noise: float = 0.0, settings: EndJointsSettings | None = None, bent: float = 0.0
+    degrees: float,
+    noise: float = 0.0,
+    settings: EndJointsSettings | None = None,
+    bent: float = 0.0,
+    mirrored: tuple[int, ...] = (),
 ) -> list[EndJoint]:
     surface, tree = found_in(aligned(turning(degrees), bent))
     shown = Frames(turning(degrees), noise).prepared(surface.size)
-    return joints_at_ends(surface, in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), shown, settings)
+    return joints_at_ends(surface, in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), shown, settings, mirrored)
 
 
 def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJoint]:
@@ -61,6 +65,14 @@ def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joi
     degrees: float, slice_length: float, joints: int
 ) -> None:
     assert len(joints_at(degrees, settings=EndJointsSettings(slice_length=slice_length))) == joints
+
+
+@pytest.mark.parametrize(("slice_length", "mirrored", "joints"), [(10.0, (1,), 0), (10.0, (0,), 1), (1.0, (1,), 1)])
+def test_a_short_piece_of_a_limb_with_a_mirror_image_is_a_slice_however_it_turns(
+    slice_length: float, mirrored: tuple[int, ...], joints: int
+) -> None:
+    settings = EndJointsSettings(slice_length=slice_length)
+    assert len(joints_at(8.0, settings=settings, mirrored=mirrored)) == joints
 
 
 def test_a_part_that_no_frame_shows_has_no_joint() -> None:
