@@ -13,6 +13,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.joint_consensus import GATE, same_joints
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pruned_without
 from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings, TreeJoints, tree_of_parts
@@ -56,7 +57,8 @@ def agreed_tree(
     found, count = part_tree(body, parts), len(tree.parents)
     start = Pruned(parts, found, found, np.arange(count), ())
     joints = tree_of_parts(body, start, np.arange(count), tree.label, confidence, settings)
-    while (left := _without_one(body, joints, leaves, confidence, others, settings)) is not None:
+    pairs = limb_pairs(body.V, body.F, leaves)
+    while (left := _without_one(body, joints, leaves, pairs, confidence, others, settings)) is not None:
         joints = left
     return _of_cut(tree, joints) if joints.left.dropped else tree
 
@@ -65,6 +67,7 @@ def _without_one(
     body: MovingSurface,
     joints: TreeJoints,
     leaves: Ints,
+    pairs: LimbPairs,
     confidence: Floats | None,
     others: Sequence[Floats],
     settings: KinematicTreeSettings,
@@ -75,7 +78,7 @@ def _without_one(
     sides = {side for joint in np.flatnonzero(~shared) + 1 for side in (int(joint), int(tree.parents[joint]))}
     best: _Without | None = None
     for side in sorted(side for side in sides if (tree.parents == side).sum() + (side > 0) > 1):
-        left = pruned_without(body, joints.left, int(tree.order[side]), ALONE, leaves, settings.pruning)
+        left = pruned_without(body, joints.left, int(tree.order[side]), ALONE, leaves, pairs, settings.pruning)
         fewer = tree_of_parts(body, left, joints.used, joints.part, confidence, settings)
         still = _shared_joints(fewer, others, body.size)
         if still.sum() < shared.sum() or (~still).sum() >= (~shared).sum():

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import PartTree
@@ -67,14 +67,30 @@ def joint_partners(F: Ints, label: Ints, found: PartTree, pairs: LimbPairs, pair
     return partner
 
 
+def in_mirrored_limbs(label: Ints, found: PartTree, pairs: LimbPairs) -> Flags:
+    """(part,) in the tree's order, whether a part is of a limb that has a mirror image.
+
+    label, found : as `mirrored_limbs` takes them
+    """
+    place, inside = np.argsort(found.tree.order)[label], np.zeros(len(found.tree.order), np.bool_)
+    below = beyond(found.tree.parents) > 0
+    for tips in pairs.tip:
+        inside[_own(below[:, place[tips]]).any(axis=1)] = True
+    return inside
+
+
+def _own(carrying: Flags) -> Flags:
+    """(part, 2) which parts carry one of two ends alone; carrying (part, 2) whether each carries each of them."""
+    return carrying & ~carrying.all(axis=1, keepdims=True)
+
+
 def _limbs(F: Ints, place: Ints, parents: Ints, tips: Ints, away: Floats) -> tuple[Limb, Limb]:
     """Both limbs of a pair up to the part that carries both; place (vertex,) of each vertex's part in the tree."""
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     below = beyond(parents) > 0
-    carrying = below[:, place[tips]]
     limbs = []
-    for own, distance in zip(carrying.T, away, strict=True):
-        part = np.flatnonzero(own & ~carrying.all(axis=1))[::-1]
+    for own, distance in zip(_own(below[:, place[tips]]).T, away, strict=True):
+        part = np.flatnonzero(own)[::-1]
         inside = below[part][:, place]
         level = [_mean_distance(distance[edge[within[edge].sum(axis=1) == 1]]) for within in inside]
         limbs.append(Limb(part, np.array(level)))

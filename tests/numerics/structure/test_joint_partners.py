@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from articulated import Known, chain, surface, swings
+from articulated import Known, chain, surface, swings, three_arms
 
-from kinetree.tasks.numerics.structure.joint_partners import PAIRED, joint_partners, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, in_mirrored_limbs, joint_partners, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, part_tree
 
@@ -65,3 +65,18 @@ def test_body_without_pairs_has_none() -> None:
     body, tree, _ = looked_at(-1.0, 1.0)
     none = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, len(body.V))))
     assert joint_partners(body.F, body.label, tree, none).tolist() == [-1, -1, -1]
+
+
+def test_parts_outside_limbs_with_a_mirror_image() -> None:
+    """Of three arms two are a pair; the third and the middle are the trunk."""
+    body = three_arms()
+    tree = part_tree(surface(body), MovingParts(body.label, body.R, body.t, body.residual))
+    tip = np.array([[int(np.argmax(body.V @ [np.cos(a), np.sin(a), 0.0])) for a in (0.0, 2 * np.pi / 3)]])
+    inside = in_mirrored_limbs(body.label, tree, LimbPairs(tip, np.zeros((1, 2, len(body.V)))))
+    assert sorted(tree.tree.order[inside].tolist()) == sorted(body.label[tip[0]].tolist())
+    assert not in_mirrored_limbs(body.label, tree, LimbPairs(tip[:0], np.zeros((0, 2, len(body.V))))).any()
+
+
+def test_every_part_of_a_chain_but_that_which_carries_both_ends_is_in_a_limb() -> None:
+    body, tree, pairs = looked_at(-3.5, -1.0, 1.0, 2.2)
+    assert in_mirrored_limbs(body.label, tree, pairs).tolist() == [False, True, True, True, True]

@@ -6,7 +6,8 @@ from articulated import Known, chain, moved, swings, three_arms
 from shipped import PRUNING
 
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
 from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
 
 
@@ -37,6 +38,30 @@ def test_ring_of_flesh_around_a_joint_is_no_part() -> None:
     assert found.origin.tolist() == [0, 2]
     assert len(found.before.borders.pair) == 2
     assert found.part_tree.joints.rest[found.part_tree.tree.border[1]][2] == pytest.approx(0, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("half_length", "in_limb", "dropped"),
+    [
+        (0.55, (True, True, True), True),
+        (0.7, (True, True, True), False),
+        (0.55, (True, False, True), False),
+        (0.4, (True, False, True), True),
+        (0.55, (False, False, False), True),
+    ],
+    ids=["1.1 radii in a limb", "1.4", "1.1 in the trunk", "0.8", "1.1 of a body without limbs that have mirror images"],
+)
+def test_ring_of_flesh_is_shorter_in_a_trunk(
+    half_length: float, in_limb: tuple[bool, ...], dropped: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    half = swings(24, 1, 20, axes=1)[:, 0]
+    body = chain((-half_length, half_length), np.stack([np.broadcast_to(np.eye(3), (24, 3, 3)), half, half], axis=1))
+
+    def by_part(label: np.ndarray, found: PartTree, pairs: LimbPairs) -> np.ndarray:
+        return np.array(in_limb)[found.tree.order] if len(found.tree.order) == 3 else np.zeros(2, np.bool_)
+
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.pruning.in_mirrored_limbs", by_part)
+    assert of(body).dropped == ((Dropped(1, FLESH),) if dropped else ())
 
 
 @pytest.mark.parametrize(("half_length", "dropped"), [(0.3, (Dropped(1, FLESH),)), (0.55, ())])
