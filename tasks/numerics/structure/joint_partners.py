@@ -27,6 +27,25 @@ class Limb(NamedTuple):
     level: Floats
 
 
+class RootedParts(NamedTuple):
+    """Parts in a tree, a part after its parent.
+
+    place   : (vertex,) of each vertex's part in the tree
+    parents : (part,) −1 for the root
+    radius  : (part,) of the border with the parent, mesh unit; 0 for the root
+    """
+
+    place: Ints
+    parents: Ints
+    radius: Floats
+
+    @classmethod
+    def of(cls, label: Ints, found: PartTree) -> "RootedParts":
+        """Those of a tree; label (vertex,) part, by its number."""
+        tree = found.tree
+        return cls(np.argsort(tree.order)[label], tree.parents, np.append(0.0, found.borders.radius[tree.border[1:]]))
+
+
 class MirroredLimbs(NamedTuple):
     """Two limbs up to the part that carries both, and which of their joints are mirror images.
 
@@ -39,43 +58,36 @@ class MirroredLimbs(NamedTuple):
     row: Ints
 
 
-def mirrored_limbs(F: Ints, label: Ints, found: PartTree, pairs: LimbPairs, paired: float = PAIRED) -> Iterator[MirroredLimbs]:
-    """Both limbs of every pair; a limb whose end lies in the other one has no parts.
+def mirrored_limbs(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float = PAIRED) -> Iterator[MirroredLimbs]:
+    """Both limbs of every pair; a limb whose end lies in the other one has no parts, nor has any of a body of one part.
 
     F      : (face, corner)
-    label  : (vertex,) part, by its number
-    found  : the tree of the parts
     paired : radii, see `PAIRED`
     """
-    radius = found.borders.radius[found.tree.border]
-    place = np.argsort(found.tree.order)[label]
+    if len(parts.parents) < 2:
+        return
     for tips, away in zip(*pairs, strict=True):
-        one, other = _limbs(F, place, found.tree.parents, tips, away)
-        yield MirroredLimbs(one, other, _partners(one, other, radius, paired))
+        one, other = _limbs(F, parts, tips, away)
+        yield MirroredLimbs(one, other, _partners(one, other, parts.radius, paired))
 
 
-def joint_partners(F: Ints, label: Ints, found: PartTree, pairs: LimbPairs, paired: float = PAIRED) -> Ints:
-    """(part,) in the tree's order, the place of the part whose joint is the mirror image of each one's; −1 where there is none.
+def joint_partners(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float = PAIRED) -> Ints:
+    """(part,) the part whose joint is the mirror image of each one's; −1 where there is none.
 
-    F, label, found, paired : as `mirrored_limbs` takes them
+    F, paired : as `mirrored_limbs` takes them
     """
-    partner = np.full(len(found.tree.order), -1)
-    if len(partner) > 1:
-        for one, other, row in mirrored_limbs(F, label, found, pairs, paired):
-            a, b = one.part[row[:, 0]], other.part[row[:, 1]]
-            partner[a], partner[b] = b, a
+    partner = np.full(len(parts.parents), -1)
+    for one, other, row in mirrored_limbs(F, parts, pairs, paired):
+        a, b = one.part[row[:, 0]], other.part[row[:, 1]]
+        partner[a], partner[b] = b, a
     return partner
 
 
-def in_mirrored_limbs(label: Ints, found: PartTree, pairs: LimbPairs) -> Flags:
-    """(part,) in the tree's order, whether a part is of a limb that has a mirror image.
-
-    label, found : as `mirrored_limbs` takes them
-    """
-    place, inside = np.argsort(found.tree.order)[label], np.zeros(len(found.tree.order), np.bool_)
-    below = beyond(found.tree.parents) > 0
+def in_mirrored_limbs(parts: RootedParts, pairs: LimbPairs) -> Flags:
+    """(part,) whether a part is of a limb that has a mirror image."""
+    inside, below = np.zeros(len(parts.parents), np.bool_), beyond(parts.parents) > 0
     for tips in pairs.tip:
-        inside[_own(below[:, place[tips]]).any(axis=1)] = True
+        inside[_own(below[:, parts.place[tips]]).any(axis=1)] = True
     return inside
 
 
@@ -84,8 +96,9 @@ def _own(carrying: Flags) -> Flags:
     return carrying & ~carrying.all(axis=1, keepdims=True)
 
 
-def _limbs(F: Ints, place: Ints, parents: Ints, tips: Ints, away: Floats) -> tuple[Limb, Limb]:
-    """Both limbs of a pair up to the part that carries both; place (vertex,) of each vertex's part in the tree."""
+def _limbs(F: Ints, parts: RootedParts, tips: Ints, away: Floats) -> tuple[Limb, Limb]:
+    """Both limbs of a pair up to the part that carries both."""
+    place, parents, _ = parts
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     below = beyond(parents) > 0
     limbs = []

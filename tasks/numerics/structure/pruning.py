@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
-from kinetree.tasks.numerics.structure.joint_partners import in_mirrored_limbs, joint_partners
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, joint_partners
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree, relative_rotation
@@ -109,7 +109,7 @@ def pruned(
     pairs = limb_pairs(body.V, body.F, leaves)
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, pairs, chosen)
     while evidence is not None:
-        partner = joint_partners(body.F, state.parts.label, state.part_tree, pairs, chosen.unpaired.paired)
+        partner = joint_partners(body.F, RootedParts.of(state.parts.label, state.part_tree), pairs, chosen.unpaired.paired)
         gone = least_evident_joint(body, state.parts, state.part_tree, evidence, partner)
         if gone < 0:
             break
@@ -155,11 +155,11 @@ def _pruned_by_motion(body: MovingSurface, state: Pruned, leaves: Ints, pairs: L
 def _pruned_by_partners(body: MovingSurface, state: Pruned, leaves: Ints, pairs: LimbPairs, chosen: PruningSettings) -> Pruned:
     """Drops parts that the mirror image of their limb lacks, as long as fewer joints are without a partner then."""
     start, ring = rings(body.F, len(body.V))
-    lonely = unpaired_joints(body.F, state.parts.label, state.part_tree, pairs, chosen.unpaired)
+    lonely = unpaired_joints(body.F, RootedParts.of(state.parts.label, state.part_tree), pairs, chosen.unpaired)
     while True:
         for gone in unpaired_parts(body.F, state.parts, state.part_tree, pairs, chosen.unpaired):
             left = _pruned_by_motion(body, _without(body, state, gone, UNPAIRED, start, ring), leaves, pairs, chosen)
-            fewer = unpaired_joints(body.F, left.parts.label, left.part_tree, pairs, chosen.unpaired)
+            fewer = unpaired_joints(body.F, RootedParts.of(left.parts.label, left.part_tree), pairs, chosen.unpaired)
             if fewer < lonely:
                 state, lonely = left, fewer
                 break
@@ -181,7 +181,7 @@ def _weak_parts(
     """Parts that may be none, the weakest first, and why: flesh, else what turns too little, else what drifts too much."""
     tree, mass = found.tree, np.bincount(parts.label, body.area, parts.R.shape[1])
     has_leaf = np.isin(np.arange(len(mass)), parts.label[leaves])
-    in_limb = in_mirrored_limbs(parts.label, found, pairs)
+    in_limb = in_mirrored_limbs(RootedParts.of(parts.label, found), pairs)
     reach = np.where(in_limb | ~in_limb.any(), chosen.flesh_length, chosen.trunk_length)
     scores = [(_flesh_score(parts.R, found, k, reach[k], chosen), int(part), FLESH) for k, part in enumerate(tree.order)]
     for k in range(1, len(mass)):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Ints
-from kinetree.tasks.numerics.structure.joint_partners import PAIRED, MirroredLimbs, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, MirroredLimbs, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
@@ -57,28 +57,18 @@ def unpaired_parts(
     F     : (face, corner)
     found : the tree of the parts
     """
-    if len(found.tree.order) < 2:
-        return
     chosen = settings or UnpairedPartsSettings()
-    limbs = mirrored_limbs(F, parts.label, found, pairs, chosen.paired)
+    limbs = mirrored_limbs(F, RootedParts.of(parts.label, found), pairs, chosen.paired)
     slices = [piece for pair in limbs for piece in _slices(found, pair, chosen)]
     for piece in sorted(slices, key=lambda s: (s.distance, s.part)):
         if not piece.on_trunk or not _carries_both(parts, found, piece, chosen):
             yield int(found.tree.order[piece.part])
 
 
-def unpaired_joints(
-    F: Ints, label: Ints, found: PartTree, pairs: LimbPairs, settings: UnpairedPartsSettings | None = None
-) -> int:
-    """How many joints of all pairs of limbs have no partner.
-
-    F     : (face, corner)
-    label : (vertex,) part
-    """
-    if len(found.tree.order) < 2:
-        return 0
+def unpaired_joints(F: Ints, parts: RootedParts, pairs: LimbPairs, settings: UnpairedPartsSettings | None = None) -> int:
+    """How many joints of all pairs of limbs have no partner; F (face, corner)."""
     paired = (settings or UnpairedPartsSettings()).paired
-    return sum(int((~has).sum()) for limbs in mirrored_limbs(F, label, found, pairs, paired) for has in _have_partners(limbs))
+    return sum(int((~has).sum()) for limbs in mirrored_limbs(F, parts, pairs, paired) for has in _have_partners(limbs))
 
 
 def _slices(found: PartTree, limbs: MirroredLimbs, chosen: UnpairedPartsSettings) -> Iterator[_Slice]:

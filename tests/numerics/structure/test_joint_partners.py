@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from articulated import Known, chain, surface, swings, three_arms
 
-from kinetree.tasks.numerics.structure.joint_partners import PAIRED, in_mirrored_limbs, joint_partners, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import (
+    PAIRED,
+    RootedParts,
+    in_mirrored_limbs,
+    joint_partners,
+    mirrored_limbs,
+)
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, part_tree
 
@@ -21,7 +27,7 @@ def looked_at(*heights: float) -> tuple[Known, PartTree, LimbPairs]:
 def partners(*heights: float, paired: float = PAIRED) -> dict[float, float]:
     """By height of a joint, that of its partner."""
     body, tree, pairs = looked_at(*heights)
-    found = joint_partners(body.F, body.label, tree, pairs, paired)
+    found = joint_partners(body.F, RootedParts.of(body.label, tree), pairs, paired)
     height = np.append(np.nan, tree.joints.rest[tree.tree.border[1:], 2]).round(1)
     return {float(height[k]): float(height[p]) for k, p in enumerate(found) if p >= 0}
 
@@ -48,7 +54,7 @@ def test_how_far_apart_they_may_be(paired: float, found: dict[float, float]) -> 
 
 def test_limb_is_told_from_its_end_inwards() -> None:
     body, tree, pairs = looked_at(-3.5, -1.0, 1.0)
-    limbs = next(found for found in mirrored_limbs(body.F, body.label, tree, pairs) if len(found.one.part))
+    limbs = next(found for found in mirrored_limbs(body.F, RootedParts.of(body.label, tree), pairs) if len(found.one.part))
     levels = sorted((limbs.one.level, limbs.other.level), key=len)
     assert [len(level) for level in levels] == [1, 2]
     np.testing.assert_allclose(levels[1][1] - levels[1][0], 2.5, atol=0.2)
@@ -58,13 +64,13 @@ def test_limb_is_told_from_its_end_inwards() -> None:
 
 def test_body_of_one_part_has_no_partners() -> None:
     body, tree, pairs = looked_at()
-    assert joint_partners(body.F, body.label, tree, pairs).tolist() == [-1]
+    assert joint_partners(body.F, RootedParts.of(body.label, tree), pairs).tolist() == [-1]
 
 
 def test_body_without_pairs_has_none() -> None:
     body, tree, _ = looked_at(-1.0, 1.0)
     none = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, len(body.V))))
-    assert joint_partners(body.F, body.label, tree, none).tolist() == [-1, -1, -1]
+    assert joint_partners(body.F, RootedParts.of(body.label, tree), none).tolist() == [-1, -1, -1]
 
 
 def test_parts_outside_limbs_with_a_mirror_image() -> None:
@@ -72,11 +78,11 @@ def test_parts_outside_limbs_with_a_mirror_image() -> None:
     body = three_arms()
     tree = part_tree(surface(body), MovingParts(body.label, body.R, body.t, body.residual))
     tip = np.array([[int(np.argmax(body.V @ [np.cos(a), np.sin(a), 0.0])) for a in (0.0, 2 * np.pi / 3)]])
-    inside = in_mirrored_limbs(body.label, tree, LimbPairs(tip, np.zeros((1, 2, len(body.V)))))
+    inside = in_mirrored_limbs(RootedParts.of(body.label, tree), LimbPairs(tip, np.zeros((1, 2, len(body.V)))))
     assert sorted(tree.tree.order[inside].tolist()) == sorted(body.label[tip[0]].tolist())
-    assert not in_mirrored_limbs(body.label, tree, LimbPairs(tip[:0], np.zeros((0, 2, len(body.V))))).any()
+    assert not in_mirrored_limbs(RootedParts.of(body.label, tree), LimbPairs(tip[:0], np.zeros((0, 2, len(body.V))))).any()
 
 
 def test_every_part_of_a_chain_but_that_which_carries_both_ends_is_in_a_limb() -> None:
     body, tree, pairs = looked_at(-3.5, -1.0, 1.0, 2.2)
-    assert in_mirrored_limbs(body.label, tree, pairs).tolist() == [False, True, True, True, True]
+    assert in_mirrored_limbs(RootedParts.of(body.label, tree), pairs).tolist() == [False, True, True, True, True]

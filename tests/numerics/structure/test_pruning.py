@@ -5,9 +5,10 @@ import pytest
 from articulated import Known, chain, moved, swings, three_arms
 from shipped import PRUNING
 
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
 
 
@@ -57,8 +58,9 @@ def test_ring_of_flesh_is_shorter_in_a_trunk(
     half = swings(24, 1, 20, axes=1)[:, 0]
     body = chain((-half_length, half_length), np.stack([np.broadcast_to(np.eye(3), (24, 3, 3)), half, half], axis=1))
 
-    def by_part(label: np.ndarray, found: PartTree, pairs: LimbPairs) -> np.ndarray:
-        return np.array(in_limb)[found.tree.order] if len(found.tree.order) == 3 else np.zeros(2, np.bool_)
+    def by_part(parts: RootedParts, pairs: LimbPairs) -> np.ndarray:
+        ring = parts.place[np.abs(body.V[:, 2]).argmin()]
+        return np.array([in_limb[1 if part == ring else 0] for part in range(len(parts.parents))])
 
     monkeypatch.setattr("kinetree.tasks.numerics.structure.pruning.in_mirrored_limbs", by_part)
     assert of(body).dropped == ((Dropped(1, FLESH),) if dropped else ())

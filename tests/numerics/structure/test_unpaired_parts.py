@@ -6,6 +6,7 @@ from articulated import Known, chain, surface, swings
 from limbs import rotation
 from shipped import PRUNING
 
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, part_tree
 from kinetree.tasks.numerics.structure.pruning import UNPAIRED, pruned
@@ -107,7 +108,7 @@ def test_body_of_one_part_has_no_joints_and_none_goes() -> None:
     parts = MovingParts(body.label, body.R, body.t, body.residual)
     left = pruned(surface(body), parts, ends(body), settings=PRUNING)
     assert left.parts.R.shape[1] == 1
-    assert unpaired_joints(body.F, body.label, left.part_tree, pairs_of(body)) == 0
+    assert unpaired_joints(body.F, RootedParts.of(body.label, left.part_tree), pairs_of(body)) == 0
     assert found_in(body) == -1
 
 
@@ -143,7 +144,7 @@ def test_pruning_drops_it_and_says_why() -> None:
 def test_joints_without_a_partner_are_counted(heights: tuple[float, ...], count: int) -> None:
     body = bent_at(*heights)
     parts = MovingParts(body.label, body.R, body.t, body.residual)
-    assert unpaired_joints(body.F, body.label, part_tree(surface(body), parts), pairs_of(body)) == count
+    assert unpaired_joints(body.F, RootedParts.of(body.label, part_tree(surface(body), parts)), pairs_of(body)) == count
 
 
 def test_pruning_keeps_it_where_as_many_joints_would_be_without_a_partner(monkeypatch: pytest.MonkeyPatch) -> None:
