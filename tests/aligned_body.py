@@ -56,12 +56,13 @@ def agreed(
     first: FirstTree,
     reference: Reference,
     alignment: dict[int, Alignment],
+    mesh: dict[int, Mesh],
     leaves: Leaves,
     further: dict[int, FurtherCut] | None = None,
     params: AgreedTreeParams | None = None,
 ) -> AgreedTree:
-    """The first tree as further cuts leave it; without any as it is."""
-    return agreed_tree(reference, first, further or {}, alignment, leaves, params or AgreedTreeParams())
+    """The tree that the cuts agree on; without further ones the first."""
+    return agreed_tree(reference, first, further or {}, alignment, mesh, leaves, params or AgreedTreeParams())
 
 
 def judged(

@@ -6,7 +6,8 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidPartsParams
 from kinetree.tasks.registration.deformation_graph import graph_settings
 from kinetree.tasks.registration.pose import fit_settings
-from kinetree.tasks.structure.first_tree import evidence_settings, tree_settings
+from kinetree.tasks.structure.arguments.frame_evidence import evidence_settings
+from kinetree.tasks.structure.first_tree import tree_settings
 from kinetree.tasks.structure.rigid_parts import parts_settings
 
 GRAPH = graph_settings(DeformationGraphParams())

@@ -1,4 +1,4 @@
-"""The first tree without joints that no other cut has (ours)."""
+"""The tree that the cuts agree on (ours)."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -8,12 +8,14 @@ from kinetree.schemas.structure.first_tree import JointTree
 
 
 class AgreedTree(JointTree):
-    """The joints of the first cut that another cut has too, or that the others need."""
+    """The tree of the first cut or of another one, without joints that no other cut has and that it does not need."""
 
     opens: ClassVar[tuple[str, ...]] = ("judged", "judged/frame")
     judged: tuple[tuple[int, ...], ...] = ()
     """Source frames in which rings at ends of limbs are judged, in runs of a few that follow each other: each is a member of
     "judged". Empty where joints at ends are not looked for."""
+    cut_frame: int | None = None
+    """Source frame of the cut whose tree this is, if another than that in the reference."""
     is_given: bool = False
     """Whether the frames give the correspondence, so that their surfaces say nothing more."""
 

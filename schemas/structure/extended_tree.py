@@ -1,4 +1,4 @@
-"""The first tree with the joints at ends of limbs that the frames' surfaces alone show (ours)."""
+"""The agreed tree with the joints at ends of limbs that the frames' surfaces alone show (ours)."""
 
 from collections.abc import Sequence
 from typing import Annotated, ClassVar
@@ -19,9 +19,11 @@ class ExtendedTreeParams(Params):
 
 
 class ExtendedTree(JointTree):
-    """The first tree; a joint at an end and the part beyond it come after all others."""
+    """The agreed tree; a joint at an end and the part beyond it come after all others."""
 
     opens: ClassVar[tuple[str, ...]] = ("laid", "laid/frame")
+    cut_frame: int | None = None
+    """As AgreedTree has it."""
     laid: tuple[int, ...] = ()
     """Source frames on whose surfaces parts are laid by themselves; a few of them are a member of "laid"."""
     ends: int = 0

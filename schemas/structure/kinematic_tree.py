@@ -49,7 +49,7 @@ class FirstTreeParams(JointParams, CutJointsParams):
     """What counts as a joint, and where joints are looked for."""
 
 
-class AgreedTreeParams(PruningParams):
+class AgreedTreeParams(JointParams):
     """What counts as a joint, and whether joints at ends of limbs are looked for."""
 
     end_joints: bool = True
@@ -78,8 +78,8 @@ class KinematicTree(ArticulatedBody):
     uncertain: Annotated[Bools, Array("bool", FRAME)]
     """Frames in which some part has so little confidence that the body is fitted to the surface."""
     cut_frame: int | None = None
-    """Source frame of the cut whose tree this is, if another than that in the reference: of fixed connectivity that of the cut
-    with most joints that other cuts have too."""
+    """Source frame of the cut whose tree this is, if another than that in the reference: that with most joints that other cuts
+    have too, where vertices were aligned also with limbs that are mirror images of each other."""
     part: Annotated[Ints, Array("int32", VERTEX)]
     """Part of each vertex, before any was dropped."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]

@@ -20,7 +20,8 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.numerics.structure.tree_joints import Cut
-from kinetree.tasks.structure.first_tree import evidence_settings, tree_settings
+from kinetree.tasks.structure.arguments.frame_evidence import evidence_settings
+from kinetree.tasks.structure.first_tree import tree_settings
 
 
 @task()

@@ -1,4 +1,4 @@
-"""The first tree with the joints at ends of limbs that the frames' surfaces alone show."""
+"""The agreed tree with the joints at ends of limbs that the frames' surfaces alone show."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -47,7 +47,12 @@ def extended_tree(
         tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
     laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
     return ExtendedTree(
-        frames=frames, laid=tuple(frames[t] for t in laid), ends=len(ends), end_positions=tree.end_x, **fields_of(tree)
+        frames=frames,
+        cut_frame=agreed_tree.cut_frame,
+        laid=tuple(frames[t] for t in laid),
+        ends=len(ends),
+        end_positions=tree.end_x,
+        **fields_of(tree),
     )
 
 

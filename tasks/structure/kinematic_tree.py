@@ -9,12 +9,14 @@ from kinetree.schemas.input.sequence import Sequence
 from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.extended_tree import ExtendedTree
+from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, NeckParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
-from kinetree.tasks.numerics.structure.agreeing_cut import CutJoints, agreeing_cut, first_cut
+from kinetree.tasks.numerics.structure.first_tree import FirstTree as Tree
 from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import restored
@@ -25,6 +27,7 @@ from kinetree.tasks.structure.arguments.laid_parts import joined
 def kinematic_tree(
     reference: Reference,
     extended_tree: ExtendedTree,
+    first_tree: FirstTree,
     further_cut: Mapping[int, FurtherCut],
     laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
@@ -32,19 +35,16 @@ def kinematic_tree(
     params: NeckParams,
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
-    frames, body, first = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
-    cuts = list(further_cut.values())
-    joints = [CutJoints(np.array(cut.bare_joints), np.array(cut.joints_with_bones)) for cut in cuts]
-    if body.is_given:
-        chosen = agreeing_cut(first, [restored(cut) for cut in cuts], joints, body.surface.size)
-    else:
-        chosen = first_cut(first, joints)
+    frames, body, agreed = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
     tree, derivation = numerics.kinematic_tree(
         body.surface,
-        chosen.tree,
+        agreed,
         body.tips,
         body.confidence,
-        further=chosen.further,
+        further=[
+            _joints_of_first(first_tree) if frame == extended_tree.cut_frame else _joints_beside(agreed, cut)
+            for frame, cut in further_cut.items()
+        ],
         laid=joined(laid_parts),
         has_necks=params.necks and not body.is_given,
     )
@@ -53,9 +53,20 @@ def kinematic_tree(
         vertices=reference.vertices,
         faces=reference.faces,
         cuts=1 + len(further_cut),
-        cut_frame=cuts[chosen.which - 1].frame if chosen.which else None,
+        cut_frame=extended_tree.cut_frame,
         is_given=body.is_given,
         uncertain=np.zeros(len(frames), np.bool_) if body.is_given else needs_refinement(tree.confidence),
         **{**tree._asdict(), "parents": tuple(tree.parents.tolist())},
         **{**derivation._asdict(), "dropped": tuple((d.part, d.reason) for d in derivation.dropped)},
     )
+
+
+def _joints_of_first(first_tree: FirstTree) -> Floats:
+    """(frame, joint, xyz) mesh unit, where another cut gives the tree."""
+    tree = restored(first_tree)
+    return tree.motion.carried(tree.rest[1:])
+
+
+def _joints_beside(tree: Tree, cut: FurtherCut) -> Floats:
+    """(frame, joint, xyz) of another cut, mesh unit; with bones that no cut can find if the tree has some."""
+    return np.array(cut.joints_with_bones if tree.has_bones else cut.bare_joints)

@@ -477,7 +477,10 @@ def test_tasks_are_the_table_of_contents(kinetree):
                 "misfit_ratio_if_moving",
             )
         ],
-        "agreed_tree": [f"kinematic_tree.{name}" for name in ("degrees", "ratio", "end_joints")],
+        "agreed_tree": [
+            f"kinematic_tree.{name}"
+            for name in ("degrees", "ratio", "clear_motion", "misfit_ratio", "misfit_ratio_if_moving", "end_joints")
+        ],
     }
     mesh = next(r for r in rows if r["task"] == "mesh")
     assert set(mesh) == {"task", "over", "reads", "writes", "on_request", "params", "set_by", "along", "paper", "summary"}

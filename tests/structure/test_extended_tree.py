@@ -16,7 +16,7 @@ from kinetree.tasks.structure.first_tree import first_tree
 def tree_of_tube(trust: float, surface_joints: bool = True, end_joints: bool = True) -> ExtendedTree:
     reference, parts, alignment, mesh, leaves = tube(trust)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    tree = agreed(first, reference, alignment, leaves, params=AgreedTreeParams(end_joints=end_joints))
+    tree = agreed(first, reference, alignment, mesh, leaves, params=AgreedTreeParams(end_joints=end_joints))
     return extended(tree, reference, alignment, mesh, leaves, surface_joints)
 
 

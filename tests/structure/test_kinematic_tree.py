@@ -62,11 +62,11 @@ def tree_of(
     poses = CutPoses(frames=cut_frames)
     cuts = {f: further_cut(poses, reference, aligned, leaves, CutJointsParams(), (f,)) for f in cut_frames}
     first = first_tree(reference, parts, aligned, mesh, leaves, chosen)
-    agreeing = agreed(first, reference, aligned, leaves, cuts, chosen)
+    agreeing = agreed(first, reference, aligned, mesh, leaves, cuts, chosen)
     tree = extended(agreeing, reference, aligned, mesh, leaves, chosen.surface_joints)
     runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
     laid = tuple(laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in runs)
-    return kinematic_tree(reference, tree, cuts, laid, aligned, leaves, chosen)
+    return kinematic_tree(reference, tree, first, cuts, laid, aligned, leaves, chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

@@ -14,7 +14,7 @@ def runs() -> list[LaidParts]:
     """A few frames at a time."""
     reference, parts, alignment, mesh, leaves = tube(0.99)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    tree = extended(agreed(first, reference, alignment, leaves), reference, alignment, mesh, leaves)
+    tree = extended(agreed(first, reference, alignment, mesh, leaves), reference, alignment, mesh, leaves)
     members = (tree.members("laid/frame", (k,)) for k in tree.members("laid", ()))
     return [laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in members]
 

@@ -1,4 +1,4 @@
-"""The tree of a cut without joints that no other cut has and that it does not need (ours).
+"""The tree that the cuts agree on, without joints that no other cut has and that it does not need (ours).
 
 In another pose rings and patches fall elsewhere, so that a joint which one cut alone has is likely of its own making: a ring of
 flesh beside a true joint, which takes its share of the turn. Not every one is: a bone that is hardly seen is found in one cut
@@ -11,16 +11,29 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_other_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.joint_consensus import GATE, same_joints
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pruned_without
-from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings, TreeJoints, tree_of_parts
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
 RISE = 1.15
 """Drift of the joints that come about when a part is dropped, in the drift of those that go, at most; of each the largest. Of
 people, and of recorded bodies at a quarter of the frames, false joints had 0.71 to 1.10, true ones 1.27 and more."""
+
+
+class AgreedTree(NamedTuple):
+    """The tree that the cuts agree on.
+
+    which : whose it is, see `agreeing_cut`
+    tree  : without joints at ends
+    """
+
+    which: int
+    tree: FirstTree
 
 
 class _Without(NamedTuple):
@@ -36,28 +49,49 @@ class _Without(NamedTuple):
 
 def agreed_tree(
     body: MovingSurface,
-    tree: FirstTree,
+    trees: Sequence[FirstTree],
     leaves: Ints,
     confidence: Floats | None,
-    others: Sequence[Floats],
+    evidence: FrameEvidence | None = None,
     *,
     settings: KinematicTreeSettings,
-) -> FirstTree:
-    """Drops parts with a joint that no other cut has, those first without which joints drift least, as long as all joints that
-    other cuts have stay, and none drift more.
+) -> AgreedTree:
+    """Chooses the cut whose tree is used, and drops parts of it with a joint that no other cut has, those first without which
+    joints drift least, as long as all joints that other cuts have stay, and none drift more.
 
-    tree       : without joints at ends, and without bones that no cut can find
+    trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
-    others     : by other cut, (frame, joint, xyz) its joints, mesh unit
+    evidence   : the frames' surfaces, which must show every joint of another cut's tree, as they show those of the first;
+                 None asks for no evidence
     """
-    if not others or _shared(tree.motion.carried(tree.rest[1:]), others, body.size).all():
+    pairs = limb_pairs(body.V, body.F, leaves)
+    sides = [symmetry(body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs) for tree in trees]
+    which = agreeing_cut(trees, body.size, sides)
+    tree = trees[which]
+    others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
+    if which:
+        cut = Cut(body.V, tree.label, tree.R, tree.t, tree.unexplained)
+        tree = _of_cut(tree, tree_joints(body, cut, leaves, confidence, evidence, settings=settings))
+    return AgreedTree(which, _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings))
+
+
+def _without_lone_joints(
+    body: MovingSurface,
+    tree: FirstTree,
+    leaves: Ints,
+    pairs: LimbPairs,
+    confidence: Floats | None,
+    others: Sequence[Floats],
+    settings: KinematicTreeSettings,
+) -> FirstTree:
+    """The tree without joints that no other cut has and that it does not need."""
+    if not others or in_other_cuts(tree.motion.carried(tree.rest[1:]), others, body.size).all():
         return tree
     parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share)
     found, count = part_tree(body, parts), len(tree.parents)
     start = Pruned(parts, found, found, np.arange(count), ())
     joints = tree_of_parts(body, start, np.arange(count), tree.label, confidence, settings)
-    pairs = limb_pairs(body.V, body.F, leaves)
     while (left := _without_one(body, joints, leaves, pairs, confidence, others, settings)) is not None:
         joints = left
     return _of_cut(tree, joints) if joints.left.dropped else tree
@@ -91,15 +125,7 @@ def _without_one(
 
 def _shared_joints(joints: TreeJoints, others: Sequence[Floats], size: float) -> Flags:
     """(joint,) but for the root's, whether another cut has it."""
-    return _shared(joints.motion.carried(joints.rest[1:]), others, size)
-
-
-def _shared(X: Floats, others: Sequence[Floats], size: float) -> Flags:
-    """(joint,) whether another cut has it; X (frame, joint, xyz) mesh unit."""
-    has = np.zeros(X.shape[1], np.bool_)
-    for Y in others:
-        has[[j for j, _ in same_joints(X, Y, GATE * size)]] = True
-    return has
+    return in_other_cuts(joints.motion.carried(joints.rest[1:]), others, size)
 
 
 def _rise(before: TreeJoints, after: TreeJoints) -> float:

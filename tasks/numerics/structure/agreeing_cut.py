@@ -1,74 +1,58 @@
-"""Whose tree is used where every vertex was followed: the tree of the cut that the other cuts agree with most (ours).
+"""Whose tree is used: that of the first cut, or of another one if the other cuts, and its own limbs, agree with it more (ours).
 
 Which joints a cut shows depends on where its rings and patches fall. A joint that two cuts have is likely one, a joint that one
-cut has alone is likely flesh; of two cuts neither is in the majority. Aligned vertices err alike in all cuts, so that there the
-first cut's tree is used.
+cut has alone is likely flesh; of two cuts neither is in the majority. Where vertices were aligned all cuts err alike, so that
+they alone do not say: there another cut's tree is used only if its limbs are mirror images of each other more than those of the
+first.
 """
 
 from collections.abc import Sequence
-from itertools import permutations
-from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_consensus import GATE, same_joints
 
-
-class CutJoints(NamedTuple):
-    """The joints of a cut in another pose.
-
-    bare       : (frame, joint, xyz) without bones that no cut can find, mesh unit
-    with_bones : (frame, bone, xyz) with them, mesh unit
-    """
-
-    bare: Floats
-    with_bones: Floats
-
-    def beside(self, tree: FirstTree) -> Floats:
-        """Those with bones that no cut can find if the tree has some."""
-        return self.with_bones if tree.has_bones else self.bare
+AHEAD = 1
+"""By how much more than this the score of another cut must exceed the first one's where vertices were aligned. From 0 to 2 as
+many joints are found."""
 
 
-class AgreeingCut(NamedTuple):
-    """The cut whose tree is used.
-
-    which   : 0 for the first one, k for the k-th of the others
-    tree    : its tree, in the reference
-    further : by other cut, (frame, joint, xyz) its joints, see `CutJoints.beside`; those of the first cut as its tree has them
-    """
-
-    which: int
-    tree: FirstTree
-    further: list[Floats]
-
-
-def agreeing_cut(first: FirstTree, others: Sequence[FirstTree], joints: Sequence[CutJoints], size: float) -> AgreeingCut:
+def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int] | None = None) -> int:
     """The cut with most joints that another cut has too, less those that it has alone; of equals the first.
 
-    It has such a joint, and no fewer of them than the first cut, so that a cut which shows little never wins. Of two cuts it is
-    the first.
+    Where every vertex was followed it has such a joint, and no fewer of them than the first cut, so that a cut which shows
+    little never wins. Where vertices were aligned `symmetry` is added, see `joint_partners`; it must be more than the first
+    cut's. Of two cuts it is the first.
 
-    others, joints : trees of the other cuts, in the reference, and their joints
-    size           : root of the area, mesh unit
+    trees    : of all cuts, in the reference, the first cut's first
+    size     : root of the area, mesh unit
+    symmetry : by cut; None where every vertex was followed
+    returns  : 0 for the first one, k for the k-th of the others
     """
-    if len(others) < 2:
-        return first_cut(first, joints)
-    trees = [first, *others]
+    if len(trees) < 3:
+        return 0
     carried = [tree.motion.carried(tree.rest[1:]) for tree in trees]
-    shared = [np.zeros(X.shape[1], np.bool_) for X in carried]
-    for a, b in permutations(range(len(trees)), 2):
-        shared[a][[i for i, _ in same_joints(carried[a], carried[b], GATE * size)]] = True
-    least = max(shared[0].sum(), 1)
-    scores = [has.sum() - (~has).sum() if has.sum() >= least else -np.inf for has in shared]
-    which = int(np.argmax(scores))
-    chosen = AgreeingCut(which, trees[which], [cut.beside(trees[which]) for cut in joints])
-    if which:
-        chosen.further[which - 1] = carried[0]
-    return chosen
+    shared = [in_other_cuts(X, carried[:k] + carried[k + 1 :], size) for k, X in enumerate(carried)]
+    score = np.array([2.0 * has.sum() - len(has) for has in shared])
+    if symmetry is None:
+        least = max(shared[0].sum(), 1)
+        return int(np.argmax([one if has.sum() >= least else -np.inf for one, has in zip(score, shared, strict=True)]))
+    score += symmetry
+    score[np.array(symmetry) <= symmetry[0]] = -np.inf
+    best = int(np.argmax(score))
+    first = 2.0 * shared[0].sum() - len(shared[0]) + symmetry[0]
+    return best if score[best] > first + AHEAD else 0
 
 
-def first_cut(first: FirstTree, joints: Sequence[CutJoints]) -> AgreeingCut:
-    """The first cut, whatever the others say."""
-    return AgreeingCut(0, first, [cut.beside(first) for cut in joints])
+def in_other_cuts(X: Floats, others: Sequence[Floats], size: float) -> Flags:
+    """(joint,) whether another cut has each joint of a cut.
+
+    X, others : (frame, joint, xyz) · by other cut the same, mesh unit
+    size      : root of the area, mesh unit
+    """
+    has = np.zeros(X.shape[1], np.bool_)
+    for Y in others:
+        has[[j for j, _ in same_joints(X, Y, GATE * size)]] = True
+    return has

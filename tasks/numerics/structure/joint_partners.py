@@ -83,6 +83,15 @@ def joint_partners(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float 
     return partner
 
 
+def symmetry(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float = PAIRED) -> int:
+    """Pairs of partners, less the joints of mirrored limbs that have no partner.
+
+    F, paired : as `mirrored_limbs` takes them
+    """
+    limbs = mirrored_limbs(F, parts, pairs, paired)
+    return sum(3 * len(row) - len(one.part) - len(other.part) for one, other, row in limbs)
+
+
 def in_mirrored_limbs(parts: RootedParts, pairs: LimbPairs) -> Flags:
     """(part,) whether a part is of a limb that has a mirror image."""
     inside, below = np.zeros(len(parts.parents), np.bool_), beyond(parts.parents) > 0

@@ -1,7 +1,7 @@
-"""Joints that one cut alone has go if the tree needs them not."""
+"""Whose tree it is, and that joints of one cut alone go if the tree needs them not."""
 
 from types import SimpleNamespace
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 import pytest
@@ -9,9 +9,9 @@ from articulated import ALL_STAY, Known, chain, swings
 from smeared import moving
 
 from kinetree.tasks.numerics.structure import agreed_tree as numerics
-from kinetree.tasks.numerics.structure.agreed_tree import agreed_tree
+from kinetree.tasks.numerics.structure.agreed_tree import AgreedTree, agreed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
-from kinetree.tasks.numerics.structure.joint_consensus import GATE
+from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 FRAMES = 24
@@ -39,15 +39,38 @@ def ringed(slide: float, at: tuple[float, float] = (0.0, 0.9)) -> tuple[Known, F
     return true._replace(label=label, R=R, t=t), first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
 
 
-def joints_at(*heights: float) -> np.ndarray:
-    """(frame, joint, xyz) of a cut whose joints are the true ones at these heights, or that far above the middle one."""
+class OtherTree(NamedTuple):
+    """A tree of which no more is known than where its joints go, (frame, joint, xyz)."""
+
+    joints: np.ndarray
+    label: np.ndarray = np.zeros(1, np.int64)
+    parents: np.ndarray = np.array([-1])
+    radius: np.ndarray = np.zeros(1)
+
+    @property
+    def rest(self) -> np.ndarray:
+        return np.zeros((self.joints.shape[1] + 1, 3))
+
+    @property
+    def motion(self) -> "OtherTree":
+        return self
+
+    def carried(self, rest: np.ndarray) -> np.ndarray:
+        return self.joints
+
+
+def joints_at(*heights: float) -> FirstTree:
+    """Of a cut whose joints are the true ones at these heights, or that far above the middle one."""
     true = body()
     places = [(HEIGHTS.index(z) if z in HEIGHTS else 1, z) for z in heights]
-    return np.stack([true.R[:, k + 1] @ [0.0, 0.0, z] + true.t[:, k + 1] for k, z in places], axis=1)
+    joints = np.stack([true.R[:, k + 1] @ [0.0, 0.0, z] + true.t[:, k + 1] for k, z in places], axis=1)
+    return cast(FirstTree, OtherTree(joints))
 
 
-def left(tree: FirstTree, others: list[np.ndarray], confidence: np.ndarray | None = None) -> FirstTree:
-    return agreed_tree(moving(body()), tree, TIPS, confidence, others, settings=ALL_STAY)
+def left(tree: FirstTree, others: list[FirstTree]) -> FirstTree:
+    found = agreed_tree(moving(body()), [tree, *others], TIPS, None, settings=ALL_STAY)
+    assert found.which == 0
+    return found.tree
 
 
 def heights(tree: FirstTree) -> list[float]:
@@ -73,7 +96,7 @@ def test_ring_that_no_other_cut_has_goes_and_says_why() -> None:
     [[], [joints_at(*HEIGHTS), joints_at(-3.0, 0.0, 0.9, 2.6)]],
     ids=["no other cut", "one of two has it"],
 )
-def test_it_stays_where_no_other_cut_is_or_one_has_it(others: list[np.ndarray]) -> None:
+def test_it_stays_where_no_other_cut_is_or_one_has_it(others: list[FirstTree]) -> None:
     _, tree = ringed(0.15)
     assert left(tree, others) is tree
 
@@ -118,8 +141,40 @@ def test_joint_that_others_have_is_not_lost_for_it() -> None:
     assert left(tree, [joints_at(-3.0, 0.9, 2.6)]) is tree
 
 
-def test_how_far_a_joint_of_another_cut_may_lie() -> None:
-    size = moving(body()).size
-    X = joints_at(*HEIGHTS)
-    for share, has in ((0.9, True), (1.1, False)):
-        assert numerics._shared(X, [X + [share * GATE * size, 0.0, 0.0]], size).tolist() == [has] * 3
+def bent_at(*heights: float) -> FirstTree:
+    """The tree of a tube bent at these heights."""
+    true = chain(heights, swings(FRAMES, len(heights) + 1, 25, seed=2), along=60)
+    cut = Cut(true.V, true.label, true.R, true.t, true.residual)
+    return first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+
+
+def of_pair(trees: list[FirstTree], evidence: FrameEvidence | None = None) -> AgreedTree:
+    """The ends of the tube are a pair."""
+    true = chain((-2.0, 2.0), swings(FRAMES, 3, 25, seed=2), along=60)
+    sides = [int(np.argmin(np.linalg.norm(true.V - [x, 0.0, 0.0], axis=1))) for x in (1.0, -1.0)]
+    tips = np.array([true.V[:, 2].argmin(), true.V[:, 2].argmax(), *sides])
+    return agreed_tree(moving(true), trees, tips, None, evidence, settings=ALL_STAY)
+
+
+def test_tree_of_a_cut_with_more_partners_is_used() -> None:
+    """A joint at one end alone has no partner, which the other two cuts have."""
+    one, two = bent_at(2.0), bent_at(-2.0, 2.0)
+    assert of_pair([two, one, one]).which == 0
+    found = of_pair([one, two, two])
+    assert found.which == 1
+    np.testing.assert_allclose(heights(found.tree), [-2.0, 2.0], atol=0.1)
+    np.testing.assert_array_equal(found.tree.graph.pair, two.graph.pair)
+    assert of_pair([one, two]).which == 0, "of two cuts neither is in the majority"
+
+
+def test_tree_of_another_cut_needs_the_evidence_that_the_first_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, whole = [], numerics.tree_joints
+    evidence = cast(FrameEvidence, "the frames")
+    monkeypatch.setattr(
+        numerics, "tree_joints", lambda *of, settings: asked.append(of[4]) or whole(*of[:4], None, settings=settings)
+    )
+    one, two = bent_at(2.0), bent_at(-2.0, 2.0)
+    of_pair([two, one, one], evidence)
+    assert asked == []
+    of_pair([one, two, two], evidence)
+    assert asked == [evidence]

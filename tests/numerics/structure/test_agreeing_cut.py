@@ -1,4 +1,4 @@
-"""Which cut gives the tree where every vertex was followed."""
+"""Which cut gives the tree."""
 
 from typing import NamedTuple, cast
 
@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from articulated import Known, chain, cut_by_height, swings
 
-from kinetree.tasks.numerics.structure.agreeing_cut import CutJoints, agreeing_cut, first_cut
+from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_other_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
+from kinetree.tasks.numerics.structure.joint_consensus import GATE
 
 FRAMES = 16
 
@@ -19,10 +20,6 @@ def body() -> Known:
 def tree_at(*heights: float) -> FirstTree:
     """The tree of a cut at these heights; true joints are at −2 and 2."""
     return in_tree_order(cut_by_height(body(), heights), len(heights) + 1)
-
-
-JOINTS = CutJoints(np.full((FRAMES, 1, 3), 1.0), np.full((FRAMES, 1, 3), 2.0))
-"""Other joints for each kind, so that one sees which were taken."""
 
 
 def size() -> float:
@@ -44,34 +41,17 @@ def size() -> float:
 def test_the_cut_with_most_joints_that_others_have_less_those_of_its_own(
     cuts: tuple[tuple[float, ...], ...], which: int
 ) -> None:
-    first, *others = (tree_at(*heights) for heights in cuts)
-    found = agreeing_cut(first, others, [JOINTS] * len(others), size())
-    assert found.which == which
-    assert found.tree is [first, *others][which]
-    own = first.motion.carried(first.rest[1:])
-    for k, joints in enumerate(found.further, start=1):
-        np.testing.assert_array_equal(joints, own if k == which else np.full((FRAMES, 1, 3), 1.0))
-
-
-def test_joints_of_other_cuts_have_hidden_bones_if_the_tree_has_some() -> None:
-    tree = tree_at(-2.0, 2.0)
-    with_bone = tree._replace(place=np.append(tree.place[:-1], -1))
-    assert with_bone.has_bones
-    for first, kind in ((tree, 1.0), (with_bone, 2.0)):
-        for found in (agreeing_cut(first, [tree] * 2, [JOINTS] * 2, size()), first_cut(first, [JOINTS])):
-            assert (found.which, found.further[0][0, 0, 0]) == (0, kind)
+    assert agreeing_cut([tree_at(*heights) for heights in cuts], size()) == which
 
 
 def test_one_cut_alone_is_the_one() -> None:
-    tree = tree_at(2.0)
-    assert agreeing_cut(tree, [], [], size()) == (0, tree, [])
+    assert agreeing_cut([tree_at(2.0)], size()) == agreeing_cut([tree_at(2.0)], size(), [5]) == 0
 
 
 class Still(NamedTuple):
     """A tree whose root stays, with joints at these places in every frame."""
 
     joints: tuple[float, ...]
-    has_bones: bool = False
 
     @property
     def rest(self) -> np.ndarray:
@@ -97,5 +77,34 @@ class Still(NamedTuple):
 )
 def test_it_shows_as_much_that_others_have_as_the_first(cuts: tuple[tuple[float, ...], ...], which: int) -> None:
     """Joints are the same within 0.035 of the body's size."""
-    first, *others = (cast(FirstTree, Still(joints)) for joints in cuts)
-    assert agreeing_cut(first, others, [JOINTS] * 2, 1.0).which == which
+    assert agreeing_cut([cast(FirstTree, Still(joints)) for joints in cuts], 1.0) == which
+
+
+@pytest.mark.parametrize(
+    ("cuts", "symmetry", "which"),
+    [
+        (((1.0, 3.0), (1.0, 3.0), (1.0, 3.0)), (0, 2, 0), 1),
+        (((1.0, 3.0), (1.0, 3.0), (1.0, 3.0)), (0, 1, 0), 0),
+        (((1.0, 3.0), (1.0, 3.0), (1.0, 3.0)), (0, 2, 3), 2),
+        (((1.0, 3.0), (1.0, 5.0), (1.0, 3.0)), (0, 3, 0), 0),
+        (((1.0, 3.0), (1.0, 5.0), (1.0, 3.0)), (0, 4, 0), 1),
+        (((1.0, 5.0), (1.0, 3.0), (1.0, 3.0)), (2, 2, 2), 0),
+        (((1.0, 5.0), (1.0, 3.0), (1.0, 3.0)), (2, 3, 2), 1),
+        (((1.0, 3.0), (1.0, 3.0)), (0, 9), 0),
+    ],
+    ids=[
+        "by two", "by one", "the best", "one joint of its own", "more than that", "without more symmetry", "with more",
+        "of two cuts",
+    ],
+)  # fmt: skip
+def test_where_vertices_were_aligned_another_cut_must_be_more_symmetric_and_clearly_better(
+    cuts: tuple[tuple[float, ...], ...], symmetry: tuple[int, ...], which: int
+) -> None:
+    assert agreeing_cut([cast(FirstTree, Still(joints)) for joints in cuts], 1.0, symmetry) == which
+
+
+def test_how_far_a_joint_of_another_cut_may_lie() -> None:
+    X = np.zeros((FRAMES, 1, 3))
+    for share, has in ((0.9, True), (1.1, False)):
+        assert in_other_cuts(X, [X + [share * GATE * 7.0, 0.0, 0.0]], 7.0).tolist() == [has]
+    assert in_other_cuts(X, [], 7.0).tolist() == [False]

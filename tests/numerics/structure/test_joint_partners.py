@@ -10,6 +10,7 @@ from kinetree.tasks.numerics.structure.joint_partners import (
     in_mirrored_limbs,
     joint_partners,
     mirrored_limbs,
+    symmetry,
 )
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree, part_tree
@@ -86,3 +87,12 @@ def test_parts_outside_limbs_with_a_mirror_image() -> None:
 def test_every_part_of_a_chain_but_that_which_carries_both_ends_is_in_a_limb() -> None:
     body, tree, pairs = looked_at(-3.5, -1.0, 1.0, 2.2)
     assert in_mirrored_limbs(RootedParts.of(body.label, tree), pairs).tolist() == [False, True, True, True, True]
+
+
+@pytest.mark.parametrize(
+    ("heights", "count"),
+    [((-1.0, 1.0), 1), ((-3.5, -1.0, 1.0, 3.5), 2), ((-3.5, -1.0, 1.0), 0), ((-4.0, 1.0), -2), ((), 0)],
+)
+def test_symmetry_is_pairs_of_partners_less_joints_without_one(heights: tuple[float, ...], count: int) -> None:
+    body, tree, pairs = looked_at(*heights)
+    assert symmetry(body.F, RootedParts.of(body.label, tree), pairs) == count
