@@ -14,9 +14,9 @@ from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_consensus import GATE, same_joints
 
-AHEAD = 1
-"""By how much more than this the score of another cut must exceed the first one's where vertices were aligned. From 0 to 2 as
-many joints are found."""
+AHEAD = 2
+"""Where vertices were aligned, another cut's score must exceed the first one's by more than this. With 0 to 2 as many joints
+are found."""
 
 
 def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int] | None = None) -> int:
