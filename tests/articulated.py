@@ -17,7 +17,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 ALL_STAY = TREE._replace(
     pruning=TREE.pruning._replace(
-        degrees=0.0, ratio=0.0, flesh_length=0.0, unpaired=UnpairedPartsSettings(near=0.0, near_end=0.0)
+        degrees=0.0, ratio=0.0, flesh_length=0.0, trunk_length=0.0, unpaired=UnpairedPartsSettings(near=0.0, near_end=0.0)
     )
 )
 """Settings with which no part is dropped."""

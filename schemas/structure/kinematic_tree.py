@@ -78,8 +78,8 @@ class KinematicTree(ArticulatedBody):
     uncertain: Annotated[Bools, Array("bool", FRAME)]
     """Frames in which some part has so little confidence that the body is fitted to the surface."""
     cut_frame: int | None = None
-    """Source frame of the cut whose tree this is, if another than that in the reference: that with most joints that other cuts
-    have too, where vertices were aligned also with limbs that are mirror images of each other."""
+    """Source frame of the cut whose tree this is, if another than that in the reference: it has more joints that other cuts
+    have too. Where vertices were aligned its limbs are mirror images of each other more than those of the first cut."""
     part: Annotated[Ints, Array("int32", VERTEX)]
     """Part of each vertex, before any was dropped."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]

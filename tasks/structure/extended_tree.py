@@ -18,6 +18,7 @@ from kinetree.tasks.numerics.structure import end_rings as rings_numerics
 from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure import first_tree as tree_numerics
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.tree_joints import NOISE
@@ -72,5 +73,7 @@ def _ends(
     confidence = np.asarray(body.trust, np.float64)
     frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
     rings = rings_numerics.end_rings(V, F, area, tree)
-    mirrored = np.unique(tree.label[limb_pairs(V, F, body.tips).tip]).tolist()
+    pairs = limb_pairs(V, F, body.tips)
+    inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    mirrored = [part for part in np.unique(tree.label[pairs.tip]).tolist() if inside[part]]
     return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, takes, mirrored)

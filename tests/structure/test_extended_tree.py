@@ -26,11 +26,11 @@ def test_a_joint_that_the_frames_alone_show_comes_last() -> None:
     assert tree.end_positions.shape == (24, int(restored(tree).at_ends.sum()), 3)
 
 
-@pytest.mark.parametrize(("tips", "mirrored"), [((0, -1), [0, 1]), ((-1, -1), [1]), ((), [])])
+@pytest.mark.parametrize(("tips", "mirrored"), [((0, -1), [1]), ((-1, -1), []), ((), [])])
 def test_parts_that_end_limbs_with_a_mirror_image_are_told(
     tips: tuple[int, ...], mirrored: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A tip at the lower end of the tube, or two at the upper one."""
+    """The lower part carries the upper one, so that it is of no limb; a part with both ends of a pair has no mirror image."""
     told: list[list[int]] = []
     task = sys.modules["kinetree.tasks.structure.extended_tree"]
     whole, V = task.end_joints, tube(0.99)[0].vertices

@@ -1,5 +1,6 @@
 """The articulated body as the task gives it."""
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -209,3 +210,20 @@ def test_of_fixed_connectivity_the_cut_that_another_agrees_with_gives_the_tree()
     unsure = tree_of(merged, np.full(body.x.shape[:2], 0.9), cut_frames=frames, end_joints=False)
     for tree in (followed, unsure):
         assert (tree.cut_frame, tree.kinds.count("joint")) == (None, 2)
+
+
+def test_joints_are_averaged_with_those_of_all_other_cuts_and_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of fixed connectivity another cut gives the tree; the first one's joints stand in its place."""
+    body = three_arms()
+    merged = body._replace(label=np.where(body.label == 3, 0, body.label), R=body.R[:, :3], t=body.t[:, :3])
+    task, told = sys.modules["kinetree.tasks.structure.kinematic_tree"], []
+    whole = task.numerics.kinematic_tree
+
+    def listening(*of: Any, **named: Any) -> Any:
+        told.append(named["further"])
+        return whole(*of, **named)
+
+    monkeypatch.setattr(task.numerics, "kinematic_tree", listening)
+    found = tree_of(merged, cut_frames=(FIRST + 5, FIRST + 9))
+    assert found.cut_frame == FIRST + 5
+    assert [[joints.shape[1] for joints in further] for further in told] == [[2, 3]], "the first cut has two of three joints"

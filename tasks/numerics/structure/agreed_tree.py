@@ -21,8 +21,9 @@ from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pr
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
 RISE = 1.15
-"""Drift of the joints that come about when a part is dropped, in the drift of those that go, at most; of each the largest. Of
-people, and of recorded bodies at a quarter of the frames, false joints had 0.71 to 1.10, true ones 1.27 and more."""
+"""Without a part some joints go and others come in their place. The largest drift of those that come, in the largest of those
+that go, at most. Of people, and of recorded bodies at a quarter of the frames, false joints had 0.71 to 1.10, true ones 1.27
+and more."""
 
 
 class AgreedTree(NamedTuple):
@@ -56,8 +57,10 @@ def agreed_tree(
     *,
     settings: KinematicTreeSettings,
 ) -> AgreedTree:
-    """Chooses the cut whose tree is used, and drops parts of it with a joint that no other cut has, those first without which
-    joints drift least, as long as all joints that other cuts have stay, and none drift more.
+    """Chooses the cut whose tree is used, and drops its parts with a joint that no other of at least two cuts has.
+
+    The part without which joints drift least goes first. None goes without which fewer joints are those of other cuts, or
+    joints drift more (`RISE`), or another part is weak.
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -66,14 +69,22 @@ def agreed_tree(
                  None asks for no evidence
     """
     pairs = limb_pairs(body.V, body.F, leaves)
-    sides = [symmetry(body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs) for tree in trees]
-    which = agreeing_cut(trees, body.size, sides)
-    tree = trees[which]
-    others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
+    which, tree = _best(body, trees, pairs, settings), trees[0]
     if which:
-        cut = Cut(body.V, tree.label, tree.R, tree.t, tree.unexplained)
-        tree = _of_cut(tree, tree_joints(body, cut, leaves, confidence, evidence, settings=settings))
+        best = trees[which]
+        cut = Cut(body.V, best.label, best.R, best.t, best.unexplained)
+        shown = _of_cut(best, tree_joints(body, cut, leaves, confidence, evidence, settings=settings))
+        still = _best(body, [*trees[:which], shown, *trees[which + 1 :]], pairs, settings) == which
+        which, tree = (which, shown) if still else (0, tree)
+    others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     return AgreedTree(which, _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings))
+
+
+def _best(body: MovingSurface, trees: Sequence[FirstTree], pairs: LimbPairs, settings: KinematicTreeSettings) -> int:
+    """The cut whose tree is used by these trees."""
+    paired = settings.pruning.unpaired.paired
+    limbs = [symmetry(body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs, paired) for tree in trees]
+    return agreeing_cut(trees, body.size, limbs)
 
 
 def _without_lone_joints(
@@ -85,8 +96,8 @@ def _without_lone_joints(
     others: Sequence[Floats],
     settings: KinematicTreeSettings,
 ) -> FirstTree:
-    """The tree without joints that no other cut has and that it does not need."""
-    if not others or in_other_cuts(tree.motion.carried(tree.rest[1:]), others, body.size).all():
+    """The tree without joints that no other cut has and that it does not need; of two cuts neither is in the majority."""
+    if len(others) < 2 or in_other_cuts(tree.motion.carried(tree.rest[1:]), others, body.size).all():
         return tree
     parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share)
     found, count = part_tree(body, parts), len(tree.parents)
@@ -113,6 +124,8 @@ def _without_one(
     best: _Without | None = None
     for side in sorted(side for side in sides if (tree.parents == side).sum() + (side > 0) > 1):
         left = pruned_without(body, joints.left, int(tree.order[side]), ALONE, leaves, pairs, settings.pruning)
+        if len(left.dropped) > len(joints.left.dropped) + 1:
+            continue
         fewer = tree_of_parts(body, left, joints.used, joints.part, confidence, settings)
         still = _shared_joints(fewer, others, body.size)
         if still.sum() < shared.sum() or (~still).sum() >= (~shared).sum():
@@ -146,7 +159,7 @@ def _of_cut(tree: FirstTree, joints: TreeJoints) -> FirstTree:
     """The joints that are left as a tree of the same cut."""
     left = in_tree_order(joints, len(tree.parents))
     number = {int(joint): part for part, joint in enumerate(tree.place) if joint >= 0}
-    gone = tuple(Dropped(number[d.part], d.reason) for d in joints.left.dropped)
+    gone = tuple(Dropped(number[d.part], d.reason) for d in left.graph.dropped)
     return left._replace(
         place=np.where(tree.place < 0, -1, left.place[tree.place]),
         graph=tree.graph._replace(dropped=(*tree.graph.dropped, *gone)),

@@ -40,10 +40,10 @@ class EndJointsSettings(NamedTuple):
     """Root mean square turn that agrees from frame to frame, at least: that of a swing over 6°, which other joints need."""
     slice_length: float = 2.1
     """Length of the nearer piece, from joint to ring, in radii of the ring, from which on it may turn less than the piece
-    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off; in a limb with a
-    mirror image any shorter one is, for necks alone are as short. Chosen on people 5, 7, 14 to 18 and 20 in three takes: four
-    such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had 2.9 to 5.2, two
-    false ones 1.5 and 1.7."""
+    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off. In a limb with
+    a mirror image every shorter one is a slice: necks alone are as short. Chosen on people 5, 7, 14 to 18 and 20 in three
+    takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had
+    2.6 to 5.2, two false ones 1.5 and 1.7."""
     most_frames: int = 40
     """Frames of a take in which rings are judged in all of them; of more, in as many pairs of neighbours, in evenly spread runs
     of four frames, 52 in all; for time."""

@@ -132,8 +132,8 @@ class FrameEvidence(NamedTuple):
 def least_evident_joint(
     body: MovingSurface, parts: MovingParts, tree: PartTree, evidence: FrameEvidence, partner: Ints | None = None
 ) -> int:
-    """The smaller part at the joint that the frames show least; −1 where they show all joints, or the mirror images of those
-    that they do not.
+    """The smaller part at the joint that the frames show least, of those whose mirror image they do not show either; −1 where
+    there is none.
 
     body, parts, tree : the reference and its vertices in all frames · its rigid parts · their tree
     partner           : (part,) see `joint_partners`; None where no joint has one
@@ -146,7 +146,7 @@ def least_evident_joint(
     pairs = [sorted(both, key=lambda p: (mass[p], p)) for both in sides]
     scores = np.array([_score(body, parts, evidence, roughness, small, large) for small, large in pairs])
     needed = chosen.misfit_ratio_if_moving if np.isinf(scores).any() else chosen.misfit_ratio
-    is_shown = scores >= needed
+    is_shown = ~(scores < needed)  # parts that no frame sees have no score and stay
     if partner is not None:
         is_shown |= (partner[1:] > 0) & is_shown[np.maximum(partner[1:], 1) - 1]
     unseen = np.where(is_shown, np.inf, scores)

@@ -79,7 +79,8 @@ def joint_partners(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float 
     partner = np.full(len(parts.parents), -1)
     for one, other, row in mirrored_limbs(F, parts, pairs, paired):
         a, b = one.part[row[:, 0]], other.part[row[:, 1]]
-        partner[a], partner[b] = b, a
+        free = (partner[a] < 0) & (partner[b] < 0)  # two ends of one limb each have a pair
+        partner[a[free]], partner[b[free]] = b[free], a[free]
     return partner
 
 
@@ -88,8 +89,8 @@ def symmetry(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float = PAIR
 
     F, paired : as `mirrored_limbs` takes them
     """
-    limbs = mirrored_limbs(F, parts, pairs, paired)
-    return sum(3 * len(row) - len(one.part) - len(other.part) for one, other, row in limbs)
+    has = joint_partners(F, parts, pairs, paired) >= 0
+    return int(has.sum()) // 2 - int((in_mirrored_limbs(parts, pairs) & ~has).sum())
 
 
 def in_mirrored_limbs(parts: RootedParts, pairs: LimbPairs) -> Flags:

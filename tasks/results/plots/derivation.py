@@ -28,7 +28,7 @@ REASONS = {
     "sliding": "slides",
     "unevident": "not shown by the frames",
     "unpaired": "not in the mirrored limb",
-    "alone": "in this cut alone",
+    "alone": "joint of this cut alone",
 }
 """Why parts were dropped, in words for people."""
 

@@ -163,3 +163,31 @@ def test_pruning_asks_for_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> N
         pruned(body, parts, ends, evidence, settings=PRUNING._replace(degrees=0.0, ratio=0.0)) for ends in (tips, tips[1:])
     ]
     assert [left.parts.R.shape[1] for left in count] == [3, 2]
+
+
+@pytest.mark.parametrize(("scores", "goes"), [((np.nan, 2.0), None), ((np.nan, 1.3), 1), ((np.nan, np.nan), None)])
+def test_part_that_no_frame_sees_stays(scores: tuple[float, float], goes: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
+    told, asked = iter(scores), []
+
+    def scored(*of: object) -> float:
+        asked.append(int(str(of[4])))
+        return next(told)
+
+    monkeypatch.setattr(numerics, "_score", scored)
+    found = least_evident_joint(body, parts, part_tree(body, parts), evidence)
+    assert found == (-1 if goes is None else asked[goes])
+
+
+def test_of_joints_without_a_shown_mirror_image_the_least_evident_goes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The least of all has one."""
+    body, parts, evidence = looked_at(chain((-2.0, 1.0, 3.0)), chain((-2.0, 1.0, 3.0)))
+    told, asked = iter((1.1, 2.0, 1.3)), []
+
+    def scored(*of: object) -> float:
+        asked.append(int(str(of[4])))
+        return next(told)
+
+    monkeypatch.setattr(numerics, "_score", scored)
+    found = least_evident_joint(body, parts, part_tree(body, parts), evidence, np.array([-1, 2, 1, -1]))
+    assert found == asked[2]

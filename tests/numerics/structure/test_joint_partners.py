@@ -96,3 +96,11 @@ def test_every_part_of_a_chain_but_that_which_carries_both_ends_is_in_a_limb() -
 def test_symmetry_is_pairs_of_partners_less_joints_without_one(heights: tuple[float, ...], count: int) -> None:
     body, tree, pairs = looked_at(*heights)
     assert symmetry(body.F, RootedParts.of(body.label, tree), pairs) == count
+
+
+def test_pairs_of_ends_in_the_same_two_limbs_count_their_joints_once() -> None:
+    body, tree, pairs = looked_at(-3.5, -1.0, 1.0, 3.5)
+    twice = LimbPairs(np.concatenate([pairs.tip, pairs.tip]), np.concatenate([pairs.distance, pairs.distance]))
+    parts = RootedParts.of(body.label, tree)
+    assert symmetry(body.F, parts, twice) == symmetry(body.F, parts, pairs) == 2
+    np.testing.assert_array_equal(joint_partners(body.F, parts, twice), joint_partners(body.F, parts, pairs))

@@ -55,8 +55,12 @@ def test_a_tree_of_another_cut_than_the_first_says_whose_it_is() -> None:
     body, tree = spider(), tree_of(spider())
     own = structure_words(body, tree)
     assert own.endswith(f"beside it the tree with {body.kinds.count('joint')} joints.")
-    other = structure_words(body, SimpleNamespace(**{**vars(tree), "cut_frame": 9}))
-    assert other == f"{own} It is of the cut in frame 9, which others agree with most."
+    for is_given, why in (
+        (True, "with which other cuts agree most"),
+        (False, "whose limbs are mirror images of each other more"),
+    ):
+        other = structure_words(body, SimpleNamespace(**{**vars(tree), "cut_frame": 9, "is_given": is_given}))
+        assert other == f"{own} It is of the cut in frame 9, {why}."
 
 
 def test_every_picture_of_a_page_says_more_than_its_caption() -> None:
