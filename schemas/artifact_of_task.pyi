@@ -89,6 +89,7 @@ from kinetree.schemas.results.tree_figures import TreeFigures
 from kinetree.schemas.results.truth import Truth
 from kinetree.schemas.results.usd import Usd
 from kinetree.schemas.results.verdict import Verdict
+from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.structure.error_bars import ErrorBars
@@ -117,6 +118,8 @@ class ArtifactOfTask(Protocol):
 
     @overload
     def __call__(self, what: type[A], **index: int) -> A: ...
+    @overload
+    def __call__(self, what: Literal["agreed_tree"], **index: int) -> AgreedTree: ...
     @overload
     def __call__(self, what: Literal["aligned_frame", "arap"], **index: int) -> Arap: ...
     @overload
