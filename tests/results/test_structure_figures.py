@@ -1,5 +1,6 @@
 """Figures of the structure: chapters whose pictures are complete files."""
 
+from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
@@ -79,6 +80,18 @@ def test_parts_stand_where_the_tree_has_them_and_not_where_the_first_cut_has() -
     before = structure(fetched(body, one, tree).__getitem__, []).axes[0]
     (squares,) = (line.get_xydata() for line in before.lines if line.get_marker() == "s")
     assert len(np.unique(squares.round(6), axis=0)) == len(squares) == len(tree.joint_of_part) - 1
+
+
+def test_picture_says_whose_tree_it_is_and_its_titles_stand_side_by_side() -> None:
+    body = spider()
+    parts, tree = parts_of(body), tree_of(body)
+    reasons = [(k, reason) for k, reason in enumerate(REASONS)]
+    other = SimpleNamespace(**{**vars(tree), "cut_frame": 9, "dropped": reasons, "in_tree": tree.in_tree})
+    for shown, has in ((tree, False), (other, True)):
+        titles = [axes.get_title() for axes in structure(fetched(body, parts, shown).__getitem__, []).axes]
+        assert ("parts of the cut in frame 9" in "".join(titles)) == has
+        assert max(len(line) for line in titles[0].splitlines()) <= 64
+    assert all(words in titles[0].replace("\n", " ") for words in REASONS.values())
 
 
 def test_every_reason_for_which_parts_are_dropped_has_words() -> None:

@@ -1,6 +1,7 @@
 """How joints were found: cones, merge errors, elimination, graph of parts, lengths of bones (2014, Figs. 7, 11 and 15)."""
 
 from itertools import pairwise
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +32,8 @@ REASONS = {
     "alone": "joint of this cut alone",
 }
 """Why parts were dropped, in words for people."""
+TITLE = 60
+"""Characters of a line of a title, at most: two pictures stand side by side."""
 
 
 def cones(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
@@ -120,7 +123,8 @@ def structure(fetch: Fetch, frames: list[int], up: int = 1) -> "Figure":
     lost = (tree.centre @ axis)[_lost(tree)]
     after.plot(*lost[:, :2].T, "x", color="black", ms=7, mew=1.8, zorder=6)
     joints = skeleton.kinds.count("joint")
-    heading(after, f"{joints} joints left; crossed: {len(lost)} borders of dropped parts or outside the tree")
+    cut = "" if tree.cut_frame is None else f"\nparts of the cut in frame {tree.cut_frame}"
+    heading(after, f"{joints} joints left; crossed: {len(lost)} borders of dropped parts or outside the tree{cut}")
     return figure
 
 
@@ -202,10 +206,10 @@ def _lost(tree: KinematicTree) -> Any:
 
 
 def _dropped(tree: KinematicTree) -> str:
-    """How many parts were dropped for which reason, as a second line of a title."""
+    """How many parts were dropped for which reason, as further lines of a title."""
     reasons = [reason for _, reason in tree.dropped]
     counted = [f"{reasons.count(reason)} {words}" for reason, words in REASONS.items() if reason in reasons]
-    return f"\ncrossed: {len(reasons)} dropped ({', '.join(counted)})" if counted else ""
+    return "\n" + fill(f"crossed: {len(reasons)} dropped ({', '.join(counted)})", TITLE) if counted else ""
 
 
 def _graph(axes: "Axes", tree: KinematicTree, middle: Floats, centre: Floats, colour: Floats) -> None:
