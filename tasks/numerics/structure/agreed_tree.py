@@ -59,8 +59,8 @@ def agreed_tree(
 ) -> AgreedTree:
     """Chooses the cut whose tree is used, and drops its parts with a joint that no other of at least two cuts has.
 
-    The part without which joints drift least goes first. None goes without which fewer joints are those of other cuts, or
-    joints drift more (`RISE`), or another part is weak.
+    The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
+    before are those of other cuts, if none drifts more (`RISE`), and if no other part is weak then.
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -127,8 +127,7 @@ def _without_one(
         if len(left.dropped) > len(joints.left.dropped) + 1:
             continue
         fewer = tree_of_parts(body, left, joints.used, joints.part, confidence, settings)
-        still = _shared_joints(fewer, others, body.size)
-        if still.sum() < shared.sum() or (~still).sum() >= (~shared).sum():
+        if (~_shared_joints(fewer, others, body.size)).sum() >= (~shared).sum():
             continue
         rise = _rise(joints, fewer)
         if rise <= (best.rise if best else RISE):

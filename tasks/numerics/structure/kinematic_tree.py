@@ -120,7 +120,7 @@ def kinematic_tree(
     body       : as it was aligned
     leaves     : (leaf,) vertices at the ends of limbs
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
-    further    : (frame, joint, xyz) of every further cut of the body, see `agreeing_cut`; joints of the tree are then the mean
+    further    : (frame, joint, xyz) of every cut of the body but the tree's own; joints of the tree are then the mean
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
