@@ -41,9 +41,10 @@ def extended_tree(
     params: ExtendedTreeParams,
 ) -> ExtendedTree:
     """Adds the joints at ends of limbs that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
-    frames, tree = agreed_tree.frames, restored(agreed_tree)
-    body = aligned_body(reference, alignment, leaves)
-    ends = _ends(body, agreed_tree, tree, end_rings, mesh)
+    frames, tree, ends = agreed_tree.frames, restored(agreed_tree), list[EndJoint]()
+    if end_rings:
+        body = aligned_body(reference, alignment, leaves)
+        ends = _ends(body, agreed_tree, tree, end_rings, mesh)
     if ends:
         tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
     laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
@@ -64,9 +65,7 @@ def _ends(
     end_rings: tuple[EndRings, ...],
     mesh: Mapping[int, Mesh],
 ) -> list[EndJoint]:
-    """The joints at ends; none where no frame was judged."""
-    if not end_rings:
-        return []
+    """The joints at ends, by what the judged frames show."""
     names, (V, F, _, area, takes) = rings_numerics.EndRings._fields, body.surface
     runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
     surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, body.surface.size))
