@@ -26,19 +26,28 @@ def body() -> Known:
     return chain(HEIGHTS, swings(FRAMES, len(HEIGHTS) + 1, 25, seed=2), along=60)
 
 
-def ringed(slide: float, at: tuple[float, float] = (0.0, 0.9)) -> tuple[Known, FirstTree]:
-    """The body with a ring between two heights as a part, which turns a little against the part above and slides; its tree."""
-    true = body()
-    above = int(true.label[np.abs(true.V[:, 2] - at[1]).argmin()])
-    ring = (true.V[:, 2] > at[0]) & (true.V[:, 2] < at[1])
-    off = slide * np.random.default_rng(0).normal(size=(FRAMES, 1, 3))
-    R, t = (np.concatenate([a, a[:, above : above + 1]], axis=1) for a in (true.R, true.t))
-    middle, turn = np.array([0.0, 0.0, sum(at) / 2]), swings(FRAMES, 1, 8, seed=3)[:, 0]
+def with_ring(cut: Cut, at: tuple[float, float], slide: float) -> Cut:
+    """A cut with one part more, a ring between two heights that turns a little against the part above and slides by so much."""
+    z, (low, high) = cut.V[:, 2], at
+    above = int(cut.label[np.abs(z - high).argmin()])
+    R, t = (np.concatenate([a, a[:, above : above + 1]], axis=1) for a in (cut.R, cut.t))
+    middle, turn = np.array([0.0, 0.0, (low + high) / 2]), swings(FRAMES, 1, 8, seed=3)[:, 0]
     R[:, -1] = R[:, -1] @ turn
-    t[:, -1] += off[:, 0] + np.einsum("txy,y->tx", R[:, above], middle) - np.einsum("txy,y->tx", R[:, -1], middle)
-    label = np.where(ring, R.shape[1] - 1, true.label)
-    cut = Cut(true.V, label, R, t, np.zeros(R.shape[:2]))
-    return true._replace(label=label, R=R, t=t), first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+    t[:, -1] += np.einsum("txy,y->tx", R[:, above], middle) - np.einsum("txy,y->tx", R[:, -1], middle)
+    t[:, -1] += slide * np.random.default_rng(0).normal(size=(FRAMES, 3))
+    return Cut(cut.V, np.where((z > low) & (z < high), R.shape[1] - 1, cut.label), R, t, np.zeros(R.shape[:2]))
+
+
+def cut_of(true: Known, *rings: tuple[tuple[float, float], float]) -> FirstTree:
+    """The tree of a cut with the true parts, and with such rings."""
+    cut = Cut(true.V, true.label, true.R, true.t, true.residual)
+    for at, slide in rings:
+        cut = with_ring(cut, at, slide)
+    return first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+
+
+def ringed(slide: float, at: tuple[float, float] = (0.0, 0.9)) -> FirstTree:
+    return cut_of(body(), (at, slide))
 
 
 class OtherTree(NamedTuple):
@@ -80,7 +89,7 @@ def heights(tree: FirstTree) -> list[float]:
 
 
 def test_ring_that_no_other_cut_has_goes_and_says_why() -> None:
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     assert len(heights(tree)) == 4
     found = left(tree, [joints_at(*HEIGHTS)] * 2)
     np.testing.assert_allclose(heights(found), HEIGHTS, atol=0.1)
@@ -99,52 +108,36 @@ def test_ring_that_no_other_cut_has_goes_and_says_why() -> None:
     ids=["no other cut", "one of two has it"],
 )
 def test_it_stays_where_no_other_cut_is_or_one_has_it(others: list[FirstTree]) -> None:
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     assert left(tree, others) is tree
 
 
 def test_true_joint_that_other_cuts_miss_stays_since_its_neighbours_would_drift_more() -> None:
-    _, tree = ringed(0.0, (4.0, 4.1))
+    tree = ringed(0.0, (4.0, 4.1))
     others = [joints_at(-3.0, 2.6), joints_at(-3.0, 2.6)]
     assert left(tree, others) is tree
 
 
 def test_last_part_of_a_limb_stays() -> None:
     """Without it no joint would come in the place of its own."""
-    _, tree = ringed(0.15, (4.0, 5.1))
+    tree = ringed(0.15, (4.0, 5.1))
     assert left(tree, [joints_at(*HEIGHTS)] * 2) is tree
 
 
 @pytest.mark.parametrize(("rise", "stays"), [(1.14, False), (1.16, True)])
 def test_how_much_more_joints_may_drift_without_it(rise: float, stays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     monkeypatch.setattr(numerics, "_rise", lambda *of: rise)
     assert (left(tree, [joints_at(*HEIGHTS)] * 2) is tree) == stays
 
 
 def test_of_two_cuts_neither_is_in_the_majority() -> None:
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     assert left(tree, [joints_at(*HEIGHTS)]) is tree
 
 
-def two_rings() -> FirstTree:
-    """A ring above the lowest joint that slides much, and one above the highest that slides little."""
-    true = body()
-    cut = Cut(true.V, true.label, true.R, true.t, true.residual)
-    for (low, high), slide in (((-3.0, -2.1), 0.3), ((2.6, 3.5), 0.1)):
-        above = int(true.label[np.abs(true.V[:, 2] - high).argmin()])
-        ring = (true.V[:, 2] > low) & (true.V[:, 2] < high)
-        R, t = (np.concatenate([a, a[:, above : above + 1]], axis=1) for a in (cut.R, cut.t))
-        middle, turn = np.array([0.0, 0.0, (low + high) / 2]), swings(FRAMES, 1, 8, seed=3)[:, 0]
-        R[:, -1] = R[:, -1] @ turn
-        t[:, -1] += np.einsum("txy,y->tx", R[:, above], middle) - np.einsum("txy,y->tx", R[:, -1], middle)
-        t[:, -1] += slide * np.random.default_rng(0).normal(size=(FRAMES, 3))
-        cut = Cut(cut.V, np.where(ring, R.shape[1] - 1, cut.label), R, t, np.zeros(R.shape[:2]))
-    return first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
-
-
 def test_both_of_two_rings_go_the_one_first_without_which_joints_drift_least(monkeypatch: pytest.MonkeyPatch) -> None:
-    tree = two_rings()
+    tree = cut_of(body(), ((-3.0, -2.1), 0.3), ((2.6, 3.5), 0.1))
     assert len(heights(tree)) == 5
     for low, high in ((4, 5), (5, 4)):
         rises = {int(tree.place[low]): 0.5, int(tree.place[high]): 0.9}
@@ -155,7 +148,7 @@ def test_both_of_two_rings_go_the_one_first_without_which_joints_drift_least(mon
 
 
 def test_parts_dropped_before_stay_dropped() -> None:
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     before = tree._replace(place=np.append(tree.place, -1), graph=tree.graph._replace(dropped=(Dropped(5, "still"),)))
     found = left(before, [joints_at(*HEIGHTS)] * 2)
     assert [(d.part, d.reason) for d in found.graph.dropped] == [(5, "still"), (4, "alone")]
@@ -190,20 +183,22 @@ def test_rise_is_the_largest_drift_of_new_joints_in_that_of_those_gone() -> None
 
 def test_joint_that_others_have_is_not_lost_for_it() -> None:
     """Another cut has a joint in the ring's place and none at the true one."""
-    _, tree = ringed(0.15)
+    tree = ringed(0.15)
     assert left(tree, [joints_at(-3.0, 0.9, 2.6)] * 2) is tree
+
+
+def tube(*heights: float) -> Known:
+    return chain(heights, swings(FRAMES, len(heights) + 1, 25, seed=2), along=60)
 
 
 def bent_at(*heights: float) -> FirstTree:
     """The tree of a tube bent at these heights."""
-    true = chain(heights, swings(FRAMES, len(heights) + 1, 25, seed=2), along=60)
-    cut = Cut(true.V, true.label, true.R, true.t, true.residual)
-    return first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+    return cut_of(tube(*heights))
 
 
 def of_pair(trees: list[FirstTree], evidence: FrameEvidence | None = None) -> AgreedTree:
     """The ends of the tube are a pair."""
-    true = chain((-2.0, 2.0), swings(FRAMES, 3, 25, seed=2), along=60)
+    true = tube(-2.0, 2.0)
     sides = [int(np.argmin(np.linalg.norm(true.V - [x, 0.0, 0.0], axis=1))) for x in (1.0, -1.0)]
     tips = np.array([true.V[:, 2].argmin(), true.V[:, 2].argmax(), *sides])
     return agreed_tree(moving(true), trees, tips, None, evidence, settings=ALL_STAY)
@@ -235,15 +230,7 @@ def test_tree_of_another_cut_needs_the_evidence_that_the_first_has(monkeypatch: 
 
 def test_of_another_cut_the_joint_that_it_has_alone_goes_too(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its tree has joints at both ends, as the third cut, and a ring that slides."""
-    true = chain((-2.0, 2.0), swings(FRAMES, 3, 25, seed=2), along=60)
-    ring = (true.V[:, 2] > 2.0) & (true.V[:, 2] < 2.9)
-    R, t = (np.concatenate([a, a[:, 2:3]], axis=1) for a in (true.R, true.t))
-    middle, turn = np.array([0.0, 0.0, 2.45]), swings(FRAMES, 1, 8, seed=3)[:, 0]
-    R[:, 3] = R[:, 3] @ turn
-    t[:, 3] += np.einsum("txy,y->tx", R[:, 2], middle) - np.einsum("txy,y->tx", R[:, 3], middle)
-    t[:, 3] += 0.15 * np.random.default_rng(0).normal(size=(FRAMES, 3))
-    cut = Cut(true.V, np.where(ring, 3, true.label), R, t, np.zeros(R.shape[:2]))
-    slid = first_tree(moving(true), cut, TIPS, settings=ALL_STAY)
+    slid = cut_of(tube(-2.0, 2.0), ((2.0, 2.9), 0.15))
     assert len(slid.parents) == 4
     one, two = bent_at(2.0), bent_at(-2.0, 2.0)
     monkeypatch.setattr(numerics, "agreeing_cut", lambda *of: 1)

@@ -1,5 +1,7 @@
 """What the surface shows: parts that slid along it are none, parts that bend it are."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import pytest
 from articulated import Known, chain
@@ -106,19 +108,24 @@ def test_body_that_only_slid_is_one_part_and_one_that_bends_two() -> None:
         assert pruned(body, parts, tips, evidence, settings=PRUNING._replace(ratio=0.0)).parts.R.shape[1] == count
 
 
+def scored_so(scores: Iterable[float], monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Joints have these scores, one after the other · the smaller parts that were asked for, as they are."""
+    told, asked = iter(scores), []
+
+    def scored(*of: object) -> float:
+        asked.append(int(str(of[4])))
+        return next(told)
+
+    monkeypatch.setattr(numerics, "_score", scored)
+    return asked
+
+
 @pytest.mark.parametrize(("first", "second", "goes"), [(2.0, 1.3, True), (np.inf, 1.3, False), (np.inf, 1.05, True)])
 def test_joint_needs_less_where_another_moves_clearly(
     first: float, second: float, goes: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
-    scores = iter((first, second))
-    asked: list[int] = []
-
-    def scored(*told: object) -> float:
-        asked.append(int(str(told[4])))
-        return next(scores)
-
-    monkeypatch.setattr(numerics, "_score", scored)
+    asked = scored_so((first, second), monkeypatch)
     found = least_evident_joint(body, parts, part_tree(body, parts), evidence)
     assert found == (asked[1] if goes else -1)
 
@@ -138,13 +145,7 @@ def test_joint_whose_mirror_image_is_shown_stays(
     scores: tuple[float, float], partner: tuple[int, ...] | None, goes: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
-    told, asked = iter(scores), []
-
-    def scored(*of: object) -> float:
-        asked.append(int(str(of[4])))
-        return next(told)
-
-    monkeypatch.setattr(numerics, "_score", scored)
+    asked = scored_so(scores, monkeypatch)
     found = least_evident_joint(body, parts, part_tree(body, parts), evidence, None if partner is None else np.array(partner))
     assert found == (-1 if goes is None else asked[goes])
 
@@ -168,13 +169,7 @@ def test_pruning_asks_for_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize(("scores", "goes"), [((np.nan, 2.0), None), ((np.nan, 1.3), 1), ((np.nan, np.nan), None)])
 def test_part_that_no_frame_sees_stays(scores: tuple[float, float], goes: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
     body, parts, evidence = looked_at(chain((-2.0, 1.0)), chain((-2.0, 1.0)))
-    told, asked = iter(scores), []
-
-    def scored(*of: object) -> float:
-        asked.append(int(str(of[4])))
-        return next(told)
-
-    monkeypatch.setattr(numerics, "_score", scored)
+    asked = scored_so(scores, monkeypatch)
     found = least_evident_joint(body, parts, part_tree(body, parts), evidence)
     assert found == (-1 if goes is None else asked[goes])
 
@@ -182,12 +177,6 @@ def test_part_that_no_frame_sees_stays(scores: tuple[float, float], goes: int | 
 def test_of_joints_without_a_shown_mirror_image_the_least_evident_goes(monkeypatch: pytest.MonkeyPatch) -> None:
     """The least of all has one."""
     body, parts, evidence = looked_at(chain((-2.0, 1.0, 3.0)), chain((-2.0, 1.0, 3.0)))
-    told, asked = iter((1.1, 2.0, 1.3)), []
-
-    def scored(*of: object) -> float:
-        asked.append(int(str(of[4])))
-        return next(told)
-
-    monkeypatch.setattr(numerics, "_score", scored)
+    asked = scored_so((1.1, 2.0, 1.3), monkeypatch)
     found = least_evident_joint(body, parts, part_tree(body, parts), evidence, np.array([-1, 2, 1, -1]))
     assert found == asked[2]
