@@ -50,7 +50,7 @@ class MovingSkin(NamedTuple):
         """The same with the weights that explain the skin best, held near those it has; hold, mesh unit²."""
         every, parts = np.zeros(len(self.V), np.int64), np.arange(self.R.shape[1])[None]
         H, g = grams(self.V, self.x, self.R, self.t, every, parts, np.ones(self.x.shape[:2]))
-        return self._replace(W=on_simplex(H, g, np.full(len(self.V), hold), self.W))
+        return self._replace(W=on_simplex(H, g, np.full(len(self.V), hold), self.W, np.full(len(self.V), parts.shape[1])))
 
     def squares(self) -> Floats:
         """(frame, vertex) squared distance between the skin and where its parts carry it, mesh unit²."""

@@ -59,10 +59,10 @@ def skinning(
     start, ring = rings(F, len(V))
     W = np.zeros((len(V), near.shape[1]))
     W[:, 0] = 1.0
-    hold = np.full(len(V), noise**2)
+    hold, count = np.full(len(V), noise**2), (near >= 0).sum(axis=1)[label]
     for _ in range(chosen.rounds):
         around = _smoothed(W, label, near, start, ring)
-        W = on_simplex(H, g, hold, around)
+        W = on_simplex(H, g, hold, around, count)
     dense = np.zeros((len(V), len(parents)))
     slots = near[label]
     for k in range(near.shape[1]):
@@ -156,12 +156,13 @@ def _smoothed(W: Floats, label: Ints, near: Ints, start: Ints, ring: Ints) -> Fl
 
 
 @compiled
-def on_simplex(H: Floats, g: Floats, hold: Floats, around: Floats) -> Floats:
+def on_simplex(H: Floats, g: Floats, hold: Floats, around: Floats, count: Ints) -> Floats:
     """The least of wᵀHw − 2gᵀw + hold |w − around|² over w ≥ 0, Σ w = 1: weight handed from one candidate to another.
 
     H, g    : see `grams`
     hold    : (vertex,) mesh unit²
     around  : (vertex, slot) weights to begin from, not negative, summing to 1
+    count   : (vertex,) candidates that it has, in the first slots
     returns : (vertex, slot)
     """
     slots = H.shape[1]
@@ -170,7 +171,7 @@ def on_simplex(H: Floats, g: Floats, hold: Floats, around: Floats) -> Floats:
         w = out[v]
         for _ in range(30):
             moved = 0.0
-            for k in range(slots):
+            for k in range(count[v]):
                 for m in range(k):
                     slope, bend = 0.0, H[v, k, k] + H[v, m, m] - 2 * H[v, k, m] + 2 * hold[v]
                     for i in range(slots):
