@@ -11,18 +11,23 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 MOST_COMPARED = 96
 """Frames whose rotations are compared each with each, about; for time."""
+FEW_FRAMES = 16
+"""Frames of all takes below which no rotation is left out."""
 OUT_OF_ROUND = 0.1
 """Share of a roll's displacement along the normals, from which on the surface shows the roll in full. Not recorded."""
 
 
-def turning_range(turns: Floats) -> float:
+def turning_range(turns: Floats, frames: int | None = None) -> float:
     """The widest angle in degrees between any two rotations (frame, 3, 3), without those of two frames, which may be wrong.
 
-    Of fewer than 16 frames one may be wrong, of fewer than 8 none.
+    Of fewer than 16 frames one may be wrong, of fewer than 8 none. If the body has fewer than 16 in all, none is left out: of
+    so few, a joint often turns in one alone.
+
+    frames : how many the body has; None for as many as there are rotations
     """
     every = turns[:: max(1, len(turns) // MOST_COMPARED)].reshape(-1, 9)
     cosine = (every @ every.T - 1.0) / 2.0
-    rank = min(3, 1 + len(every) // 8)
+    rank = min(3, 1 + len(every) // 8) if (frames or len(turns)) >= FEW_FRAMES else 1
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     third = np.sort(angle, axis=1)[:, -rank]
     return float(np.degrees(np.sort(third)[-rank]))
@@ -30,7 +35,7 @@ def turning_range(turns: Floats) -> float:
 
 def widest_turning_range(turns: Floats, spans: Ints) -> float:
     """The widest `turning_range` of rotations (frame, 3, 3) over any of the spans (span, 2), see `score_spans`; degrees."""
-    return max(turning_range(turns[begin:end]) for begin, end in spans)
+    return max(turning_range(turns[begin:end], len(turns)) for begin, end in spans)
 
 
 def joint_degrees(R: Floats, parents: Ints, turns: Flags, takes: Sequence[slice] | None = None) -> Floats:

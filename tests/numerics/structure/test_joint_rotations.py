@@ -5,7 +5,14 @@ import pytest
 from limbs import rotation, tube
 
 from kinetree.tasks.numerics.geometry.normals import smoothed_normals
-from kinetree.tasks.numerics.structure.joint_rotations import in_between, joint_degrees, mean_rotation, swing, turning_range
+from kinetree.tasks.numerics.structure.joint_rotations import (
+    in_between,
+    joint_degrees,
+    mean_rotation,
+    swing,
+    turning_range,
+    widest_turning_range,
+)
 
 WAVE = np.sin(2 * np.pi * np.arange(40) / 40)
 
@@ -20,6 +27,21 @@ def test_range_is_the_widest_angle_between_frames_and_two_frames_may_err() -> No
     turns[[5, 20]] = rotation((1.0, 0.0, 0.0), 2.0)
     assert turning_range(turns) == pytest.approx(60, abs=4)
     assert turning_range(np.tile(np.eye(3), (40, 1, 1))) == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize("frames", [5, 9, 15])
+def test_what_turns_in_one_of_a_few_frames_has_turned(frames: int) -> None:
+    turns = np.tile(np.eye(3), (frames, 1, 1))
+    turns[3] = rotation((1.0, 0.0, 0.0), 0.5)
+    assert turning_range(turns) == pytest.approx(np.rad2deg(0.5))
+    assert turning_range(np.concatenate([turns, np.tile(np.eye(3), (16 - frames, 1, 1))])) == pytest.approx(0, abs=1e-5)
+
+
+def test_of_many_short_takes_one_wrong_frame_makes_no_turn() -> None:
+    turns = np.tile(np.eye(3), (40, 1, 1))
+    turns[13] = rotation((1.0, 0.0, 0.0), 0.5)
+    spans = np.array([[k, k + 10] for k in range(0, 40, 10)])
+    assert widest_turning_range(turns, spans) == pytest.approx(0, abs=1e-5)
 
 
 def test_mean_of_swings_to_either_side_is_none() -> None:
