@@ -41,6 +41,19 @@ def sampled_piece(V: Floats, N: Floats, weight: Floats, far: Flags, hinge: Float
     return Piece(points, normals, np.maximum(weight[at], 1e-3) ** 2, beyond, hinge, joint)
 
 
+def halves(piece: Piece) -> tuple[Piece, Piece]:
+    """The piece twice: all points before the hinge, and of those beyond it the odd ones or the even ones, twice as heavy."""
+    nth = np.cumsum(piece.far) % 2
+    first, second = (_with(piece, ~piece.far | (nth == side)) for side in (1, 0))
+    return first, second
+
+
+def _with(piece: Piece, kept: Flags) -> Piece:
+    """The piece with these of its points, those beyond the hinge twice as heavy."""
+    mass = np.where(piece.far, 2.0, 1.0) * piece.mass
+    return piece._replace(V=piece.V[kept], N=piece.N[kept], mass=mass[kept], far=piece.far[kept])
+
+
 def laid_as_one(
     piece: Piece, start: PiecePose, goal: Floats, target: Target, settings: PieceFitSettings | None = None
 ) -> PieceFit:
@@ -59,6 +72,22 @@ def laid_hinged(piece: Piece, one: PieceFit, goal: Floats, target: Target, turn:
         if other.cost(piece.mass) < BETTER * best.cost(piece.mass):
             best = other
     return HingedFit(one.cost(piece.mass), best.cost(piece.mass), best.pose)
+
+
+def turns_of_halves(both: tuple[Piece, Piece], start: PiecePose, goal: Floats, target: Target) -> tuple[Floats, Floats]:
+    """(3, 3) · (3, 3) the turn of the hinge as each half is fitted from the same pose.
+
+    both : see `halves`
+    goal : (xyz,) where the rest of the body has the part's joint, mesh unit
+    """
+    first, second = (_turn(piece, start, goal, target) for piece in both)
+    return first, second
+
+
+def _turn(piece: Piece, start: PiecePose, goal: Floats, target: Target) -> Floats:
+    """(3, 3) the turn of the hinge as the piece is fitted from a pose."""
+    y, n, _ = placed_piece(piece, start)
+    return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=True).pose.Q
 
 
 def motions(pose: PiecePose, hinge: Floats) -> tuple[Floats, Floats]:

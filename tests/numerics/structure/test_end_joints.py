@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from limbs import rotation
 from smeared import END, Frames, aligned, found_in, turning
 from whole_tree import joints_at_ends
 
@@ -13,15 +14,24 @@ from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
 def joints_at(
-    degrees: float,
+    degrees: float | Floats,
     noise: float = 0.0,
     settings: EndJointsSettings | None = None,
     bent: float = 0.0,
     mirrored: tuple[int, ...] = (),
 ) -> list[EndJoint]:
-    surface, tree = found_in(aligned(turning(degrees), bent))
-    shown = Frames(turning(degrees), noise).prepared(surface.size)
+    turn = turning(degrees) if isinstance(degrees, float) else degrees
+    surface, tree = found_in(aligned(turn, bent))
+    shown = Frames(turn, noise).prepared(surface.size)
     return joints_at_ends(surface, in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), shown, settings, mirrored)
+
+
+def to_and_fro(degrees: float, of_middle: float = 20.0) -> Floats:
+    """Turns as in frames that are far apart: middle and end lie on the other side in every next one, the end twice running."""
+    turn, frames = turning(0.0), np.arange(24)
+    turn[:, 1] = [rotation((1.0, 0.0, 0.0), np.radians(of_middle) * (-1.0) ** f) for f in frames]
+    turn[:, 2] = [rotation((1.0, 0.0, 0.0), np.radians(degrees) * (-1.0) ** (f // 2)) for f in frames]
+    return turn
 
 
 def found_in_takes(degrees: Sequence[float | Floats], noise: float) -> list[EndJoint]:
@@ -47,6 +57,38 @@ def test_the_piece_beyond_moves_as_in_the_frames() -> None:
     # a round tube does not show how it turns about its own axis
     cosine = between[:, 2, 2]
     assert np.degrees(np.arccos(np.clip(cosine, -1, 1))).max() < 6.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_where_frames_are_far_apart_both_halves_of_what_lies_beyond_show_the_joint(noise: float) -> None:
+    (joint,) = joints_at(to_and_fro(15.0), noise)
+    np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
+    for refused in ({"least_in_halves": 10.0}, {"goes_on": -2.0}, {"nearer": 60.0}):
+        assert joints_at(to_and_fro(15.0), noise, EndJointsSettings(**refused)) == []
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_where_frames_are_far_apart_no_joint_is_found_where_nothing_turns(noise: float) -> None:
+    assert joints_at(to_and_fro(0.0), noise) == []
+
+
+def test_where_turns_go_on_halves_are_not_asked() -> None:
+    turn = turning(0.0)
+    turn[:, 2] = to_and_fro(15.0)[:, 2]
+    assert joints_at(turn) == []
+
+
+@pytest.mark.parametrize(("below", "joints"), [(0.9, 1), (1.1, 0)])
+def test_scores_by_halves_count_by_their_own_limit(below: float, joints: int) -> None:
+    (joint,), chosen = joints_at(to_and_fro(15.0)), EndJointsSettings()
+    limit = joint.score * chosen.least_in_halves / chosen.least_score
+    assert len(joints_at(to_and_fro(15.0), settings=EndJointsSettings(least_in_halves=below * limit))) == joints
+
+
+def test_a_take_with_frames_far_apart_does_not_hide_the_joint_of_another() -> None:
+    still = to_and_fro(15.0)
+    still[:, 1] = np.eye(3)
+    assert len(found_in_takes([6.0, still], 0.02)) == 1
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02, 0.05])

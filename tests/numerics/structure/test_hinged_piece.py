@@ -1,10 +1,19 @@
 """Laws of a limb's last part in two pieces: the hinge holds them together, and skin goes with those that it follows."""
 
 import numpy as np
+import pytest
 from limbs import rotation
 
-from kinetree.tasks.numerics.structure.hinged_piece import POINTS, motions, on_pieces, sampled_piece
-from kinetree.tasks.numerics.structure.piece_fit import PiecePose
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.hinged_piece import (
+    POINTS,
+    halves,
+    motions,
+    on_pieces,
+    sampled_piece,
+    turns_of_halves,
+)
+from kinetree.tasks.numerics.structure.piece_fit import Piece, PiecePose
 
 V = np.random.default_rng(0).normal(size=(40, 3))
 HINGE = np.array([0.1, -0.4, 0.3])
@@ -48,3 +57,36 @@ def test_points_of_a_sample_lie_one_after_the_other() -> None:
     many = np.tile(V, (50, 1))
     piece = sampled_piece(many, many, np.ones(len(many)), np.ones(len(many), np.bool_), HINGE, HINGE)
     assert all(a.flags.c_contiguous for a in (piece.V, piece.N, piece.mass, piece.far))  # one type for what is compiled
+
+
+def test_halves_share_what_is_near_and_divide_what_lies_beyond() -> None:
+    points, weight = np.random.default_rng(1).normal(size=(201, 3)), np.linspace(0.1, 1.0, 201)
+    far = points[:, 0] > 0.3
+    piece = sampled_piece(points, -points, weight, far, HINGE, HINGE)
+    both = halves(piece)
+    for half in both:
+        np.testing.assert_array_equal(half.V[~half.far], points[~far])
+        np.testing.assert_array_equal(half.mass[~half.far], piece.mass[~far])
+        np.testing.assert_array_equal(half.N, -half.V)
+        assert all(a.flags.c_contiguous for a in (half.V, half.N, half.mass, half.far))
+    for side, half in enumerate(both):
+        np.testing.assert_array_equal(half.V[half.far], points[far][side::2])
+        np.testing.assert_array_equal(half.mass[half.far], 2.0 * piece.mass[far][side::2])
+
+
+def test_each_half_turns_as_its_own_points_lie() -> None:
+    grid = np.linspace(-1.0, 1.0, 9)
+    V = np.array([[x, y, z] for z in (-1.0, 1.0) for x in grid for y in grid])
+    N, far = np.tile([0.0, 0.0, 1.0], (len(V), 1)), V[:, 2] > 0.0
+    piece, still = Piece(V, N, np.ones(len(V)), far, np.zeros(3), np.zeros(3)), PiecePose(np.eye(3), np.zeros(3), np.eye(3))
+    sheet = np.array([[x, y, z] for z in (-1.0, 1.0) for x in np.linspace(-2, 2, 41) for y in np.linspace(-2, 2, 41)])
+    i, j = np.arange(41 * 40) // 40, np.arange(41 * 40) % 40
+    a = (41 * i + j)[i < 40]
+    one = np.concatenate([np.stack([a, a + 41, a + 1], 1), np.stack([a + 1, a + 41, a + 42], 1)])
+    F, top = np.concatenate([one, one + 41 * 41]), sheet[:, 2] > 0.0
+    for angle in (0.0, 0.2):
+        x = sheet.copy()
+        x[top] = sheet[top] @ rotation((1.0, 0.0, 0.0), angle).T
+        turns = turns_of_halves(halves(piece), still, np.zeros(3), Target.of(x, F, 10.0))
+        for Q in turns:
+            assert np.arccos(Q[2, 2]) == pytest.approx(angle, abs=0.01)

@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 from limbs import rotation
 
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.hinged_piece import HingedFit
 from kinetree.tasks.numerics.structure.piece_fit import PiecePose
-from kinetree.tasks.numerics.structure.ring_evidence import judged_frames, ring_evidence, ring_score
+from kinetree.tasks.numerics.structure.ring_evidence import (
+    evidence_of_halves,
+    going_on,
+    judged_frames,
+    ring_evidence,
+    ring_score,
+)
 
 
 def test_judged_frames_follow_each_other_within_a_take() -> None:
@@ -66,3 +73,35 @@ def test_a_hinge_that_does_no_better_than_held_shows_nothing() -> None:
     assert told[1].near == 0.0
     assert told[1].far == pytest.approx(np.degrees(0.3 / np.sqrt(2)), rel=0.1)
     assert ring_evidence(above, {f: fits[f] for f in range(3)}, dict.fromkeys(fits, 4.0), pairs).score == 0.0
+
+
+def test_halves_that_turn_alike_are_evidence_however_the_turn_goes_on() -> None:
+    angle, other = np.random.default_rng(2).normal(0.0, 0.3, (2, 40))
+    turn, odd = ([rotation((1.0, 0.0, 0.0), a) for a in angles] for angles in (angle, other))
+    fits = {f: HingedFit(4.0, 1.0, PiecePose(turn[f], np.zeros(3), turn[f])) for f in range(40)}
+    (_, pairs), held, above = judged_frames(40, None, 40), dict.fromkeys(fits, 4.0), np.tile(np.eye(3), (40, 1, 1))
+    shown = ring_evidence(above, fits, held, pairs)
+    assert shown.score < 0.1
+    alike, unlike = ({f: (turn[f], second[f]) for f in reversed(range(40))} for second in (turn, odd))
+    found = evidence_of_halves(shown, above, fits, held, alike)
+    assert found.score == pytest.approx(1.0 - 1.0 / np.sqrt(40), abs=1e-9)
+    assert found.near == pytest.approx(found.far)
+    assert found.far == pytest.approx(np.degrees(np.std(angle)), rel=0.01)
+    assert found.gain == shown.gain
+    assert evidence_of_halves(shown, above, fits, held, unlike).score < 0.1
+    assert evidence_of_halves(shown, above, fits, dict.fromkeys(fits, 1.0), alike).score == 0.0
+
+
+def test_slow_turns_go_on_and_turns_to_and_fro_do_not() -> None:
+    def about(angles: Floats) -> Floats:
+        return np.stack([rotation((1.0, 0.0, 0.0), a) for a in angles])
+
+    frames = np.arange(40)
+    slow, fro, still = about(np.sin(frames / 5)), about(0.5 * (-1.0) ** frames), about(0.01 * (-1.0) ** frames)
+    _, pairs = judged_frames(40, None, 40)
+    assert going_on(np.stack([slow, slow, fro], axis=1), pairs, 4.0) == pytest.approx(0.98, abs=0.02)
+    assert going_on(np.stack([slow, fro, fro], axis=1), pairs, 4.0) == pytest.approx(-1.0)
+    assert going_on(np.stack([slow, still, still], axis=1), pairs, 4.0) > 0.9
+    assert going_on(still[:, None], pairs, 4.0) == 1.0
+    _, apart = judged_frames(40, [slice(k, k + 2) for k in range(0, 40, 2)], 40)
+    assert going_on(about((-1.0) ** (frames // 2))[:, None], apart, 4.0) == pytest.approx(1.0)
