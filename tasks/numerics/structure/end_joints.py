@@ -177,9 +177,9 @@ def _judged(
     steady = dict(zip(likely, _left_at(frames, [within[k] for k in likely], list(mean.values())), strict=True))
     for k in likely:
         evidence[k] = ring_evidence(above[k], within[k].fits, steady[k], pairs)
-    unclear = [k for k in likely if apart and evidence[k].score < chosen.least_score]
-    turns = _turns_of_halves(frames, [within[k] for k in unclear], [mean[k] for k in unclear])
-    for k, of_halves in zip(unclear, turns, strict=True):
+    by_halves = likely if apart else []
+    turns = _turns_of_halves(frames, [within[k] for k in by_halves], [mean[k] for k in by_halves])
+    for k, of_halves in zip(by_halves, turns, strict=True):
         shown = evidence_of_halves(evidence[k], above[k], within[k].fits, steady[k], of_halves)
         if shown.score >= chosen.least_in_halves:
             evidence[k] = shown._replace(score=shown.score * chosen.least_score / chosen.least_in_halves)

@@ -78,6 +78,16 @@ def test_where_turns_go_on_halves_are_not_asked() -> None:
     assert joints_at(turn) == []
 
 
+def test_where_frames_are_far_apart_a_turn_that_goes_on_is_found_too() -> None:
+    turn = to_and_fro(0.0)
+    turn[:, 2] = turning(25.0)[:, 2]
+    assert len(joints_at(turn)) == 1
+
+
+def test_whether_frames_are_far_apart_is_judged_take_by_take() -> None:
+    assert len(found_in_takes([0.0, 0.0, 0.0, to_and_fro(15.0)], 0.0)) == 1
+
+
 @pytest.mark.parametrize(("below", "joints"), [(0.9, 1), (1.1, 0)])
 def test_scores_by_halves_count_by_their_own_limit(below: float, joints: int) -> None:
     (joint,), chosen = joints_at(to_and_fro(15.0)), EndJointsSettings()

@@ -87,6 +87,8 @@ def test_each_half_turns_as_its_own_points_lie() -> None:
     for angle in (0.0, 0.2):
         x = sheet.copy()
         x[top] = sheet[top] @ rotation((1.0, 0.0, 0.0), angle).T
-        turns = turns_of_halves(halves(piece), still, np.zeros(3), Target.of(x, F, 10.0))
-        for Q in turns:
-            assert np.arccos(Q[2, 2]) == pytest.approx(angle, abs=0.01)
+        first, second = halves(piece)
+        back = rotation((1.0, 0.0, 0.0), -0.1)
+        second = second._replace(V=np.where(second.far[:, None], second.V @ back.T, second.V))
+        turns = turns_of_halves((first, second), still, np.zeros(3), Target.of(x, F, 10.0))
+        assert np.arccos([Q[2, 2] for Q in turns]) == pytest.approx([angle, angle + 0.1], abs=0.01)
