@@ -170,7 +170,7 @@ def _judged(
         ring_evidence(R, one.fits, {f: fit.one for f, fit in one.fits.items()}, pairs)
         for R, one in zip(above, within, strict=True)
     ]
-    apart = len(pairs) > 0 and going_on(_against_parents(tree), pairs, chosen.nearer) < chosen.goes_on
+    apart = len(pairs) > 0 and going_on(tree.R, tree.parents, pairs, chosen.nearer) < chosen.goes_on
     clear = (1.0 + chosen.least_in_halves) ** 2
     likely = [k for k, shown in enumerate(evidence) if shown.score >= chosen.least_score or (apart and shown.gain >= clear)]
     mean = {k: _mean_turn(within[k].fits) for k in likely}
@@ -184,11 +184,6 @@ def _judged(
         if shown.score >= chosen.least_in_halves:
             evidence[k] = shown._replace(score=shown.score * chosen.least_score / chosen.least_in_halves)
     return evidence
-
-
-def _against_parents(tree: FirstTree) -> Floats:
-    """(frame, joint, 3, 3) the turn of every part but the root against the part above."""
-    return np.asarray(tree.R[:, tree.parents[1:]].swapaxes(2, 3) @ tree.R[:, 1:])
 
 
 def _mean_turn(fits: Fits) -> Floats:

@@ -75,20 +75,21 @@ def evidence_of_halves(
     return shown._replace(score=score, far=far, near=float(np.degrees(np.sqrt((near**2).sum(axis=1).mean()))))
 
 
-def going_on(turns: Floats, pairs: Ints, least: float) -> float:
+def going_on(R: Floats, parents: Ints, pairs: Ints, least: float) -> float:
     """How much of the turn of a body's joints goes on from frame to frame: 1 for slow ones, 0 where frames are far apart.
 
     The median over the joints of the correlation of a turn with that in the next frame.
 
-    turns   : (frame, joint, 3, 3) of each part against the part above
+    R       : (frame, part, 3, 3) motions of the parts, from the reference
+    parents : (part,) −1 for the root, which is the first
     pairs   : (pair, 2) frames that follow each other
     least   : root mean square turn of a joint that counts, at least, degrees
     returns : −1 to 1; 1 where no joint counts
     """
     frames, row = np.unique(pairs, return_inverse=True)
     alike = []
-    for joint in range(turns.shape[1]):
-        about = about_mean(dict(enumerate(turns[frames, joint])))
+    for part in range(1, len(parents)):
+        about = about_mean(dict(enumerate(R[frames, parents[part]].swapaxes(1, 2) @ R[frames, part])))
         w, v = np.array(list(about.values()))[row.reshape(pairs.shape).T]
         square = float((w**2 + v**2).sum(axis=1).mean()) / 2.0
         if square > np.radians(least) ** 2:

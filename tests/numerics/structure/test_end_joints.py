@@ -85,7 +85,7 @@ def test_where_frames_are_far_apart_a_turn_that_goes_on_is_found_too() -> None:
 
 
 def test_whether_frames_are_far_apart_is_judged_take_by_take() -> None:
-    assert len(found_in_takes([0.0, 0.0, 0.0, to_and_fro(15.0)], 0.0)) == 1
+    assert len(found_in_takes([0.0, 0.0, 0.0, to_and_fro(15.0, of_middle=6.0)], 0.0)) == 1
 
 
 @pytest.mark.parametrize(("below", "joints"), [(0.9, 1), (1.1, 0)])

@@ -96,12 +96,19 @@ def test_slow_turns_go_on_and_turns_to_and_fro_do_not() -> None:
     def about(angles: Floats) -> Floats:
         return np.stack([rotation((1.0, 0.0, 0.0), a) for a in angles])
 
-    frames = np.arange(40)
+    def of(*turns: Floats) -> float:
+        """Of a chain whose root turns to and fro about another axis."""
+        root = np.stack([rotation((0.0, 1.0, 0.0), (-1.0) ** f) for f in range(40)])
+        R = [root]
+        for turn in turns:
+            R.append(R[-1] @ turn)
+        return going_on(np.stack(R, axis=1), np.arange(len(R)) - 1, pairs, 4.0)
+
+    frames, (_, pairs) = np.arange(40), judged_frames(40, None, 40)
     slow, fro, still = about(np.sin(frames / 5)), about(0.5 * (-1.0) ** frames), about(0.01 * (-1.0) ** frames)
-    _, pairs = judged_frames(40, None, 40)
-    assert going_on(np.stack([slow, slow, fro], axis=1), pairs, 4.0) == pytest.approx(0.98, abs=0.02)
-    assert going_on(np.stack([slow, fro, fro], axis=1), pairs, 4.0) == pytest.approx(-1.0)
-    assert going_on(np.stack([slow, still, still], axis=1), pairs, 4.0) > 0.9
-    assert going_on(still[:, None], pairs, 4.0) == 1.0
-    _, apart = judged_frames(40, [slice(k, k + 2) for k in range(0, 40, 2)], 40)
-    assert going_on(about((-1.0) ** (frames // 2))[:, None], apart, 4.0) == pytest.approx(1.0)
+    assert of(slow, slow, fro) == pytest.approx(0.98, abs=0.02)
+    assert of(slow, fro, fro) == pytest.approx(-1.0)
+    assert of(slow, still, still) > 0.9
+    assert of(still) == of() == 1.0
+    _, pairs = judged_frames(40, [slice(k, k + 2) for k in range(0, 40, 2)], 40)
+    assert of(about((-1.0) ** (frames // 2))) == pytest.approx(1.0)
