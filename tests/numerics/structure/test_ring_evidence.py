@@ -110,5 +110,7 @@ def test_slow_turns_go_on_and_turns_to_and_fro_do_not() -> None:
     assert of(slow, fro, fro) == pytest.approx(-1.0)
     assert of(slow, still, still) > 0.9
     assert of(still) == of() == 1.0
+    star = np.stack([np.tile(np.eye(3), (40, 1, 1)), fro, slow, slow], axis=1)
+    assert going_on(star, np.array([-1, 0, 0, 0]), pairs, 4.0) == pytest.approx(0.98, abs=0.02)
     _, pairs = judged_frames(40, [slice(k, k + 2) for k in range(0, 40, 2)], 40)
     assert of(about((-1.0) ** (frames // 2))) == pytest.approx(1.0)
