@@ -159,7 +159,7 @@ def test_joints_are_moved_on_the_surfaces_where_connectivity_changes_and_only_if
     assert END - 0.1 < asked.rest[2, 2] < not_asked.rest[2, 2] - 0.2
     np.testing.assert_array_equal(asked.rest[[0, 3]], not_asked.rest[[0, 3]])
     edge = 10.0 / 83  # of the frames' surfaces, whose noise moves a joint that the vertices show where it is
-    assert np.linalg.norm(not_asked.rest[1]) < 0.01 * edge
+    assert np.linalg.norm(not_asked.rest[1]) < 0.02 * edge
     assert np.linalg.norm(asked.rest[1]) < edge
     assert np.isfinite(asked.surface_offset).tolist() == [False, True, True, False]
     assert np.isnan(not_asked.surface_offset).all()
