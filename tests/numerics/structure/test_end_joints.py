@@ -95,12 +95,6 @@ def test_scores_by_halves_count_by_their_own_limit(below: float, joints: int) ->
     assert len(joints_at(to_and_fro(15.0), settings=EndJointsSettings(least_in_halves=below * limit))) == joints
 
 
-def test_a_take_with_frames_far_apart_does_not_hide_the_joint_of_another() -> None:
-    still = to_and_fro(15.0)
-    still[:, 1] = np.eye(3)
-    assert len(found_in_takes([6.0, still], 0.02)) == 1
-
-
 @pytest.mark.parametrize("noise", [0.0, 0.02, 0.05])
 def test_no_joint_is_found_where_nothing_turns(noise: float) -> None:
     assert joints_at(0.0, noise) == []
