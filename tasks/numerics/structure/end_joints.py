@@ -38,16 +38,20 @@ class EndJointsSettings(NamedTuple):
     Turns were chosen on wave, dance, ballet, wolf, people 0, 1, 5, 6, 7, four-legged 5, 6 and random trees 1, 6.
     """
 
-    least_score: float = 0.015
-    """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf and people 0, 1, 5, 6, 7, some at half
-    and a quarter of their frame rate: of 13 true joints 12 had 0.016 to 0.087, rings where nothing turns 0.010 at most."""
+    least_score: float = 0.005
+    """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans,
+    four-legged and random trees 60 to 63: of 26 true joints the least has 0.0061, rings where nothing turns 0.0032 at most."""
+    least_score_if_short: float = 0.012
+    """The same where the nearer piece is shorter than `slice_length`, as a neck is. On the same bodies five true heads have 0.0164
+    to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads 0.0046 and 0.0070, of which one took the place
+    of its head."""
     goes_on: float = 0.5
     """How much of the turn of the body's joints goes on from frame to frame (`going_on`), below which the frames are too far
     apart for that to be asked of a ring. All frames of recorded bodies and of people 0 to 7 have 0.73 to 0.97, every fourth
     of wave, dance and wolf −0.10 to 0.48, of ballet 0.61 to 0.79."""
-    least_in_halves: float = 0.06
+    least_in_halves: float = 0.04
     """Score by two halves of the points beyond a ring (`evidence_of_halves`) that is asked for there, at least. Chosen on every
-    fourth frame of wave, dance and wolf: three true toes had 0.073 to 0.13 (two more 0.020 and 0.046), false rings 0.049 at
+    fourth frame of wave, dance and wolf: true toes have 0.046 to 0.11 (one of them 0.013), rings where nothing turns 0.032 at
     most."""
     nearer: float = 4.0
     """Root mean square turn of the nearer piece against the part above, degrees, as `degrees`, at least: where it turns less it
@@ -155,7 +159,8 @@ def _evident(
 def _is_joint(ring: EndRing, shown: RingEvidence, is_mirrored: bool, chosen: EndJointsSettings) -> bool:
     """Whether both pieces turn enough, and the nearer one is no slice of a joint that is there already."""
     length = float(np.linalg.norm(ring.cut.centre - ring.piece.joint))
-    is_slice = length < chosen.slice_length * ring.cut.radius and (is_mirrored or shown.near < shown.far)
+    is_doubtful = is_mirrored or shown.near < shown.far or shown.score < chosen.least_score_if_short
+    is_slice = length < chosen.slice_length * ring.cut.radius and is_doubtful
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice
 
 
@@ -166,17 +171,17 @@ def _judged(
     within, tree = [one.within(span) for one in laid], frames.tree
     pairs = pairs[(pairs >= span[0]).all(axis=1) & (pairs < span[1]).all(axis=1)]
     above = [tree.R[:, tree.parents[one.ring.cut.part]] for one in laid]
+    apart = len(pairs) > 0 and going_on(tree.R, tree.parents, pairs, chosen.nearer) < chosen.goes_on
     evidence = [
-        ring_evidence(R, one.fits, {f: fit.one for f, fit in one.fits.items()}, pairs)
+        ring_evidence(R, one.fits, {f: fit.one for f, fit in one.fits.items()}, pairs, lasting=not apart)
         for R, one in zip(above, within, strict=True)
     ]
-    apart = len(pairs) > 0 and going_on(tree.R, tree.parents, pairs, chosen.nearer) < chosen.goes_on
     clear = (1.0 + chosen.least_in_halves) ** 2
     likely = [k for k, shown in enumerate(evidence) if shown.score >= chosen.least_score or (apart and shown.gain >= clear)]
     mean = {k: _mean_turn(within[k].fits) for k in likely}
     steady = dict(zip(likely, _left_at(frames, [within[k] for k in likely], list(mean.values())), strict=True))
     for k in likely:
-        evidence[k] = ring_evidence(above[k], within[k].fits, steady[k], pairs)
+        evidence[k] = ring_evidence(above[k], within[k].fits, steady[k], pairs, lasting=not apart)
     by_halves = likely if apart else []
     turns = _turns_of_halves(frames, [within[k] for k in by_halves], [mean[k] for k in by_halves])
     for k, of_halves in zip(by_halves, turns, strict=True):
