@@ -72,6 +72,14 @@ def test_joints_farther_apart_than_their_borders_are_wide_stay_whatever_the_moti
     np.testing.assert_array_equal(wide[1], wide[2])
 
 
+def test_joints_that_a_motion_would_rather_have_farther_apart_stay() -> None:
+    """The second turns about a place that lies farther off than where it is put, and at the first it drifts little more."""
+    tree, rest = star(np.array([AT, AT + [0.6, 0.0, 0.0]]), np.array([[0.0, 0.0, 0.0], [-0.25, 0.0, 0.0]]), LOOSE / 2)
+    assert shared_joints(tree, rest, SIZE).rest is rest
+    merged = shared_joints(tree, rest, SIZE, settings=SharedJointsSettings(lean=np.inf)).rest
+    np.testing.assert_array_equal(merged[1], merged[2])
+
+
 def test_joints_on_different_parts_stay() -> None:
     tree, rest = star(np.array([AT, AT]), ASIDE, LOOSE)
     assert shared_joints(tree._replace(parents=np.array([-1, 0, 1])), rest, SIZE).rest is rest
