@@ -42,9 +42,9 @@ class EndJointsSettings(NamedTuple):
     """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans,
     four-legged and random trees 60 to 63: of 26 true joints the least has 0.0061, rings where nothing turns 0.0032 at most."""
     least_score_if_short: float = 0.012
-    """The same where the nearer piece is shorter than `slice_length`, as a neck is. On the same bodies five true heads have 0.0164
-    to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads 0.0046 and 0.0070, of which one took the place
-    of its head."""
+    """The same where the nearer piece is shorter than `slice_length`, as a neck is. On the same bodies five true heads have
+    0.0164 to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads 0.0046 and 0.0070, of which one took
+    the place of its head."""
     goes_on: float = 0.5
     """How much of the turn of the body's joints goes on from frame to frame (`going_on`), below which the frames are too far
     apart for that to be asked of a ring. All frames of recorded bodies and of people 0 to 7 have 0.73 to 0.97, every fourth

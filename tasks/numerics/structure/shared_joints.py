@@ -26,9 +26,9 @@ class SharedJointsSettings(NamedTuple):
     rise: float = 1.5
     """Drift of each joint at the common place, at most, in its drift where it is. At 1.75 one body loses a joint."""
     lean: float = 1.2
-    """The same, at most, in its drift as far on the other side of where it is: where motion would rather have two joints farther
-    apart they are two. In all frames true ones have 1.03 at most, hips of persons 12 and 69 1.4 and 1.7; at a quarter of the
-    frames two of eleven true pairs have 1.4 and 1.7 as well and stay apart."""
+    """The same, at most, in its drift as far on the other side of where it is: where motion would rather have two joints
+    farther apart they are two. In all frames true ones have 1.03 at most, hips of persons 12 and 69 1.4 and 1.7; at a quarter
+    of the frames two of eleven true pairs have 1.4 and 1.7 as well and stay apart."""
     spread: float = 0.35
     """Standard deviation of the common place about each joint, in radii of its border: decides where motion leaves it open.
     Errors of forks are 1.07 % at 0.35 to 0.7 and 1.02 at 1, those of dance 1.04 and 1.22."""
