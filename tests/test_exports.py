@@ -33,6 +33,7 @@ from kinetree.pipeline.output.output import write_elsewhere
 from kinetree.pipeline.output.ownership import MARKER
 from kinetree.pipeline.storage.place import Folder
 from kinetree.pipeline.storage.store import artifact_path
+from kinetree.schemas.results.bvh import Bvh
 from kinetree.tasks.application import APPLICATION
 from kinetree.tasks.commands.export import EXTRAS, export
 
@@ -192,6 +193,41 @@ def test_damaged_export_is_made_again_by_the_next_run(out, configured, task, arr
     assert expected not in names(out)
     assert ran(Pipeline.of(configured).run()) == {task}
     assert expected in names(out)
+
+
+def republished(out, name):
+    """The store has another artifact for the task `bvh`, whose only file has this name."""
+    pipeline = Pipeline.of(out)
+    store, node = pipeline.store, pipeline.why("bvh")
+    bvh = store.read(Bvh, str(node.artifact))
+    digest, size = store.publish(bvh.model_copy(update={"names": (name,)}))
+    store.write(replace(store.record(str(node.key)), artifact=digest, bytes=size))
+    return store, digest
+
+
+@pytest.mark.parametrize(
+    "name", ["{above}/elsewhere.sh", "x/../../elsewhere.sh", "..", "", "a//b", "a/", "./a", "a\\b", "a\0b", "\ud800"]
+)
+def test_file_of_a_store_from_elsewhere_that_does_not_lie_in_the_output_folder_is_damage(out, configured, tmp_path, name):
+    store, digest = republished(out, name.format(above=tmp_path))
+    (out / MARKER).write_text(json.dumps({"files": ["", "..", "x", "a", "config.yaml", "run.json", *LEFT]}))
+    before = names(tmp_path)
+    with pytest.raises(DamagedArtifactError, match="its values are not those of its schema"):
+        store.check(digest, {"Bvh": Bvh})
+    with pytest.raises(DamagedArtifactError, match="its values are not those of its schema"):
+        Pipeline.of(configured).run()
+    assert names(tmp_path) == before
+    assert ran(Pipeline.of(configured).run()) == {"bvh"}
+
+
+@pytest.mark.parametrize("name", ["config.yaml", "run.json", MARKER, "config.yaml/x"])
+def test_no_result_replaces_what_a_run_leaves_of_itself(out, configured, name):
+    republished(out, name)
+    before = (out / "config.yaml").read_bytes()
+    with pytest.raises(DamagedArtifactError, match=f"names a file {re.escape(repr(name))}, which belongs to the run"):
+        Pipeline.of(configured).run()
+    assert (out / "config.yaml").read_bytes() == before
+    assert ran(Pipeline.of(configured).run()) == {"bvh"}
 
 
 def test_labels_come_back_to_the_vertices_of_every_file(out):

@@ -8,7 +8,7 @@ from typing import Any
 
 from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
 from kinetree.pipeline import views
-from kinetree.pipeline.output.ownership import HEAD, Owned
+from kinetree.pipeline.output.ownership import HEAD, MARKER, Owned
 from kinetree.pipeline.planning.entry import DONE, Entry
 from kinetree.pipeline.planning.schedule import Schedule
 from kinetree.pipeline.settings.blocks import SAVED
@@ -18,6 +18,8 @@ from kinetree.pipeline.storage.place import Folder
 from kinetree.schemas.array import Artifact
 
 RUN_JSON = "run.json"
+_OF_THE_RUN = frozenset([SAVED, RUN_JSON, MARKER])
+"""What a run leaves of itself; no result replaces it."""
 
 
 def write_config(config: Config) -> None:
@@ -131,7 +133,11 @@ def leaves(cls: type[Artifact]) -> bool:
 
 def _files(schedule: Schedule, entry: Entry) -> Mapping[str, bytes]:
     with _damage_discarded(schedule, entry):
-        return views.files(schedule.value(entry.node), entry.node.at)
+        files = views.files(schedule.value(entry.node), entry.node.at)
+        for name in files:
+            if name.partition("/")[0] in _OF_THE_RUN:
+                raise DamagedArtifactError(str(entry.artifact), f"names a file {name!r}, which belongs to the run")
+        return files
 
 
 def _put_group(place: Folder, name: str, schedule: Schedule, entry: Entry) -> None:

@@ -1,7 +1,7 @@
 """Whose the files of an output folder are: what another program or a person put there is never replaced."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,12 +35,12 @@ class Owned:
         """Lists what a run is about to write, so that the next run knows it again even if this one is killed.
 
         paths  : relative to the folder; what lies in a folder in it is listed by that folder
-        raises : StoreError where the folder is a file or something is there that no run has left, or where the list cannot be
-                 written
+        raises : StoreError where the folder is a file or something is there that no run has left, where a path does not lie in
+                 it, or where the list cannot be written
         """
         if self.folder.is_file():
             raise StoreError(f"output folder {self.folder}: this is a file; name another folder with --output")
-        wanted = {path.partition("/")[0] for path in paths}
+        wanted = {path.partition("/")[0] for path in self._inside(paths)}
         was_lost = self.names is None
         if self.names is None:
             self.names = {name for name in _place(self.folder).names("") if not name.startswith(".")}
@@ -57,6 +57,12 @@ class Owned:
         if new or was_lost:
             self.names.update(new)
             _place(self.folder).put(MARKER, json.dumps({"files": sorted(self.names)}, indent=1).encode())
+
+
+    def _inside(self, paths: Iterable[str]) -> Iterator[str]:
+        for path in paths:
+            _place(self.folder).refuse_outside(path)
+            yield path
 
 
 def _listed(folder: Path) -> set[str] | None:

@@ -110,6 +110,7 @@ class Folder:
 
     def put(self, path: str, data: bytes) -> None:
         """Writes one object beside, then renames."""
+        self.refuse_outside(path)
         with self._refusals(path):
             target = self.root / path
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -122,6 +123,9 @@ class Folder:
 
     def put_all(self, path: str, files: Mapping[str, bytes]) -> None:
         """Writes a tree beside, then renames it whole; a tree that is there with the same sizes stays."""
+        for name in files:
+            self.refuse_outside(f"{path}/{name}")
+        self.refuse_outside(path)
         with self._refusals(path):
             target = self.root / path
             beside = self._beside()
@@ -167,6 +171,7 @@ class Folder:
 
     def remove(self, path: str) -> None:
         """Removes a file at once; renames a tree away first, so that no reader meets half of it."""
+        self.refuse_outside(path)
         with self._refusals(path), contextlib.suppress(FileNotFoundError):
             try:
                 (self.root / path).unlink()
@@ -179,6 +184,17 @@ class Folder:
         """Removes one after the other."""
         for path in paths:
             self.remove(path)
+
+    def refuse_outside(self, path: str) -> None:
+        """Raises StoreError where a path is none below this folder, or a link on the way to it leads out of the folder."""
+        is_plain = "\0" not in path and all(part not in ("", ".", "..") for part in path.split("/"))
+        if not is_plain or not self._holds((self.root / path).parent):
+            raise StoreError(f"{self._name} {self.url}: {path!r} does not lie in it; nothing is written or removed there")
+
+    def _holds(self, folder: Path) -> bool:
+        """Whether a folder, which need not be there, is this one or lies below it, links followed."""
+        root = os.path.realpath(self.root)
+        return os.path.join(os.path.realpath(folder), "").startswith(os.path.join(root, ""))  # noqa: PTH118 - see `size`
 
     def _read(self, path: str, content: Callable[[BinaryIO], T]) -> T | None:
         """What is read of an open file; None where nothing is."""
@@ -193,8 +209,10 @@ class Folder:
             raise StoreError(f"store {self.url}: cannot read {path}: {error.strerror}; check its permissions") from error
 
     def _beside(self) -> Path:
+        beside = self._folder / f".{uuid.uuid4().hex}"
+        self.refuse_outside(str(beside.relative_to(self.root)))
         self._folder.mkdir(parents=True, exist_ok=True)
-        return self._folder / f".{uuid.uuid4().hex}"
+        return beside
 
     def _rename_tree(self, beside: Path, target: Path, sizes: Mapping[str, int]) -> None:
         """Another run may have published the same tree in the meantime: equal sizes stay, anything else is damage."""

@@ -19,8 +19,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
-from kinetree.errors import DamagedArtifactError, StoreError, UnknownNodeError
+from kinetree.errors import ArtifactError, DamagedArtifactError, StoreError, UnknownNodeError
 from kinetree.pipeline.identity.key import array_digest, combined_digest
 from kinetree.pipeline.storage.groups import ForeignArrayError, decoded, group_files
 from kinetree.pipeline.storage.overlay import Overlay, opened
@@ -118,9 +119,11 @@ class Store:
         head = _head(group, digest)
         _refuse_altered(cls, head, digest)
         specs = cls.array_fields()
-        return cls.lazily(
-            head["values"], {n: _loader(group, digest, n, specs[n], expected) for n, expected in head["digests"].items()}
-        )
+        loaders = {n: _loader(group, digest, n, specs[n], expected) for n, expected in head["digests"].items()}
+        try:
+            return cls.lazily(head["values"], loaders)
+        except (ArtifactError, ValidationError) as error:
+            raise DamagedArtifactError(digest, "its values are not those of its schema") from error
 
     def head(self, digest: str) -> dict[str, Any]:
         """Schema, version, JSON values and array digests of an artifact, as stored; raises DamagedArtifactError."""

@@ -5,15 +5,24 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import AfterValidator
 
+from kinetree.errors import ArtifactError
 from kinetree.schemas.array import Array, Artifact
 from kinetree.schemas.dims import BYTE
+
+
+def inside(name: str) -> str:
+    """A path that stays in the folder it is relative to, on every system; raises ArtifactError where it may not."""
+    if "\\" in name or not name.isprintable() or any(part in ("", ".", "..") for part in name.split("/")):
+        raise ArtifactError(f"names: expected a path in the output folder such as tables/joints.csv, got {name!r}")
+    return name
 
 
 class Exported(Artifact):
     """Files of one format; each export has its own subclass and its own task."""
 
-    names: tuple[str, ...]
+    names: tuple[Annotated[str, AfterValidator(inside)], ...]
     """Path of every file, relative to the output folder."""
     sizes: tuple[int, ...]
     """Bytes of every file."""

@@ -29,6 +29,13 @@ def test_what_is_listed_may_be_replaced_and_nothing_else(tmp_path):
     assert Owned.of(tmp_path).names == {"a.json", "c.json"}, "what was refused is not listed"
 
 
+@pytest.mark.parametrize("path", ["/tmp/x", "../x", "parts/../../x", ""])
+def test_what_does_not_lie_in_the_folder_is_never_claimed(tmp_path, path):
+    (tmp_path / MARKER).write_text('{"files": ["", "..", "parts"]}')
+    with pytest.raises(StoreError, match="does not lie in it"):
+        Owned.of(tmp_path).claim(["a.json", path])
+
+
 def test_files_are_listed_before_they_are_written(tmp_path):
     owned = Owned.of(tmp_path)
     owned.claim(["a.json"])

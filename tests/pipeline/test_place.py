@@ -208,3 +208,75 @@ def test_listing_tells_size_and_time_of_everything_below(place):
     listed = place.listed("t")
     assert list(listed) == ["a/c/d", "b"]
     assert (listed["b"].size, listed["b"].modified) == (2, 7.0)
+
+
+OUTSIDE = ["{above}/elsewhere", "../elsewhere", "a/../../elsewhere", "a/..", "a//b", "a/", ".", "", "a\0b"]
+
+
+@pytest.mark.parametrize("path", OUTSIDE)
+def test_what_does_not_lie_in_the_folder_is_neither_written_nor_removed(place, tmp_path, path):
+    path = path.format(above=tmp_path)
+    place.put("b", b"1")
+    (tmp_path / "elsewhere").write_bytes(b"mine")
+    before = everything(tmp_path)
+    for change in (
+        lambda: place.put(path, b"2"),
+        lambda: place.put_all(path, {"x": b"2"}),
+        lambda: place.put_all("tree", {"x": b"2", path: b"2"}),
+        lambda: place.remove(path),
+        lambda: place.remove_all([path]),
+    ):
+        with pytest.raises(StoreError, match=f"^store {place.url}: .* does not lie in it; nothing is written or removed"):
+            change()
+    assert everything(tmp_path) == before
+
+
+@pytest.fixture
+def linked(place, tmp_path):
+    """A place with a folder that is a link to one outside."""
+    (tmp_path / "mine" / "old").mkdir(parents=True)
+    (tmp_path / "mine" / "old" / "x").write_bytes(b"mine")
+    place.root.mkdir()
+    (place.root / "link").symlink_to(tmp_path / "mine")
+    return place
+
+
+def test_nothing_is_written_or_removed_behind_a_link_that_leads_out_of_the_folder(linked, tmp_path):
+    before = everything(tmp_path / "mine")
+    for change in (
+        lambda: linked.put("link/old/x", b"2"),
+        lambda: linked.put_all("link/tree", {"x": b"2"}),
+        lambda: linked.remove("link/old/x"),
+        lambda: linked.remove("link/old"),
+        lambda: linked.remove_all(["link/old/x"]),
+    ):
+        with pytest.raises(StoreError, match=f"^store {linked.url}: 'link/.* does not lie in it; "):
+            change()
+    assert everything(tmp_path / "mine") == before
+
+
+def test_a_link_that_leads_out_of_the_folder_is_removed_and_not_what_it_leads_to(linked, tmp_path):
+    linked.remove("link")
+    assert linked.names("") == []
+    assert everything(tmp_path / "mine") == {"old/x": b"mine"}
+
+
+def test_half_written_things_do_not_go_behind_a_link_that_leads_out_of_the_folder(place, tmp_path):
+    (tmp_path / "mine").mkdir()
+    place.root.mkdir()
+    (place.root / "tmp").symlink_to(tmp_path / "mine")
+    with pytest.raises(StoreError, match="tmp/.* does not lie in it"):
+        place.put("a", b"1")
+    assert list((tmp_path / "mine").iterdir()) == []
+
+
+def test_folder_that_is_a_link_is_written_and_emptied_as_any_other(tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "store").symlink_to("disk")
+    place = Folder(tmp_path / "store")
+    place.put("a/b", b"1")
+    place.put_all("t", {"c/d": b"2"})
+    assert sizes(place, "a") == {"b": 1}
+    place.remove("t")
+    place.remove("a/b")
+    assert everything(tmp_path / "disk") == {}

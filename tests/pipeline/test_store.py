@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import pytest
 import zarr
+from pydantic import create_model
 from zarr.storage import ZipStore
 
 from kinetree.errors import DamagedArtifactError, StoreError, StoreFullError, UnknownNodeError
@@ -282,6 +283,13 @@ def test_artifact_of_another_schema_is_not_taken_for_this_one(store):
 
     digest, _ = store.publish(Other())
     with pytest.raises(DamagedArtifactError, match="holds Other/1, not Field"):
+        store.read(Field, digest)
+
+
+def test_value_that_its_schema_refuses_is_damage(store):
+    other = create_model("Field", __base__=Field, rate=(str, ...))
+    digest, _ = store.publish(other(**{**field().plain(), **field().arrays(), "rate": "fast"}))
+    with pytest.raises(DamagedArtifactError, match="its values are not those of its schema"):
         store.read(Field, digest)
 
 
