@@ -156,7 +156,9 @@ class Folder:
             raise StoreError(f"store {self.url}: cannot list {path}: {error.strerror}; check its permissions") from error
 
     def listed(self, path: str) -> dict[str, Listed]:
-        """Every file below `path`, by path relative to it, sorted; empty where nothing is."""
+        """Every file below `path`, by path relative to it, sorted; empty where nothing is, and behind a link that leads out."""
+        if not self._holds(path):
+            return {}
         try:
             return dict(sorted(_listed(f"{self.url}/{path}", "")))
         except OSError as error:
@@ -188,13 +190,17 @@ class Folder:
     def refuse_outside(self, path: str) -> None:
         """Raises StoreError where a path is none below this folder, or a link on the way to it leads out of the folder."""
         is_plain = "\0" not in path and all(part not in ("", ".", "..") for part in path.split("/"))
-        if not is_plain or not self._holds((self.root / path).parent):
-            raise StoreError(f"{self._name} {self.url}: {path!r} does not lie in it; nothing is written or removed there")
+        if not is_plain or not self._holds(path.rpartition("/")[0]):
+            why = "does not lie in it, but behind a link that leads out" if is_plain else "does not lie in it"
+            raise StoreError(f"{self._name} {self.url}: {path!r} {why}; nothing is written or removed there")
 
-    def _holds(self, folder: Path) -> bool:
-        """Whether a folder, which need not be there, is this one or lies below it, links followed."""
-        root = os.path.realpath(self.root)
-        return os.path.join(os.path.realpath(folder), "").startswith(os.path.join(root, ""))  # noqa: PTH118 - see `size`
+    def _holds(self, folder: str) -> bool:
+        """Whether a folder below this one, which need not be there, lies below it also where links are followed."""
+        names = [name for name in folder.split("/") if name]
+        way = [f"{self.url}/{'/'.join(names[: depth + 1])}" for depth in range(len(names))]
+        if not any(os.path.islink(step) for step in way):  # noqa: PTH114 - see `size`
+            return True
+        return Path(os.path.realpath(way[-1])).is_relative_to(os.path.realpath(self.root))
 
     def _read(self, path: str, content: Callable[[BinaryIO], T]) -> T | None:
         """What is read of an open file; None where nothing is."""

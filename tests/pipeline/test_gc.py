@@ -1,5 +1,6 @@
 """What a collection frees, and what it must not."""
 
+import contextlib
 import os
 import signal
 import time
@@ -7,7 +8,7 @@ from dataclasses import asdict, replace
 
 import pytest
 
-from kinetree.errors import StoreFullError, UnknownNodeError
+from kinetree.errors import StoreError, StoreFullError, UnknownNodeError
 from kinetree.pipeline.storage import gc
 from kinetree.pipeline.storage.gc import advising, collect
 from kinetree.pipeline.storage.records import Records
@@ -210,6 +211,39 @@ def test_half_written_leftovers_go_when_nobody_can_be_writing_them(toys):
     os.utime(leftover, (1, 1))
     assert "tmp/.half" in collect(store(toys)).leftovers
     assert not leftover.exists()
+
+
+@pytest.mark.parametrize(
+    ("part", "is_refused"),
+    [("nodes", False), ("artifacts", False), ("tmp", True), ("runs", True), ("packs", True), ("records", True)],
+)
+def test_what_a_link_in_the_store_leads_to_is_never_freed(toys, tmp_path, part, is_refused):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    folder, mine = toys.output / "store" / part, tmp_path / "mine"
+    folder.mkdir(exist_ok=True)
+    folder.rename(mine)
+    folder.symlink_to(mine)
+    (mine / "old" / "deep").mkdir(parents=True)
+    for name in ("old/letter", "old/deep/letter.json", f"{'ab' * 20}.zip", f"{'ab' * 20}.json", "old.beat"):
+        (mine / name).write_text("mine")
+    for path in mine.rglob("*"):
+        os.utime(path, (1, 1))
+    before = {path: path.read_bytes() for path in mine.rglob("*") if path.is_file()}
+    refused = pytest.raises(StoreError, match=f"'{part}/.*' does not lie in it, but behind a link")
+    with refused if is_refused else contextlib.nullcontext():
+        collect(store(toys))
+    assert {path: path.read_bytes() for path in mine.rglob("*") if path.is_file()} == before
+
+
+def test_a_store_that_is_a_link_is_collected_as_any_other(toys, tmp_path):
+    toys.run()
+    toys.run(intervals={"length": 3})
+    (toys.output / "store").rename(tmp_path / "disk")
+    (toys.output / "store").symlink_to(tmp_path / "disk")
+    freed = collect(store(toys))
+    assert freed.artifacts
+    assert not set(freed.artifacts) & set(store(toys).artifacts())
 
 
 def test_run_of_a_part_of_the_graph_does_not_give_the_rest_away(toys):

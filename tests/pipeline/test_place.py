@@ -250,7 +250,7 @@ def test_nothing_is_written_or_removed_behind_a_link_that_leads_out_of_the_folde
         lambda: linked.remove("link/old"),
         lambda: linked.remove_all(["link/old/x"]),
     ):
-        with pytest.raises(StoreError, match=f"^store {linked.url}: 'link/.* does not lie in it; "):
+        with pytest.raises(StoreError, match="'link/.*' does not lie in it, but behind a link that leads out; nothing"):
             change()
     assert everything(tmp_path / "mine") == before
 
@@ -259,6 +259,11 @@ def test_a_link_that_leads_out_of_the_folder_is_removed_and_not_what_it_leads_to
     linked.remove("link")
     assert linked.names("") == []
     assert everything(tmp_path / "mine") == {"old/x": b"mine"}
+
+
+def test_nothing_is_listed_behind_a_link_that_leads_out_of_the_folder(linked):
+    assert linked.listed("link") == linked.listed("link/old") == {}
+    assert list(linked.listed("")) == ["link"]
 
 
 def test_half_written_things_do_not_go_behind_a_link_that_leads_out_of_the_folder(place, tmp_path):
