@@ -16,14 +16,19 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from kinetree.pipeline.storage.groups import UNPACKED_BYTES, UNPACKED_RATIO
 from kinetree.pipeline.storage.packed import packed
 from kinetree.pipeline.storage.place import Place
 from kinetree.pipeline.storage.sealed import sealed, unsealed
 
 PACKED_FROM = 16
 """Fewer records than this are left single."""
+RECORD_BYTES = 64 * 2**20
+"""More bytes than any record has: one that names a million inputs. A larger one in a pack is damaged and never unpacked."""
 LISTED_SECONDS = 5.0
 """How long a listing of packs is good for."""
+_COMPRESSED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""How `packed` writes; others unpack a piece of any size at once."""
 _KEY = re.compile("[0-9a-f]{40}")
 Packs = dict[str, zipfile.ZipFile | None]
 """By name; None where it cannot be read."""
@@ -186,7 +191,9 @@ class Records:
     def _bytes(self, name: str, file: str) -> bytes | None:
         archive = self._packs.get(name)
         try:
-            return archive.read(file) if archive is not None else None
+            if archive is None or archive.getinfo(file).file_size > RECORD_BYTES:
+                return None
+            return archive.read(file)
         except Exception:  # zipfile and zlib raise many kinds for altered bytes
             return None
 
@@ -212,11 +219,14 @@ def _pack(name: str) -> str:
 
 
 def _opened(data: bytes | None) -> zipfile.ZipFile | None:
-    """A pack in memory; None where its bytes are none."""
+    """A pack in memory; None where its bytes are none, or would unpack to far more than they are."""
     try:
-        return zipfile.ZipFile(io.BytesIO(data or b""))
+        archive = zipfile.ZipFile(io.BytesIO(data or b""))
     except Exception:  # zipfile raises many kinds for altered bytes
         return None
+    infos = archive.infolist()
+    is_bounded = sum(info.file_size for info in infos) <= max(UNPACKED_BYTES, UNPACKED_RATIO * len(data or b""))
+    return archive if is_bounded and all(info.compress_type in _COMPRESSED for info in infos) else None
 
 
 def _checked(data: bytes | None, key: str) -> Record | None:

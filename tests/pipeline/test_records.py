@@ -1,12 +1,15 @@
 """Records alone and in packs: what was written is found in either place, and what cannot be read is none."""
 
+import io
 import zipfile
+from dataclasses import asdict
 
 import pytest
 
+from kinetree.pipeline.storage import records as records_module
 from kinetree.pipeline.storage.packed import packed
 from kinetree.pipeline.storage.place import Folder
-from kinetree.pipeline.storage.records import PACKED_FROM, Record, Records
+from kinetree.pipeline.storage.records import PACKED_FROM, RECORD_BYTES, Record, Records
 from kinetree.pipeline.storage.sealed import sealed, unsealed
 
 KEYS = [f"{n:040x}" for n in range(PACKED_FROM)]
@@ -117,6 +120,43 @@ def test_pack_of_somebody_else_is_none(place):
     place.put("packs/x.zip", packed({f"{KEYS[0]}.json": sealed({"key": KEYS[0]}), "../../x": b"", "b.json": b"{}"}))
     assert Records(place).listed() == KEYS[:1]
     assert Records(place).get(KEYS[0]) is None
+
+
+def pack_of(place, compression, files):
+    with zipfile.ZipFile(out := io.BytesIO(), "w", compression) as archive:
+        for key, data in files.items():
+            archive.writestr(f"{key}.json", data)
+    place.put("packs/run.zip", out.getvalue())
+
+
+def test_record_that_unpacks_to_more_than_any_has_is_damage_and_never_unpacked(place, monkeypatch):
+    large = record(KEYS[0], params={"x": " " * RECORD_BYTES})
+    pack_of(place, zipfile.ZIP_DEFLATED, {r.key: sealed(asdict(r)) for r in (large, record(KEYS[1]))})
+    unpacked = []
+    read = zipfile.ZipFile.read
+    monkeypatch.setattr(zipfile.ZipFile, "read", lambda archive, file: (unpacked.append(file), read(archive, file))[1])
+    reader = Records(place)
+    assert [r.key for r in reader.all()] == [KEYS[1]]
+    assert reader.damaged() == [f"packs/run.zip: {KEYS[0]}.json"]
+    reader.discard_damaged()
+    assert Records(place).listed() == [KEYS[1]]
+    assert set(unpacked) == {f"{KEYS[1]}.json"}
+
+
+def test_pack_that_unpacks_to_far_more_than_it_has_is_damage(place, monkeypatch):
+    files = {key: sealed(asdict(record(key, params={"x": " " * 50_000}))) for key in KEYS}
+    pack_of(place, zipfile.ZIP_DEFLATED, files)
+    assert Records(place).listed() == KEYS
+    monkeypatch.setattr(records_module, "UNPACKED_BYTES", 100_000)
+    assert Records(place).damaged() == ["packs/run.zip"]
+    pack_of(place, zipfile.ZIP_STORED, files)
+    assert Records(place).damaged() == []
+
+
+@pytest.mark.parametrize("compression", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_pack_that_is_compressed_in_another_way_is_damage(place, compression):
+    pack_of(place, compression, {KEYS[0]: sealed(asdict(record(KEYS[0])))})
+    assert Records(place).damaged() == ["packs/run.zip"]
 
 
 @pytest.mark.parametrize("value", [{}, [], "", "μ", {"a": [1, 2.5, None, True]}, "x" * 1000])
