@@ -1,5 +1,6 @@
 """Where parcels are computed on dask's distributed scheduler: workers of this machine, or any scheduler's address."""
 
+import asyncio
 import contextlib
 import importlib
 from collections.abc import Iterator
@@ -33,10 +34,10 @@ _NOBODY_SPEAKS_TLS = "nobody speaks TLS there ({}); check the address and the sc
 
 
 class _ClosedUnlessConnected(Client):  # type: ignore[misc]
-    """A client that is closed where it cannot connect.
+    """A client that connects within its time, however little it is answered, and is closed where it cannot connect.
 
-    dask leaves that to the garbage collector; where this comes while another client starts, it waits for a lock that its own
-    thread has, for ever.
+    dask waits for ever for somebody who answers the call and says nothing. Closing it leaves to the garbage collector; where
+    this comes while another client starts, it waits for a lock that its own thread has, for ever.
     """
 
     def __init__(self, *args: Any, **options: Any) -> None:
@@ -47,6 +48,9 @@ class _ClosedUnlessConnected(Client):  # type: ignore[misc]
                 self.close()
                 self._loop_runner.stop()  # dask leaves it running where it has closed the client itself
             raise
+
+    async def _ensure_connected(self, timeout: float | None = None) -> None:
+        await asyncio.wait_for(super()._ensure_connected(timeout), timeout)
 
 
 @contextlib.contextmanager

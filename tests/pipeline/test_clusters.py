@@ -2,7 +2,9 @@
 
 import inspect
 import json
+import socket
 import sys
+import threading
 import types
 
 import pytest
@@ -94,6 +96,30 @@ def test_the_preset_for_kubernetes_starts_what_it_names(monkeypatch):
 def test_a_host_that_no_name_can_be_is_no_address(address):
     with pytest.raises(ConfigError, match="not an address"), clusters.at(Compute(scheduler=address)):
         raise AssertionError
+
+
+@pytest.fixture
+def silent():
+    """The address of somebody who answers every call and says nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as there:  # whose calls the system answers
+        yield f"tcp://127.0.0.1:{there.getsockname()[1]}"
+
+
+@pytest.mark.parametrize("is_in_a_file", [False, True])
+def test_somebody_who_answers_and_says_nothing_is_given_up(silent, tmp_path, monkeypatch, is_in_a_file):
+    monkeypatch.setattr(clusters, "CONNECT_SECONDS", 0.5)
+    file = tmp_path / "scheduler.json"
+    file.write_text(json.dumps({"address": silent}))
+    compute = Compute(scheduler_file=str(file)) if is_in_a_file else Compute(scheduler=silent)
+    with pytest.raises(ClusterError, match="nobody answers there within"), clusters.at(compute):
+        raise AssertionError
+    assert not [thread for thread in threading.enumerate() if thread.name == "IO loop"]
+
+
+def test_a_run_at_somebody_who_says_nothing_ends_with_3(toys, silent):
+    done = toys.command("run", str(toys.yaml()), "--scheduler", silent, "--quiet")
+    assert done.returncode == 3
+    assert f"--scheduler {silent}: nobody answers there within 10 s (TimeoutError)" in done.stderr
 
 
 @pytest.mark.parametrize(("cluster", "hint"), [("distributed:Nope", False), ("dask_jobqueue_x.slurm:Nope", True)])
