@@ -27,6 +27,7 @@ from kinetree.errors import (
     UnknownNodeError,
 )
 from kinetree.pipeline import application, views
+from kinetree.pipeline.command_line import commands
 from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.inspect import Pipeline
 from kinetree.pipeline.output.output import write_elsewhere
@@ -173,6 +174,24 @@ def test_exports_on_request_are_in_the_graph_and_run_when_they_are_named(out, co
     assert pipeline.why("rignet").state == "stale"
     assert ran(pipeline.run(until=["rignet"])) == {"rignet"}
     assert names(out / "rignet") == ["skeleton.obj", "skeleton.txt"]
+
+
+def test_damaged_export_on_request_is_dropped_and_computed_when_it_is_named_again(out, configured):
+    verified = command_line(EXPORTING)
+    assert ran(Pipeline.of(configured).run(until=["rignet"])) == {"rignet"}
+    alter(out / "store" / artifact_path(Pipeline.of(out).why("rignet").artifact), "content/c/0", lambda data: bytes(len(data)))
+    assert verified(["verify", str(out)], standalone_mode=False) == 1
+    assert not verified(["verify", str(out), "--repair"], standalone_mode=False)
+    assert not verified(["verify", str(out)], standalone_mode=False)
+    assert ran(Pipeline.of(configured).run(until=["rignet"])) == {"rignet"}
+
+
+def test_repair_after_which_something_is_missing_ends_with_1(out, monkeypatch, capsys):
+    artifact = {task: out / "store" / artifact_path(Pipeline.of(out).why(task).artifact) for task in ("bvh", "glb")}
+    artifact["bvh"].unlink()
+    monkeypatch.setattr(commands, "compute_and_report", lambda *_, **__: artifact["glb"].unlink())
+    assert command_line(EXPORTING)(["verify", str(out), "--repair"], standalone_mode=False) == 1
+    assert f"{artifact_path(artifact['glb'].stem)}: it is missing" in capsys.readouterr().err
 
 
 def test_failed_skeleton_leaves_no_file(configured, tmp_path):

@@ -187,6 +187,7 @@ def verify(
     Exit code 1 where something is damaged and was not repaired.
     """
     from kinetree.pipeline.planning import verify as verifying
+    from kinetree.pipeline.storage.store import artifact_path
 
     pipeline = pipeline_of(config, store=store)
     verified = verifying.verify(pipeline.store, current().methods().values())
@@ -199,6 +200,10 @@ def verify(
     if repair and not verified.is_sound:
         verifying.discard_damage(pipeline.store, verified)
         compute_and_report(pipeline, quiet=as_json)
+        if missing := verifying.missing(pipeline.store):
+            for digest, what in missing.items():
+                err.print(f"{artifact_path(digest)}: {what}", markup=False)
+            raise typer.Exit(1)
     elif not verified.is_sound:
         raise typer.Exit(1)
 

@@ -51,9 +51,7 @@ def verify(store: Store, graphs: Iterable[Graph]) -> Verified:
     classes = {task.returns.__name__: task.returns for graph in graphs for task in graph.tasks}
     there = list(store.artifacts())
     damaged = {digest: what for digest in there if (what := _damage(store, digest, classes))}
-    for record in store.records.all():
-        if record.artifact not in damaged and not store.holds(record):
-            damaged[record.artifact] = "it is missing" if record.artifact not in there else "its size is not that on record"
+    damaged = {**missing(store), **damaged}
     nodes: dict[str, tuple[str, ...]] = {}
     for run in store.runs():
         for label, node in run["nodes"].items():
@@ -64,8 +62,18 @@ def verify(store: Store, graphs: Iterable[Graph]) -> Verified:
     return Verified(len(there), damaged, nodes, tuple(store.records.damaged()), runs)
 
 
+def missing(store: Store) -> dict[str, str]:
+    """By digest: what is wrong with an artifact that a record names and that does not lie there in its size."""
+    sizes = {r.artifact: store.place.size(artifact_path(r.artifact)) for r in store.records.all() if not store.holds(r)}
+    return {digest: "it is missing" if size is None else "its size is not that on record" for digest, size in sizes.items()}
+
+
 def discard_damage(store: Store, verified: Verified) -> None:
-    """Removes what is damaged: records and runs whole, artifacts too, so that their nodes are no longer up to date."""
+    """Removes what is damaged: records and runs whole, artifacts with the records that name them.
+
+    Their nodes are no longer up to date: a run computes again those that it needs, and the others when they are asked for.
+    """
+    store.records.remove([record.key for record in store.records.all() if record.artifact in verified.damaged])
     for digest in verified.damaged:
         store.discard(digest)
     store.records.discard_damaged()

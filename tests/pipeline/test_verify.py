@@ -72,6 +72,17 @@ def test_repair_computes_again_what_was_damaged_and_nothing_else(toys):
     assert values(toys) == calm
 
 
+def test_record_of_another_configuration_whose_artifact_is_damaged_is_dropped(toys):
+    toys.run()
+    digest = toys.artifacts()["points[frame=2]"]
+    toys.run(points={"scale": 2.0})
+    flip(store(toys).place.root / "artifacts" / digest[:2] / f"{digest}.zip")
+    discard_damage(store(toys), verify(store(toys), [toys.module.GRAPH]))
+    assert verify(store(toys), [toys.module.GRAPH]).is_sound
+    assert toys.run(points={"scale": 2.0}).ran == set()
+    assert toys.run().ran == {"points[frame=2]"}
+
+
 def flip(path):
     data = path.read_bytes()
     path.write_bytes(data[:60] + bytes([data[60] ^ 255]) + data[61:])
