@@ -2,6 +2,7 @@
 
 import importlib.resources
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
@@ -18,6 +19,8 @@ SAVED = "config.yaml"
 """Name under which a run leaves its configuration in its output folder."""
 LARGEST = 4 * 2**20
 """Bytes of a configuration that is read."""
+_OPEN_SLICE = re.compile(r"""[^\s'"#&*!|>%@`,\[\]{}]*:""")
+"""A plain word that ends in a colon, as frames from one on are written: 2:, -5:, all of them :. YAML takes it for a key."""
 Paths = Mapping[str, frozenset[tuple[str, ...]]]
 
 
@@ -107,7 +110,7 @@ def override(blocks: dict[str, Any], text: str, paths: Paths) -> None:
     if not equals or not task or task == "extends":
         raise ConfigError(f"--set {text}: write task.name=value; kinetree tasks lists every parameter")
     bare = value.strip()
-    setting = bare if bare and not bare.strip(":") else parsed(value, f"--set {text}")  # the slice of everything is written ":"
+    setting = bare if _OPEN_SLICE.fullmatch(bare) else parsed(value, f"--set {text}")
     if not dot:
         blocks.update(absolute({task: setting}, Path.cwd(), paths))
         return

@@ -275,6 +275,8 @@ def test_set_that_sets_nothing_says_how_it_is_written(text):
         ("mesh.merge=!!python/object:os.system {}", "--set mesh.merge=!!python/object:os.system {}, line 1: not valid YAML: "),
         ("source.frames=2001-13-45", "--set source.frames=2001-13-45: not valid YAML: month must be in 1..12"),
         ("output.x=1", "--set output.x=1: output: expected the path of a folder, got {'x': 1}"),
+        ("source.frames=a: b", "--set source.frames=a: b: source.frames: input should be a valid string, got {'a': 'b'}"),
+        ("source.frames={2:}", "--set source.frames={2:}: source.frames: input should be a valid string, got "),
         ("mesh=3", "--set mesh=3: mesh: expected keys with values, got 3"),
     ],
 )
@@ -324,11 +326,12 @@ def test_set_into_what_has_no_keys_is_refused():
     assert refusal({"output": "x"}, "output.x=1") == "--set output.x=1: output has no keys of its own"
 
 
-@pytest.mark.parametrize("frames", ["10:50:2", "1:20", "10:60:2", ":", "0:59:59"])
-def test_range_of_frames_is_no_number_to_base_sixty(write, frames):
+@pytest.mark.parametrize("frames", ["10:50:2", "1:20", "10:60:2", ":", "0:59:59", "2:", "-5:", "::"])
+def test_range_of_frames_is_no_number_to_base_sixty_and_no_key(write, frames):
     assert of(None, f"source.frames={frames}").params["source"].frames == frames
+    assert of(None, f"sequence.learn_from= {frames} ").params["sequence"].learn_from == frames
     assert of(write("a.yaml", f"source: {{frames: '{frames}'}}")).params["source"].frames == frames
-    if frames != ":":
+    if not frames.endswith(":"):
         assert of(write("a.yaml", f"source:\n  frames: {frames}\n")).params["source"].frames == frames
 
 
