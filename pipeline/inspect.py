@@ -157,7 +157,7 @@ class Pipeline:
             recall=history.recall,
             distrusted=MadeWith.of(made_with),
         )
-        return Snapshot(schedule, history, tuple(notes))
+        return Snapshot(schedule, history, tuple(notes), wanted)
 
     def run(
         self,
@@ -233,7 +233,7 @@ class Pipeline:
         if account.failures:
             failure = account.failures[0]
             raise NodesFailedError(f"{failure['node']}: {failure['error']}: {failure['message']}")
-        return Snapshot(there.schedule, there.history, there.notes)
+        return Snapshot(there.schedule, there.history, there.notes, there.named)
 
     def _refuse_missing(self, there: Snapshot, name: str, also: Collection[str]) -> None:
         stale = [node for node in there.plan.nodes if node.state != "fresh"]

@@ -176,6 +176,19 @@ def test_exports_on_request_are_in_the_graph_and_run_when_they_are_named(out, co
     assert names(out / "rignet") == ["skeleton.obj", "skeleton.txt"]
 
 
+def test_exports_on_request_count_in_an_estimate_where_a_run_would_compute_them(out, configured):
+    pipeline = Pipeline.of(out)
+    expected = pipeline.inspect().estimate()
+    assert (expected.nodes, expected.seconds, expected.unknown) == (0, 0, ())
+    named = pipeline.inspect(until=["rignet"]).estimate()
+    assert (named.nodes, named.unknown) == (1, ("rignet",))
+    assert pipeline.inspect(force=["bvh", "rignet"]).estimate().nodes == 1
+    never = Pipeline.of({**configured, "output": f"{out}-2"})
+    estimates = [never.inspect(until=until).estimate() for until in ((), never.tasks.unasked)]
+    assert estimates[0] == estimates[1]
+    assert estimates[0].nodes
+
+
 def test_damaged_export_on_request_is_dropped_and_computed_when_it_is_named_again(out, configured):
     verified = command_line(EXPORTING)
     assert ran(Pipeline.of(configured).run(until=["rignet"])) == {"rignet"}

@@ -35,6 +35,8 @@ class Snapshot:
     history: History
     notes: tuple[str, ...] = ()
     """What is to be known of the input, e.g. that it was not found and the last run's is taken."""
+    named: tuple[str, ...] = ()
+    """The tasks that were asked for by name; where there are none a run leaves out those on request."""
     unkept: str = ""
     """Why what was computed for it is in the memory of this process alone; empty where it is not."""
 
@@ -49,8 +51,13 @@ class Snapshot:
         return Timings.of(self.schedule.entries.values())
 
     def estimate(self) -> Estimate:
-        """How long a run would take, from what nodes took before; by task, and how many nodes have no such figure."""
-        return estimated(self.schedule, self.history.records())
+        """How long a run would take, from what nodes took before; by task, and how many nodes have no such figure.
+
+        Tasks on request count where they, or tasks that read them, were asked for by name.
+        """
+        graph = self.schedule.graph
+        wanted = graph.until(self.named or graph.unasked).by_name
+        return estimated(self.schedule, self.history.records(), wanted)
 
     @cached_property
     def graph(self) -> "DrawnGraph":

@@ -1,7 +1,7 @@
 """What computing took, from records: by task for what is there, and estimated for what a run would compute."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 from typing import Any
@@ -95,24 +95,25 @@ class Estimate:
         return text
 
 
-def estimated(schedule: Schedule, last: Mapping[str, Record]) -> Estimate:
+def estimated(schedule: Schedule, last: Mapping[str, Record], wanted: Collection[str]) -> Estimate:
     """The estimate of what a schedule has to compute.
 
-    last : by label, the records of the nodes of the last runs
+    last   : by label, the records of the nodes of the last runs
+    wanted : the tasks that count
     """
     means = _means([*last.values(), *(e.record for e in schedule.entries.values() if e.record is not None)])
-    todo = [e for e in schedule.entries.values() if e.state not in ("fresh", "ran")]
+    todo = [e for e in schedule.entries.values() if e.node.task in wanted and e.state not in ("fresh", "ran")]
     seconds: defaultdict[str, float] = defaultdict(float)
     for entry in todo:
         before = last.get(entry.label)
         seconds[entry.node.task] += before.seconds if before else means.get(entry.node.task, 0.0)
-    open_tasks = tuple(task for task, blocking in schedule.blocked.items() if blocking)
+    open_tasks = tuple(task for task, blocking in schedule.blocked.items() if blocking and task in wanted)
     known = {e.label for e in schedule.entries.values()}
     for label, record in last.items():
         if record.task in open_tasks and label not in known:
             seconds[record.task] += record.seconds
-    wanted = {e.node.task for e in todo} | set(open_tasks)
-    unknown = tuple(task.name for task in schedule.graph.tasks if task.name in wanted and task.name not in means)
+    running = {e.node.task for e in todo} | set(open_tasks)
+    unknown = tuple(task.name for task in schedule.graph.tasks if task.name in running and task.name not in means)
     waiting = sum(entry.state == "waits" for entry in todo)
     return Estimate(round(sum(seconds.values()), 3), dict(seconds), len(todo), waiting, unknown, open_tasks)
 
