@@ -15,6 +15,7 @@ from kinetree.pipeline.settings.config import Compute
 _FILES = ("_file", "_cert", "_key")
 """How the arguments of distributed.Security end that name files."""
 _ENCRYPTED = ("tls", "wss")
+_ROLES = ("scheduler", "worker", "client")
 _CLIENT = "tls_ca_file, tls_client_cert, tls_client_key"
 """The arguments of distributed.Security that a client needs."""
 
@@ -44,12 +45,27 @@ def secured(compute: Compute, scheduler: str = "") -> dict[str, Security]:
             return {"security": Security.temporary()}
         except ImportError:
             raise ConfigError("compute.security temporary: cryptography is not installed; pip install cryptography") from None
-    if missing := [f"{key} {path}" for key, path in wanted.items() if key.endswith(_FILES) and not Path(path).is_file()]:
+    files = {key: str(path) for key, path in wanted.items() if key.endswith(_FILES)}
+    if missing := [f"{key} {path}" for key, path in files.items() if not Path(path).is_file()]:
         raise ConfigError(f"compute.security: {missing[0]}: there is no such file")
     try:
-        return {"security": Security(require_encryption=True, **wanted)}
+        security = Security(**{**wanted, "require_encryption": True})
     except (TypeError, ValueError) as error:
         raise ConfigError(f"compute.security: {error}") from None
+    if compute.has_own_workers:
+        _refuse_without_certificates(security)
+    return {"security": security}
+
+
+def _refuse_without_certificates(security: Security) -> None:
+    """Raises ConfigError where the scheduler, the workers or the client that a run starts itself would have no certificate."""
+    try:
+        missing = [role for role in _ROLES if security.get_connection_args(role)["ssl_context"] is None]
+    except (ssl.SSLError, OSError) as error:
+        raise ConfigError(f"compute.security: the certificates cannot be loaded ({error}); expected PEM") from None
+    if missing:
+        named = f"tls_ca_file, tls_{missing[0]}_cert, tls_{missing[0]}_key"
+        raise ConfigError(f"compute.security: the {missing[0]} has no certificate; name {named}, or say temporary")
 
 
 def refuse_unfit(address: str, security: Security, asked: str) -> None:

@@ -56,9 +56,10 @@ class Compute(BaseModel):
     """What that class is called with."""
     adapt: tuple[int, int] | None = None
     """Fewest and most workers of that class, which come and go with the work; None takes as many as `workers` says."""
-    security: Literal["temporary"] | dict[str, str] = {}
+    security: Literal["temporary"] | dict[str, bool | str] = {}
     """TLS between client, scheduler and workers: arguments of distributed.Security such as tls_ca_file, tls_client_cert and
-    tls_client_key, or temporary: certificates of workers that the run starts itself. By default what dask is configured to."""
+    tls_client_key (require_encryption is always true), or temporary: certificates of workers that the run starts itself. By
+    default what dask is configured to."""
     performance_report: str | None = Field(default=None, exclude=True)
     """File for dask's own report on a run."""
 
@@ -68,6 +69,16 @@ class Compute(BaseModel):
         if size is not None and not re.fullmatch(r"[0-9]{1,15}(\.[0-9]{1,15})? ?([kMGT]i?)?B", size):
             raise ValueError("expected a size such as 4GB or 512MiB")
         return size
+
+    @field_validator("security")
+    @classmethod
+    def _is_encrypted(cls, security: Any) -> Any:
+        for key, value in security.items() if isinstance(security, Mapping) else ():
+            if key == "require_encryption" and value is not True:
+                raise ValueError("require_encryption: what it sets up is always encrypted; expected true or nothing")
+            if key != "require_encryption" and not isinstance(value, str):
+                raise ValueError(f"{key}: expected a text")
+        return security
 
     @property
     def is_here(self) -> bool:

@@ -160,6 +160,19 @@ def test_wrong_key_within_a_key_is_refused_with_the_nearest_there(write):
     assert refusal(path) == f"{path}: source.synth.frmes: no such key; did you mean 'frames'?"
 
 
+@pytest.mark.parametrize("value", [False, "true", "false"])
+def test_encryption_may_be_required_and_not_forgone(value):
+    security = {"require_encryption": value}
+    words = "config: compute.security: require_encryption: what it sets up is always encrypted; expected true or nothing"
+    assert refusal({"compute": {"security": security}}) == f"{words}, got {security}"
+    assert of({"compute": {"security": {"require_encryption": True}}}).compute.security == {"require_encryption": True}
+
+
+def test_file_of_a_certificate_is_named_by_a_text():
+    words = "config: compute.security: tls_ca_file: expected a text, got {'tls_ca_file': True}"
+    assert refusal({"compute": {"security": {"tls_ca_file": True}}}) == words
+
+
 @pytest.mark.parametrize("memory", ["lots", "4", "4 gb", "-1GB", ""])
 def test_memory_that_is_no_size_is_refused(memory):
     words = f"config: compute.memory: expected a size such as 4GB or 512MiB, got {memory!r}"

@@ -113,10 +113,11 @@ def secured(certificates):
         yield cluster.scheduler_address
 
 
-def test_a_scheduler_with_certificates_is_reached_with_them(toys, certificates, secured, tmp_path):
+@pytest.mark.parametrize("also", [{}, {"require_encryption": True}])
+def test_a_scheduler_with_certificates_is_reached_with_them(toys, certificates, secured, tmp_path, also):
     file = tmp_path / "scheduler.json"
     file.write_text(json.dumps({"address": secured}))
-    compute = {"scheduler_file": str(file), "security": certificates[1]["right"]}
+    compute = {"scheduler_file": str(file), "security": {**certificates[1]["right"], **also}}
     assert toys.run(until=("smooth",), compute=compute).told["status"] == "done"
 
 
@@ -158,6 +159,24 @@ def test_what_is_no_address_is_the_users_to_mend(address):
         pass
 
 
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        ({"require_encryption": True}, "the scheduler has no certificate; name tls_ca_file, .* or say temporary"),
+        ("right", "the scheduler has no certificate"),
+        ("all but the worker's", "the worker has no certificate; name tls_ca_file, tls_worker_cert"),
+        ("broken", "the certificates cannot be loaded .*; expected PEM"),
+    ],
+)
+def test_own_workers_without_certificates_are_the_users_to_mend(certificates, files, words):
+    right, broken = certificates[1]["right"], certificates[1]["broken"]
+    of_scheduler = {key.replace("client", "scheduler"): path for key, path in right.items()}
+    named = {"right": right, "all but the worker's": {**right, **of_scheduler}, "broken": {**of_scheduler, **broken}}
+    compute = Compute(executor="processes", security=files if isinstance(files, dict) else named[files])
+    with pytest.raises(ConfigError, match=f"^compute.security: {words}"), local(compute):
+        pass
+
+
 def test_a_security_loader_that_is_not_there_is_the_users_to_mend():
     with (
         dask.config.set({"distributed.client.security-loader": "nowhere.certificates"}),
@@ -188,6 +207,7 @@ def test_without_certificates_the_security_loader_of_dask_is_asked(monkeypatch):
     ("security", "words"),
     [
         ({"tls_ca_file": "/nowhere/ca.pem"}, "compute.security: tls_ca_file /nowhere/ca.pem: there is no such file"),
+        ({"require_encryption": True}, "tcp://127.0.0.1:1 is not encrypted, but encryption is asked for"),
         ({"ca": "x"}, r"compute.security: Unknown parameters: \['ca'\]"),
         ("temporary", "compute.security temporary: --scheduler tcp://127.0.0.1:1 has certificates of its own"),
     ],
