@@ -51,6 +51,8 @@ class Edges:
         """The task of that name or the one that writes that artifact class; raises UnknownNodeError."""
         if isinstance(what, str):
             return self.task(what)
+        if not isinstance(what, type):
+            raise UnknownNodeError(f"expected an artifact's class or a task's name, got {what!r}")
         if what not in self.writers:
             raise UnknownNodeError(f"no task of this graph writes {what.__name__}")
         return self.writers[what]

@@ -36,6 +36,7 @@ from kinetree.pipeline.running.events import Account, Listener, Watch
 from kinetree.pipeline.running.interrupts import raise_swallowed
 from kinetree.pipeline.running.memory import Needs
 from kinetree.pipeline.running.worker_parent import WorkerParent, refuse_within_import
+from kinetree.pipeline.running.workers import refuse_no_client
 from kinetree.pipeline.settings import config as configuration
 from kinetree.pipeline.settings.config import Compute, Config
 from kinetree.pipeline.storage.files import Files, Settling
@@ -175,6 +176,7 @@ class Pipeline:
         settling : which files of an input that grows are complete; None takes all
         raises   : InputError where the user's input is wrong; KeyboardInterrupt after the store was left whole
         """
+        refuse_no_client(client)
         started = time.perf_counter()
         compute = self.config.compute
         if client is None and compute.has_own_workers:

@@ -25,7 +25,7 @@ def label(node: Node, over: Space) -> str:
 
 def parse(text: str, graph: Graph) -> Node:
     """The node that a text names: mesh[frame=3], or shorter mesh[3]; raises UnknownNodeError."""
-    written = re.fullmatch(r"\s*(\w+)\s*(?:\[(.*)\])?\s*", text)
+    written = re.fullmatch(r"\s*(\w+)\s*(?:\[(.*)\])?\s*", text) if isinstance(text, str) else None
     if written is None:
         raise UnknownNodeError(f"{text!r}: not a node; write a task, or a task with its index: {_example(graph)}")
     task = graph.task(written.group(1))

@@ -36,7 +36,7 @@ from kinetree.pipeline.output.outcome import OUTCOME, Outcome
 from kinetree.pipeline.output.ownership import Owned
 from kinetree.pipeline.running.events import Listener
 from kinetree.pipeline.running.worker_parent import refuse_within_import
-from kinetree.pipeline.running.workers import Workers
+from kinetree.pipeline.running.workers import Workers, refuse_no_client
 from kinetree.pipeline.settings.config import Compute
 from kinetree.pipeline.storage.files import Files
 from kinetree.pipeline.storage.gc import advising, collect
@@ -149,6 +149,7 @@ class Dataset:
         max_hours : after this no node is sent any more; the next run goes on
         raises    : StoreError, ClusterError where going on makes no sense, after what became of all was put on record
         """
+        refuse_no_client(client)
         if client is None:
             self._refuse_within_import()
         started, began = time.perf_counter(), now()

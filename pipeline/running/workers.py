@@ -4,6 +4,7 @@ import contextlib
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from kinetree.errors import ConfigError
 from kinetree.pipeline.application import helped
 
 if TYPE_CHECKING:  # what computes nothing does without dask
@@ -11,6 +12,16 @@ if TYPE_CHECKING:  # what computes nothing does without dask
     from kinetree.pipeline.running.launch import Launcher
     from kinetree.pipeline.settings.config import Compute
     from kinetree.pipeline.storage.store import Store
+
+
+def refuse_no_client(client: Any) -> None:
+    """Raises ConfigError where what a program hands in to run on is neither None nor a `distributed.Client`.
+
+    It goes by the names of classes: what computes nothing does without dask.
+    """
+    names = {(cls.__module__.partition(".")[0], cls.__name__) for cls in type(client).__mro__}
+    if client is not None and ("distributed", "Client") not in names:
+        raise ConfigError(f"expected a distributed.Client to run on, got {client!r}; an address belongs into compute.scheduler")
 
 
 class Workers:

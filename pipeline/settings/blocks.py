@@ -85,6 +85,8 @@ def blocks_at(target: str | Path | Mapping[str, Any] | None, reading: Reading) -
         return {}, "config"
     if isinstance(target, Mapping):
         return extended(dict(target), Path.cwd(), "config", (), reading)
+    if not isinstance(target, str | os.PathLike):
+        raise ConfigError(f"expected a file, an output folder, a preset or a mapping, got {target!r}")
     path = expanded(target)
     if path.is_dir():
         if not (path / SAVED).is_file():

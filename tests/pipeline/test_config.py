@@ -1,6 +1,7 @@
 """Laws of configuration: who wins, what is refused and in which words, and that a run's own file says the same again."""
 
 import os
+import re
 
 import pytest
 from hypothesis import example, given
@@ -265,6 +266,13 @@ def test_target_that_is_nothing_is_refused_with_the_presets(tmp_path):
     assert refusal(tmp_path) == (
         f"{tmp_path}: no config.yaml in this folder, so it is not the output of a run; give a YAML file"
     )
+
+
+@pytest.mark.parametrize("target", [3, 1.5, True, [], b"out"])
+def test_target_that_can_be_no_path_is_refused(target):
+    words = f"expected a file, an output folder, a preset or a mapping, got {target!r}"
+    with pytest.raises(ConfigError, match=f"^{re.escape(words)}$"):
+        Pipeline.of(target)
 
 
 # ── --set ───────────────────────────────────────────────────────────────────────────────────────────────────────────

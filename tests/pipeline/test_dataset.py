@@ -69,6 +69,11 @@ def test_a_worker_process_that_imports_the_script_leaves_nothing_behind(lab, mon
     assert [path for path in sorted(lab.results.rglob("*")) if path not in before and "store" not in path.parts] == []
 
 
+def test_what_is_no_client_is_refused_in_words(lab):
+    with pytest.raises(ConfigError, match=r"^expected a distributed\.Client to run on, got 'tcp://host:8786'"):
+        lab.run(client="tcp://host:8786")
+
+
 def test_a_changed_sequence_reruns_itself_and_the_summary_alone(lab):
     lab.run()
     lab.take("b", 30, 40, 500)

@@ -4,6 +4,7 @@ import contextlib
 import gc
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -12,7 +13,7 @@ import sys
 import pytest
 from distributed import Client, LocalCluster
 
-from kinetree.errors import StaleWorkerError
+from kinetree.errors import ConfigError, StaleWorkerError
 from kinetree.pipeline.running.execute import compute
 from kinetree.pipeline.running.parcels import steps_of
 
@@ -181,6 +182,15 @@ def begun(command, *options):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
+
+
+@pytest.mark.parametrize("client", ["tcp://host:8786", 3, Client])
+def test_what_is_no_client_is_refused_in_words_also_where_nothing_is_to_be_computed(toys, client):
+    words = f"expected a distributed.Client to run on, got {client!r}"
+    for _ in ("first", "nothing to do"):
+        with pytest.raises(ConfigError, match=f"^{re.escape(words)}"):
+            toys.pipeline().run(client)
+        toys.run()
 
 
 def test_a_scheduler_nobody_runs_is_refused_in_words(toys, monkeypatch):

@@ -1,5 +1,7 @@
 """One look at the graph answers many questions, with the same answers as one look for each."""
 
+import re
+
 import pytest
 
 from kinetree.errors import ConfigError, UnknownNodeError
@@ -53,6 +55,19 @@ def test_an_artifact_that_nobody_writes_is_refused_by_its_name(toys):
     stranger = type("Stranger", (toys.module.Total,), {})
     with pytest.raises(UnknownNodeError, match="no task of this graph writes Stranger"):
         toys.pipeline().inspect().artifact(stranger)
+
+
+@pytest.mark.parametrize("what", [None, 3, [], b"points"])
+def test_what_names_no_artifact_and_no_node_is_refused_in_words(toys, what):
+    toys.run(until=("points",))
+    pipeline = toys.pipeline()
+    got = re.escape(repr(what))
+    for ask in (pipeline.artifact, pipeline.inspect().artifact):
+        with pytest.raises(UnknownNodeError, match=f"^expected an artifact's class or a task's name, got {got}$"):
+            ask(what)
+    for ask in (pipeline.why, pipeline.lineage):
+        with pytest.raises(UnknownNodeError, match=f"^{got}: not a node; write a task, or a task with its index"):
+            ask(what)
 
 
 def test_a_graph_shows_itself_as_text_table_and_drawing(toys):
