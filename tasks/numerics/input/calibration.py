@@ -17,8 +17,8 @@ import yaml
 from kinetree.errors import SourceError
 from kinetree.errors.small_text import BoundedLoader, small_json, small_text, small_yaml
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.input.npz import npz_arrays, npz_shapes
 from kinetree.tasks.numerics.input.source import natural_order
-from kinetree.tasks.numerics.input.unpacked import npz_bomb
 
 FORMAT = "kinetree.cameras/1"
 NAMES = tuple(f"{stem}{suffix}" for suffix in (".json", ".npz", ".yml", ".yaml") for stem in ("calibration", "cameras"))
@@ -108,13 +108,11 @@ def _json(files: Sequence[Path], where: str) -> Calibration:
 
 
 def _npz(files: Sequence[Path], where: str) -> Calibration:
-    if why := npz_bomb(files[0], "P", LARGEST) or npz_bomb(files[0], "size", LARGEST):
-        raise SourceError(f"{where}: {why}")
-    with files[0].open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        if "P" not in archive.files:
-            raise SourceError(f"{where}: no array P (camera, 3, 4); there are {', '.join(archive.files) or 'none'}")
-        matrices = np.asarray(archive["P"], dtype=np.float64)
-        size = np.asarray(archive["size"]).reshape(-1) if "size" in archive.files else None
+    arrays = npz_arrays(files[0], ("P", "size"), SourceError, LARGEST)
+    if "P" not in arrays:
+        raise SourceError(f"{where}: no array P (camera, 3, 4); there are {', '.join(npz_shapes(files[0])) or 'none'}")
+    matrices = np.asarray(arrays["P"], dtype=np.float64)
+    size = arrays["size"].reshape(-1) if "size" in arrays else None
     if matrices.ndim != 3 or matrices.shape[1:] != (3, 4) or not len(matrices):
         raise SourceError(f"{where}: P is {matrices.shape}; (camera, 3, 4) is needed")
     names = tuple(f"cam_{c:02d}" for c in range(len(matrices)))

@@ -8,6 +8,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.input import silhouettes, volumes
 from kinetree.tasks.numerics.input.calibration import calibration_files
 from kinetree.tasks.numerics.input.formats import suffixes
+from kinetree.tasks.numerics.input.npz import npz_shapes
 from kinetree.tasks.numerics.input.source import natural_order, regular
 
 InputKind = Literal["meshes", "silhouettes", "packed silhouettes", "volumes", "packed volumes"]
@@ -35,7 +36,7 @@ def input_kind(where: str) -> tuple[InputKind, list[Path]]:
     if path.is_file() and path.suffix.lower() == ".npy":
         return "packed volumes", [path]
     if path.is_file() and path.suffix.lower() == ".npz":
-        shapes = volumes.npz_shapes(path)
+        shapes = npz_shapes(path)
         if "vertices" not in shapes and any(len(shapes.get(name, ())) == 4 for name in volumes.ARRAYS):
             return "packed volumes", [path]
     return "meshes", []
@@ -54,6 +55,6 @@ def _of_files(there: list[Path]) -> tuple[InputKind, list[Path]]:
             )
         return "meshes", []
     regular(there, kinds)
-    if kinds == {".npz"} and silhouettes.ARRAY in volumes.npz_shapes(frame_files[0]):
+    if kinds == {".npz"} and silhouettes.ARRAY in npz_shapes(frame_files[0]):
         return "packed silhouettes", frame_files
     return "volumes", frame_files

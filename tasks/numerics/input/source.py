@@ -20,7 +20,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.foreign import advice
 from kinetree.tasks.numerics.input.formats import checked, suffixes
-from kinetree.tasks.numerics.input.unpacked import npz_bomb
+from kinetree.tasks.numerics.input.npz import npz_arrays
 
 _PACKED = [".gz", ".bz2", ".xz", ".zst", ".lz4", ".zip"]
 """Suffixes of files that must be unpacked before they can be read."""
@@ -214,12 +214,7 @@ def refuse_unreadable(path: Path) -> None:
 def _frames(path: str, size: int, mtime_ns: int) -> Frames:
     """The file in this state; two are remembered, so that reading frame after frame unpacks it once."""
     try:
-        # opened here, because numpy leaves a file open that turns out to be no archive
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            for key in ARRAYS:
-                if why := npz_bomb(Path(path), key):
-                    raise SourceError(f"{path}: {why}")
-            arrays = {key: archive[key] for key in ARRAYS if key in archive.files}
+        arrays = npz_arrays(Path(path), ARRAYS, SourceError)
     except SourceError:
         raise
     except Exception as error:

@@ -1,7 +1,6 @@
 """How large a file may be and to how much it may unpack; both are held against bounds before memory is taken."""
 
 import bz2
-import zipfile
 import zlib
 from pathlib import Path
 from typing import BinaryIO
@@ -25,14 +24,6 @@ def bomb(stored: int, unpacked: int, allowed: int | None = None) -> str:
     if unpacked <= (UNPACKED_BYTES if allowed is None else allowed) or unpacked <= UNPACKED_RATIO * stored:
         return ""
     return f"{stored} bytes would unpack to {unpacked}; expected at most {UNPACKED_RATIO} times as many"
-
-
-def npz_bomb(path: Path, key: str, allowed: int | None = None) -> str:
-    """Why an array of an npz is not unpacked, empty where it is or where there is none; raises what zipfile raises."""
-    with zipfile.ZipFile(path) as archive:
-        info = archive.NameToInfo.get(f"{key}.npy")
-    why = "" if info is None else bomb(info.compress_size, info.file_size, allowed)
-    return f"{key}: {why}" if why else ""
 
 
 def unpacks_beyond(file: BinaryIO, encoding: str, stored: int, most: int) -> bool:

@@ -11,7 +11,6 @@ Nothing is unpickled, and every size a file claims is held against a bound befor
 
 import logging
 import math
-import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +22,8 @@ import tifffile
 
 from kinetree.errors import HullError, SourceError
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.input.unpacked import npz_bomb, too_large, unpacks_beyond
+from kinetree.tasks.numerics.input.npz import npz_arrays, npz_shapes
+from kinetree.tasks.numerics.input.unpacked import too_large, unpacks_beyond
 
 SUFFIXES = (".npy", ".npz", ".nrrd", ".tif", ".tiff")
 ARRAYS = ("field", "volume", "values")
@@ -129,22 +129,6 @@ def read_volumes(path: Path) -> Volumes:
     return Volumes.of(arrays["values"], arrays, str(path))
 
 
-def npz_shapes(path: Path) -> dict[str, tuple[int, ...]]:
-    """Names and shapes of the arrays of an npz, without reading them; raises SourceError."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return {name.removesuffix(".npy"): _shape(archive, name) for name in archive.namelist() if name.endswith(".npy")}
-    except Exception as error:
-        raise SourceError(f"{path}: cannot be read as .npz ({type(error).__name__}: {error})") from None
-
-
-def _shape(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
-    with archive.open(name) as file:
-        version = np.lib.format.read_magic(file)
-        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        return tuple(int(n) for n in read(file)[0])
-
-
 def _refuse_large(shape: tuple[int, ...], path: Path) -> None:
     if int(np.prod([int(n) for n in shape[-3:]])) > MOST_VOXELS:
         raise HullError(f"{path}: a volume of {tuple(shape)} voxels is larger than {MOST_VOXELS}; crop it to the body")
@@ -156,10 +140,8 @@ def _npz_arrays(path: Path) -> dict[str, Any]:
     if key is None:
         raise HullError(f"{path}: no array {' or '.join(ARRAYS)}; there are {', '.join(sorted(shapes)) or 'none'}")
     _refuse_large(shapes[key], path)
-    if why := next((why for name in (key, "origin", "voxel") if (why := npz_bomb(path, name, _MOST_DENSE))), ""):
-        raise HullError(f"{path}: {why}")
-    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        return {"values": archive[key], **{name: archive[name] for name in ("origin", "voxel") if name in shapes}}
+    arrays = npz_arrays(path, (key, "origin", "voxel"), HullError, _MOST_DENSE)
+    return {"values": arrays.pop(key), **arrays}
 
 
 def _npz(path: Path) -> tuple[Any, Any, Any]:

@@ -8,7 +8,8 @@ import pytest
 import tifffile
 
 from kinetree.errors import HullError, SourceError
-from kinetree.tasks.numerics.input.volumes import Volumes, npz_shapes, read_volume, read_volumes
+from kinetree.tasks.numerics.input.npz import npz_shapes
+from kinetree.tasks.numerics.input.volumes import Volumes, read_volume, read_volumes
 
 VALUES = np.random.default_rng(0).normal(size=(4, 5, 6)).astype(np.float32)
 ORIGIN, STEP = np.array([1.0, -2.0, 3.0]), np.array([0.5, 0.25, 2.0])
