@@ -16,6 +16,7 @@ from kinetree.pipeline.task import origin
 from kinetree.schemas.array import Floats, Ints
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.truth import TrueBody, Truth, TruthParams
+from kinetree.tasks.numerics.input.npz import npz_arrays
 from kinetree.tasks.numerics.results.truth import TrueMotion, read_truth, truth_of_json
 from kinetree.tasks.numerics.results.units import unit_factor
 
@@ -133,9 +134,9 @@ def _artifact(motion: TrueMotion | None, source: str, params: TruthParams | None
 def _body(path: Path, motion: TrueMotion) -> tuple[NDArray[np.float32], Ints, Ints]:
     """(frame, vertex, xyz) the true body, (vertex,) the joint each vertex follows most, and the end of its bone or −1."""
     try:
-        with np.load(path, allow_pickle=False) as arrays:
-            V, W = (np.array(arrays[key], dtype=np.float64) for key in ("vertices", "weights"))
-            columns = [str(n) for n in np.atleast_1d(arrays["weight_names"])]
+        arrays = npz_arrays(path, ("vertices", "weights", "weight_names"), InputError)
+        V, W = (np.array(arrays[key], dtype=np.float64) for key in ("vertices", "weights"))
+        columns = [str(n) for n in np.atleast_1d(arrays["weight_names"])]
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(
             f"{path}: not a body: {error}; expected an npz with vertices, weights and weight_names, one set of faces"

@@ -11,6 +11,7 @@ from kinetree.errors import InputError
 from kinetree.schemas.input.source import Source
 from kinetree.schemas.results.truth import Truth, TruthParams
 from kinetree.tasks.input.synth import body
+from kinetree.tasks.numerics.input import unpacked
 from kinetree.tasks.results.truth import synthetic, true_carriers, truth
 
 RECIPE = generated(frames=3, vertices=300)
@@ -114,6 +115,16 @@ def test_body_that_does_not_fit_is_refused(file: Path, tmp_path: Path, arrays: d
     npz = tmp_path / "body.npz"
     np.savez(npz, **arrays)
     with pytest.raises(InputError, match=message):
+        read(file=str(file), body=str(npz))
+
+
+def test_body_that_would_unpack_to_too_much_is_refused_unread(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    npz = tmp_path / "body.npz"
+    np.savez_compressed(npz, vertices=np.zeros((10**4, 3)), weights=np.ones((4, 1)), weight_names=synthetic(RECIPE).names[:1])
+    monkeypatch.setattr(unpacked, "UNPACKED_BYTES", 10**5)
+    with pytest.raises(InputError, match=r"body\.npz: vertices: \d+ bytes would unpack to 240128; expected at most 100 times"):
         read(file=str(file), body=str(npz))
 
 
