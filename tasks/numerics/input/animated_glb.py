@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input.formats import checked
 from kinetree.tasks.numerics.input.gltf import Gltf
 from kinetree.tasks.numerics.input.gltf_channel import Channel, rotation_matrix
+from kinetree.tasks.numerics.input.unpacked import bomb
 
 _DENSE_KEYS = 1 / 12
 """Keys no further apart than this (seconds) …"""
@@ -73,6 +74,7 @@ class AnimatedGlb:
         """
         self.name = name
         self._gltf = Gltf.of(raw)
+        self._stored, self._unfolded = len(raw), 0
         self._nodes = self._gltf.items("nodes")
         self._parents = self._order()
         self._channels = [] if targets_are_frames else self._channels_of(self._animation(clip))
@@ -115,6 +117,13 @@ class AnimatedGlb:
             begin += len(X)
         return checked(np.concatenate(V), np.concatenate(F), f"{self.name}, frame {t}")
 
+    def _array(self, index: Any) -> Floats:
+        """An accessor's numbers; raises SourceError where all arrays together are too large for the bytes that are there."""
+        self._unfolded += self._gltf.size(index)
+        if why := bomb(self._stored, self._unfolded):
+            raise SourceError(f"{self.name}: its arrays: {why}")
+        return self._gltf.array(index)
+
     def _order(self) -> dict[int, int | None]:
         """The parent of every node that the scene shows, parents before their children."""
         scenes = self._gltf.items("scenes")
@@ -152,7 +161,7 @@ class AnimatedGlb:
                 continue  # a light, a camera, or a node that is not shown
             if not isinstance(k, int) or not 0 <= k < len(samplers):
                 raise SourceError(f"{self.name}: an animation names sampler {k!r}, which is not there; the file is damaged")
-            times, values = self._gltf.array(samplers[k].get("input")), self._gltf.array(samplers[k].get("output"))
+            times, values = self._array(samplers[k].get("input")), self._array(samplers[k].get("output"))
             way = str(samplers[k].get("interpolation", "LINEAR"))
             rows = (len(times), 3) if way == "CUBICSPLINE" else (len(times),)
             width = _WIDTH.get(target["path"], values.size // max(int(np.prod(rows)), 1))
@@ -231,14 +240,14 @@ class AnimatedGlb:
 
     def _piece(self, i: int, node: Mapping[str, Any], mesh: Mapping[str, Any], primitive: Mapping[str, Any]) -> _Piece:
         attributes = primitive.get("attributes", {})
-        V = self._gltf.array(attributes.get("POSITION"))
-        corners = self._gltf.array(primitive["indices"]) if "indices" in primitive else np.arange(len(V), dtype=np.float64)
+        V = self._array(attributes.get("POSITION"))
+        corners = self._array(primitive["indices"]) if "indices" in primitive else np.arange(len(V), dtype=np.float64)
         if V.ndim != 2 or V.shape[1] != 3 or corners.ndim != 1 or len(corners) % 3:
             raise SourceError(f"{self.name}: a mesh is not made of triangles in space; the file is damaged")
         V, F = checked(V, corners.astype(np.int64).reshape(-1, 3), self.name)
         target_attributes = primitive.get("targets", [])
         self._refuse_beyond(len(target_attributes) * V.nbytes)  # a target without positions takes three bytes of the file
-        targets = [self._gltf.array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in target_attributes]
+        targets = [self._array(t["POSITION"]) if "POSITION" in t else np.zeros_like(V) for t in target_attributes]
         if any(t.shape != V.shape for t in targets):
             raise SourceError(f"{self.name}: a morph target has not as many vertices as its mesh; the file is damaged")
         at_rest = node.get("weights", mesh.get("weights", [0.0] * len(targets)))
@@ -261,13 +270,13 @@ class AnimatedGlb:
         if "skin" not in node or not sets:
             return np.zeros((n, 0), np.int64), np.zeros((n, 0)), (), np.zeros((0, 4, 4))
         skin = self._gltf.item("skins", node["skin"])
-        nodes = list(skin.get("joints", []))
-        joints = np.concatenate([self._gltf.array(attributes[f"JOINTS_{k}"]) for k in sets], axis=1).astype(np.int64)
-        weights = np.concatenate([self._gltf.array(attributes[f"WEIGHTS_{k}"]) for k in sets], axis=1)
+        nodes = skin.get("joints", [])
+        joints = np.concatenate([self._array(attributes[f"JOINTS_{k}"]) for k in sets], axis=1).astype(np.int64)
+        weights = np.concatenate([self._array(attributes[f"WEIGHTS_{k}"]) for k in sets], axis=1)
         inverse = (
-            self._gltf.array(skin["inverseBindMatrices"])
+            self._array(skin["inverseBindMatrices"])
             if "inverseBindMatrices" in skin
-            else np.tile(np.eye(4), (len(nodes), 1, 1))
+            else np.broadcast_to(np.eye(4), (len(nodes), 4, 4))
         )
         fits = joints.shape == weights.shape and len(joints) == n and inverse.shape == (len(nodes), 4, 4)
         if not fits or any(j not in self._parents for j in nodes) or (joints >= len(nodes)).any():

@@ -20,6 +20,7 @@ _DTYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _READ = {"KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual"}
 """Extensions that a file may require: those that change nothing of where vertices are, or that accessors already say."""
+_NUMBER_BYTES = 8
 _MOST_BYTES = 2**31
 """Of one array as numbers; no body comes near this."""
 
@@ -74,10 +75,7 @@ class Gltf:
         raises : SourceError where it claims more than the file holds
         """
         accessor = self.item("accessors", index)
-        count, width = _whole(accessor.get("count")), _WIDTHS.get(str(accessor.get("type")))
-        dtype = _DTYPES.get(accessor.get("componentType", 0))
-        if width is None or dtype is None or count * width * 8 > _MOST_BYTES:
-            raise SourceError(f"accessor {index} is of no known or of too large a layout; the file is damaged")
+        count, width, dtype = self._layout(index)
         if "bufferView" in accessor:
             stored = self._view(accessor["bufferView"], accessor.get("byteOffset", 0), dtype, count, width)
         else:
@@ -90,6 +88,20 @@ class Gltf:
         if width == 16:
             return values.reshape(count, 4, 4).transpose(0, 2, 1)  # columns first in the file
         return values[:, 0] if width == 1 else values
+
+    def size(self, index: Any) -> int:
+        """Bytes of an accessor's numbers, as `array` gives them; raises SourceError where they are too many for any body."""
+        count, width, _ = self._layout(index)
+        return count * width * _NUMBER_BYTES
+
+    def _layout(self, index: Any) -> tuple[int, int, str]:
+        """Count, width and type of an accessor's rows; raises SourceError where they are unknown or too large."""
+        accessor = self.item("accessors", index)
+        count, width = _whole(accessor.get("count")), _WIDTHS.get(str(accessor.get("type")))
+        dtype = _DTYPES.get(accessor.get("componentType", 0))
+        if width is None or dtype is None or count * width * _NUMBER_BYTES > _MOST_BYTES:
+            raise SourceError(f"accessor {index} is of no known or of too large a layout; the file is damaged")
+        return count, width, dtype
 
     def _replaced(self, dense: Any, sparse: Mapping[str, Any], dtype: str, index: Any) -> Any:
         """An array some of whose rows are given apart."""

@@ -1,15 +1,16 @@
 """Laws of an animated GLB: what moves is where glTF says it is, at the file's own rate; what is damaged is refused in words."""
 
+import re
 import tracemalloc
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numerics.input.animated_glbs import TENTHS, F, GlbDraft, V
+from numerics.input.animated_glbs import KINDS, TENTHS, WIDTHS, F, GlbDraft, V
 
 from kinetree.errors import MeshError, SourceError
-from kinetree.tasks.numerics.input import animated_glb
+from kinetree.tasks.numerics.input import animated_glb, unpacked
 from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.numerics.input.animated_glb import AnimatedGlb
 
@@ -110,6 +111,44 @@ def test_morph_targets_without_bound_are_refused(monkeypatch, limit, primitives,
     monkeypatch.setattr(animated_glb, limit, {"_MOST_FRAMES": 10}.get(limit, 1900 if primitives == 1 else 3000))
     with pytest.raises(SourceError, match=words):
         AnimatedGlb(glb.raw(), "walk.glb", targets_are_frames=True)
+
+
+def zeros(glb, count, width, kind=5121):
+    """An accessor that takes no bytes of the file."""
+    glb.document["accessors"].append({"componentType": kind, "count": count, "type": WIDTHS[width]})
+    return len(glb.document["accessors"]) - 1
+
+
+def skinned(glb, vertices):
+    influences = zeros(glb, vertices, 4)
+    attributes = {f"{kind}_{k}": influences for kind in ("JOINTS", "WEIGHTS") for k in range(8)}
+    glb.primitive["attributes"] = {"POSITION": zeros(glb, vertices, 3, KINDS["f4"]), **attributes}
+    glb.document["skins"] = [{"joints": [0]}]
+    glb.document["nodes"][0]["skin"] = 0
+
+
+def of_many_primitives(glb, corners):
+    glb.primitive["indices"] = zeros(glb, corners, 1, KINDS["u4"])
+    glb.document["meshes"][0]["primitives"] *= 20
+
+
+def morphed(glb, vertices):
+    glb.primitive["targets"] = [{"POSITION": zeros(glb, vertices, 3, KINDS["f4"])}] * 20
+
+
+def keyed(glb, weights):
+    sampler = {"input": glb.add(np.float32([0])), "output": zeros(glb, weights, 1)}
+    channels = [{"sampler": 0, "target": {"node": 0, "path": "weights"}}] * 20
+    glb.document["animations"].insert(0, {"name": "still", "samplers": [sampler], "channels": channels})
+
+
+@pytest.mark.parametrize("unfold", [skinned, of_many_primitives, morphed, keyed])
+def test_arrays_that_take_no_bytes_of_the_file_are_held_against_them_all_together(monkeypatch, unfold):
+    assert unpacked.UNPACKED_BYTES == 2**28
+    monkeypatch.setattr(unpacked, "UNPACKED_BYTES", 10**6)
+    glb = GlbDraft().moves("translation", [0, 1], [[0, 0, 0], [1, 0, 0]])
+    unfold(glb, 30_000)
+    assert re.search(r"^walk\.glb: its arrays: \d+ bytes would unpack to 1\d{6}; expected at most 100 times", refusal(glb))
 
 
 def test_skin_moves_vertices_with_their_joints_and_not_with_their_node():
