@@ -13,16 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from kinetree.errors import MeshError
+from kinetree.errors import MeshError, SourceError
 from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
 from kinetree.tasks.numerics.input import draco
+from kinetree.tasks.numerics.input.gltf import Gltf
+from kinetree.tasks.numerics.input.gltf_size import unfolded_bytes
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
 from kinetree.tasks.numerics.input.ply_triangles import binary_triangles
-from kinetree.tasks.numerics.input.unpacked import too_large
+from kinetree.tasks.numerics.input.unpacked import bomb, too_large
 
 MOST_BYTES = 2**31
 """Of one mesh as a file: fifty million vertices and twice as many faces in binary."""
 _MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
+_MOST_FACES = 2 * _MOST_VERTICES
 _COARSEST = 1e-3
 """Share of the body's diagonal by which coordinates may go up in steps; such steps are noise of 0.03 %. Not varied so far."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -63,7 +66,7 @@ def mesh_of(raw: bytes, name: str, suffix: str) -> tuple[Floats, Faces]:
             raise MeshError("the file is empty")
         V, F = _READERS[suffix.lower()](raw.removeprefix(_BYTE_ORDER_MARK))
         V = np.asarray(V, dtype=np.float64).reshape(len(V), 3)
-    except MeshError as error:
+    except (MeshError, SourceError) as error:
         raise MeshError(f"{name}: {error}") from None
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
@@ -229,6 +232,8 @@ def _glb(raw: bytes) -> tuple[Any, Any]:
     if encoded or any("bufferView" not in a or "sparse" in a for a in header.get("accessors", [])):
         what = ", ".join(sorted(encoded)) or "sparse or compressed arrays"
         raise MeshError(f"uses {what}, which is not read; export it uncompressed")
+    if why := bomb(len(raw), unfolded_bytes(Gltf(header, b""))):
+        raise MeshError(f"its scene: {why}")
     from trimesh.exchange.gltf import load_glb
 
     scene = load_glb(BytesIO(raw), resolver=None, skip_materials=True)
@@ -239,8 +244,12 @@ def _glb(raw: bytes) -> tuple[Any, Any]:
         world[edge["frame_to"]] = world[edge["frame_from"]] @ edge["matrix"]
         if edge.get("geometry") in meshes:
             placed.append((edge["geometry"], world[edge["frame_to"]]))
-    if (total := sum(len(meshes[key]["vertices"]) for key, _ in placed)) > _MOST_VERTICES:
-        raise MeshError(f"its scene unfolds to {total} vertices, more than {_MOST_VERTICES}; no frame needs as many")
+    vertices, faces = (sum(len(meshes[key][part]) for key, _ in placed) for part in ("vertices", "faces"))
+    if vertices > _MOST_VERTICES or faces > _MOST_FACES:
+        raise MeshError(
+            f"its scene unfolds to {vertices} vertices and {faces} faces, more than {_MOST_VERTICES} and {_MOST_FACES};"
+            " no frame needs as many"
+        )
     V, F, begin = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
     for key, M in placed:
         X, G = checked(meshes[key]["vertices"], meshes[key]["faces"], f"mesh {key}")

@@ -17,7 +17,7 @@ from kinetree.errors import SourceError
 from kinetree.tasks.numerics.arrays import Floats
 
 _DTYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _READ = {"KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual"}
 """Extensions that a file may require: those that change nothing of where vertices are, or that accessors already say."""
 _NUMBER_BYTES = 8
@@ -97,7 +97,7 @@ class Gltf:
     def _layout(self, index: Any) -> tuple[int, int, str]:
         """Count, width and type of an accessor's rows; raises SourceError where they are unknown or too large."""
         accessor = self.item("accessors", index)
-        count, width = _whole(accessor.get("count")), _WIDTHS.get(str(accessor.get("type")))
+        count, width = whole(accessor.get("count")), _WIDTHS.get(str(accessor.get("type")))
         dtype = _DTYPES.get(accessor.get("componentType", 0))
         if width is None or dtype is None or count * width * _NUMBER_BYTES > _MOST_BYTES:
             raise SourceError(f"accessor {index} is of no known or of too large a layout; the file is damaged")
@@ -105,7 +105,7 @@ class Gltf:
 
     def _replaced(self, dense: Any, sparse: Mapping[str, Any], dtype: str, index: Any) -> Any:
         """An array some of whose rows are given apart."""
-        count = _whole(sparse.get("count"))
+        count = whole(sparse.get("count"))
         indices, values = _dict(sparse.get("indices")), _dict(sparse.get("values"))
         kind = _DTYPES.get(indices.get("componentType", 0), "<u4")
         rows = self._view(indices.get("bufferView"), indices.get("byteOffset", 0), kind, count, 1)[:, 0].astype(np.int64)
@@ -118,10 +118,10 @@ class Gltf:
     def _view(self, index: Any, offset: Any, dtype: str, count: int, width: int) -> Any:
         """(count, width) of one kind out of a view of a buffer."""
         view = self.item("bufferViews", index)
-        data = self._buffers[_whole(view.get("buffer", 0))] if _whole(view.get("buffer", 0)) < len(self._buffers) else b""
+        data = self._buffers[whole(view.get("buffer", 0))] if whole(view.get("buffer", 0)) < len(self._buffers) else b""
         size = np.dtype(dtype).itemsize * width
-        stride = _whole(view.get("byteStride", size))
-        begin = _whole(view.get("byteOffset", 0)) + _whole(offset)
+        stride = whole(view.get("byteStride", size))
+        begin = whole(view.get("byteOffset", 0)) + whole(offset)
         end = begin + stride * (count - 1) + size if count else begin
         if stride < size or end > len(data):
             raise SourceError(f"view {index} runs to byte {end} of {len(data)}; the file is damaged or cut short")
@@ -159,7 +159,7 @@ def _dict(value: Any) -> Mapping[str, Any]:
     return value if isinstance(value, dict) else {}
 
 
-def _whole(value: Any) -> int:
+def whole(value: Any) -> int:
     """A count or an offset; raises SourceError where it is none."""
     if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < 2**40:
         raise SourceError(f"a count or an offset is {str(value)[:20]!r}; the file is damaged")

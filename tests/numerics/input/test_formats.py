@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinetree.errors import MeshError
+from kinetree.tasks.numerics.input import unpacked
 from kinetree.tasks.numerics.input.formats import read_mesh
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [7, 7, 7]], dtype=float)  # nobody refers to the last one
@@ -253,7 +254,8 @@ def test_glb_of_arrays_without_bytes_is_refused_before_memory_is_taken(tmp_path)
     assert "uses KHR_draco_mesh_compression, which is not read" in refusal(written(tmp_path, "a.glb", glb(header)))
 
 
-def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_path):
+def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_path, monkeypatch):
+    monkeypatch.setattr(unpacked, "UNPACKED_BYTES", 2**32)
     n = 60_000
     body = np.zeros((1000, 3), dtype="<f4").tobytes()
     header = {
@@ -265,7 +267,8 @@ def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_
         "nodes": [{"mesh": 0}] * n,
         "scenes": [{"nodes": list(range(n))}],
     }
-    assert "its scene unfolds to 59940000 vertices" in refusal(written(tmp_path, "a.glb", glb(header, body)))
+    message = refusal(written(tmp_path, "a.glb", glb(header, body)))
+    assert "its scene unfolds to 59940000 vertices and 19980000 faces, more than 50000000 and 100000000" in message
 
 
 # ── what is wrong and would pass in silence ─────────────────────────────────────────────────────────────────────────
