@@ -114,7 +114,9 @@ def suffixes() -> tuple[str, ...]:
 
 def _refuse_coarse(V: Floats, F: Any, name: str) -> None:
     """Refuses a body so far from the origin that the digits of its coordinates are used up by the distance."""
-    corners = V[F.ravel()]
+    is_corner = np.zeros(len(V), dtype=bool)
+    is_corner[F.ravel()] = True
+    corners = V[is_corner]
     low, high = corners.min(axis=0), corners.max(axis=0)
     farthest = float(max(-low.min(), high.max()))
     with np.errstate(over="ignore"):

@@ -3,6 +3,7 @@
 import json
 import os
 import struct
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from kinetree.errors import MeshError
 from kinetree.tasks.numerics.input import unpacked
-from kinetree.tasks.numerics.input.formats import read_mesh
+from kinetree.tasks.numerics.input.formats import checked, read_mesh
 
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [7, 7, 7]], dtype=float)  # nobody refers to the last one
 F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
@@ -252,6 +253,15 @@ def test_glb_of_arrays_without_bytes_is_refused_before_memory_is_taken(tmp_path)
     assert "uses sparse or compressed arrays, which is not read" in message
     header["extensionsRequired"] = ["KHR_draco_mesh_compression"]
     assert "uses KHR_draco_mesh_compression, which is not read" in refusal(written(tmp_path, "a.glb", glb(header)))
+
+
+def test_mesh_is_checked_in_no_more_memory_than_it_takes():
+    X, G = np.eye(3), np.tile(np.arange(3, dtype=np.int32), (10**5, 1))
+    tracemalloc.start()
+    checked(X, G, "a")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1.1 * G.nbytes
 
 
 def test_glb_that_places_a_mesh_too_often_is_refused_before_memory_is_taken(tmp_path, monkeypatch):
