@@ -31,11 +31,11 @@ def appearance(skeleton: Skeleton, source: Mapping[int, Source], mesh: Mapping[i
         surface = appearance_of(source[frame])
         own = mesh[frame]
         corners = None if surface is None else seamed(surface, np.array(own.vertex_of_input), np.array(own.faces))
+        missing = () if surface is None else tuple(f"{file_name}: {text}" for text in surface.missing)
+        return _appearance(None if corners is None else frame, surface, corners, missing)
     except Exception as error:  # readers of other people's files raise anything
         reason = str(error) if isinstance(error, KinetreeError) else f"cannot be read ({type(error).__name__})"
         return Appearance.none((f"{file_name}: no texture and colours: {reason}",))
-    missing = () if surface is None else tuple(f"{file_name}: {text}" for text in surface.missing)
-    return _appearance(None if corners is None else frame, surface, corners, missing)
 
 
 def _is_reference(mesh: Mesh, skeleton: Skeleton) -> bool:

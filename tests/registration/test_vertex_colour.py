@@ -59,6 +59,13 @@ def test_texture_that_is_damaged_or_not_there_is_no_colour(tmp_path: Path) -> No
     assert not len(read(tmp_path / "a.obj").colour)
 
 
+def test_colours_that_are_no_numbers_are_none(tmp_path: Path) -> None:
+    vertices = [f"v {x} {y} {z} nan 0 {z}" for x, y, z in V]
+    faces = [f"f {a} {b} {c}" for a, b, c in F + 1]
+    (tmp_path / "a.obj").write_text("\n".join([*vertices, *faces]))
+    assert not len(read(tmp_path / "a.obj").colour)
+
+
 def test_generated_body_has_its_paint_and_an_unpainted_one_nothing() -> None:
     for kind, expected in (("patterned", True), ("none", False)):
         written = recipe(SynthParams(frames=2, vertices=400, paint=kind))

@@ -118,6 +118,16 @@ def test_damaged_picture_is_said_and_the_rest_is_kept(tmp_path):
     assert "TEXCOORD_0" in Read(exported(look, body)).json["meshes"][0]["primitives"][0]["attributes"]
 
 
+def test_colours_and_coordinates_that_are_no_numbers_are_said_and_fail_nothing(tmp_path):
+    look, _ = look_and_body(write(tmp_path / "a", skin=b"newmtl skin\nKd nan 0 0\n"))
+    assert look.missing == ("frame.obj: no texture and colours: its colours are not all finite; export it again",)
+    text = (tmp_path / "a" / "frame.obj").read_bytes()
+    place = text.index(b"\nvt ")
+    look, _ = look_and_body(write(tmp_path / "b", obj=text[:place] + b"\nvt nan nan" + text[text.index(b"\n", place + 1) :]))
+    assert not len(look.vertex)
+    assert look.missing == ("frame.obj: no texture and colours: uv: 2 values are not finite, the first at (5, 0)",)
+
+
 def test_reference_that_is_no_frame_has_no_appearance(tmp_path):
     source = write(tmp_path)
     surface = mesh(source, MeshParams())

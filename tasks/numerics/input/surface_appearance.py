@@ -33,7 +33,7 @@ def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, mo
     faces  : (face, corner) as geometry is read, which the file must agree with
     beside : what opens files that the mesh names
     moves  : whether it was read as one file that holds all frames
-    raises : MeshError where it has an appearance that does not fit its faces
+    raises : MeshError where it has an appearance that does not fit its faces, or colours that are NaN or infinite
     """
     read: dict[str, Callable[[bytes, Beside], SurfaceAppearance | None]]
     read = {".obj": _obj, ".ply": _ply, ".drc": _draco, ".glb": lambda raw, _: glb_appearance(raw, faces, moves)}
@@ -42,7 +42,14 @@ def surface_appearance(raw: bytes, suffix: str, faces: Faces, beside: Beside, mo
     appearance = read[suffix.lower()](raw, beside)
     if appearance is not None and (appearance.faces.shape != faces.shape or (appearance.faces != faces).any()):
         raise MeshError("its texture coordinates and colours are of other faces than its surface")
+    if appearance is not None and not _has_finite_colours(appearance):
+        raise MeshError("its colours are not all finite; export it again")
     return appearance
+
+
+def _has_finite_colours(appearance: SurfaceAppearance) -> bool:
+    of_materials = np.array([material.colour for material in appearance.materials])
+    return bool(np.isfinite(of_materials).all() and (appearance.colour is None or np.isfinite(appearance.colour).all()))
 
 
 def names_appearance(raw: bytes, suffix: str) -> bool:

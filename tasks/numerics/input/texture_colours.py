@@ -11,6 +11,9 @@ from kinetree.tasks.numerics.input.pictures import Picture
 _SIDE = 1024
 """Pixels to which a texture's longer side is reduced by averaging: vertices of captures lie farther apart than its own."""
 
+_FARTHEST = 2.0**31
+"""Textures' lengths from the origin beyond which a coordinate says nothing, as NaN does."""
+
 
 def texture_colours(picture: Picture, uv: Floats) -> Floats:
     """Linear colours of a texture, between pixels bilinear, beyond its border repeated.
@@ -22,7 +25,7 @@ def texture_colours(picture: Picture, uv: Floats) -> Floats:
         reduced = image.convert("RGB").reduce(max(max(image.size) // _SIDE, 1))
     pixels = _decoded(np.asarray(reduced, dtype=np.float64) / 255.0)
     rows, columns = pixels.shape[:2]
-    place = np.nan_to_num(uv) * (columns, rows) - 0.5
+    place = np.where(np.abs(uv) < _FARTHEST, uv, 0.0) * (columns, rows) - 0.5
     low = np.floor(place).astype(np.int64)
     part = (place - low)[..., None]
     c, r = low[..., 0], low[..., 1]

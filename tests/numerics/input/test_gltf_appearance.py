@@ -10,11 +10,12 @@ from textured import png
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
-from kinetree.errors import SourceError
+from kinetree.errors import MeshError, SourceError
 from kinetree.tasks.numerics.input.animated_glb import AnimatedGlb
 from kinetree.tasks.numerics.input.formats import mesh_of
 from kinetree.tasks.numerics.input.gltf_appearance import glb_appearance
 from kinetree.tasks.numerics.input.pictures import Picture
+from kinetree.tasks.numerics.input.surface_appearance import surface_appearance
 
 
 def textured(uv, name, rgb):
@@ -58,6 +59,17 @@ def test_moving_mesh_has_its_colours_material_and_picture():
     np.testing.assert_allclose(look.colour, colour[G, :3])
     assert look.pictures == (Picture(png(), "image/png"),)
     assert look.materials[look.material[0]] == ("skin", (0.5, 1, 1, 1), 0)
+
+
+def test_colours_of_a_glb_that_are_no_numbers_are_refused():
+    glb = GlbDraft()
+    glb.primitive["attributes"]["COLOR_0"] = glb.add(np.full((4, 4), np.inf, np.float32))
+    with pytest.raises(MeshError, match="its colours are not all finite"):
+        surface_appearance(glb.raw(), ".glb", F, {}.get)
+    glb = GlbDraft()
+    glb.document["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [np.nan, 1, 1, 1]}}]
+    with pytest.raises(MeshError, match="its colours are not all finite"):
+        surface_appearance(glb.raw(), ".glb", F, {}.get)
 
 
 def test_picture_outside_the_file_is_not_opened_and_said():

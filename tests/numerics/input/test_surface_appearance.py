@@ -116,6 +116,15 @@ def test_faces_that_are_not_those_of_the_surface_are_refused():
         surface_appearance(raw, ".obj", F[:-1], FILES.get)
 
 
+@pytest.mark.parametrize(
+    ("old", "new"), [(b"1 1 0 1 0 0", b"1 1 0 1 nan 0"), (b"two.mtl", b"nan.mtl")], ids=["of a vertex", "of a material"]
+)
+def test_colours_that_are_no_numbers_are_refused(old, new):
+    assert old in QUADS
+    with pytest.raises(MeshError, match=r"^its colours are not all finite; export it again$"):
+        read(QUADS.replace(old, new), ".obj", {"two.mtl": TWO, "nan.mtl": b"newmtl first\nKd nan inf -1\n"})
+
+
 def test_formats_without_appearance_have_none():
     assert surface_appearance(b"", ".stl", np.zeros((1, 3), np.int32), FILES.get) is None
 
