@@ -9,6 +9,8 @@ import numpy as np
 
 from kinetree.errors import MeshError
 
+_MOST_PROPERTIES = 1000
+"""Of a header; meshes have some ten, and each is looked for in every row."""
 _QUOTED = 60
 """Characters of a row that a message quotes."""
 
@@ -22,15 +24,19 @@ class Element(NamedTuple):
 
 
 def elements(header: bytes) -> list[Element]:
-    """What a header claims, in its order; other lines are passed over."""
-    claimed: list[Element] = []
+    """What a header claims, in its order; other lines are passed over; raises MeshError where it has too many properties."""
+    claimed: list[tuple[str, int, list[bool]]] = []
+    properties = 0
     for line in header.splitlines():
         words = line.decode("utf-8", "replace").split()
         if len(words) >= 3 and words[0] == "element" and re.fullmatch(r"-?[0-9]{1,300}", words[2]):
-            claimed.append(Element(words[1], int(words[2]), ()))
+            claimed.append((words[1], int(words[2]), []))
         elif len(words) >= 3 and words[0] == "property" and claimed:
-            claimed[-1] = claimed[-1]._replace(lists=(*claimed[-1].lists, words[1] == "list"))
-    return claimed
+            claimed[-1][2].append(words[1] == "list")
+            properties += 1
+        if properties > _MOST_PROPERTIES:
+            raise MeshError(f"its header has more than {_MOST_PROPERTIES} properties; the file is damaged or no mesh")
+    return [Element(name, rows, tuple(lists)) for name, rows, lists in claimed]
 
 
 def refuse_wrong_rows(claimed: list[Element], body: bytes) -> None:

@@ -28,6 +28,13 @@ def test_property_before_any_element_and_counts_that_are_none_are_passed_over():
     assert elements(b"property float x\nelement vertex many\nelement\nelement face 3\n") == [Element("face", 3, ())]
 
 
+def test_header_of_more_properties_than_a_mesh_has_is_refused():
+    header = b"element vertex 1\n" + b"property float x\n" * 500 + b"element face 1\n" + b"property list uchar int i\n" * 500
+    assert [len(element.lists) for element in elements(header)] == [500, 500]
+    with pytest.raises(MeshError, match=r"^its header has more than 1000 properties; the file is damaged or no mesh$"):
+        elements(header + b"property float x\n")
+
+
 def test_rows_that_agree_pass_with_blank_lines_between_them():
     refuse_wrong_rows([VERTEX, FACE], b"\n0 0\n\n1 1\n3 0 1 0 255\n \n")
 
