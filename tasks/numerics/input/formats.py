@@ -6,8 +6,10 @@ is opened, and whatever cannot be a mesh is refused with its name and the reason
 
 import json
 import re
+from array import array
 from collections.abc import Callable
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,8 @@ from kinetree.tasks.numerics.input.gltf import Gltf
 from kinetree.tasks.numerics.input.gltf_size import unfolded_bytes
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
 from kinetree.tasks.numerics.input.ply_triangles import binary_triangles
+from kinetree.tasks.numerics.input.polygons import triangles_of
+from kinetree.tasks.numerics.input.text_lines import text_lines
 from kinetree.tasks.numerics.input.unpacked import bomb, too_large
 
 MOST_BYTES = 2**31
@@ -170,37 +174,43 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
 
 
 def _obj(raw: bytes) -> tuple[Any, Any]:
-    vertices: list[list[str]] = []
-    polygons: list[list[int]] = []
-    text = raw.decode("utf-8", "replace").replace("\\\r\n", " ").replace("\\\n", " ")
-    for line in text.splitlines():
-        if line.startswith(("v ", "v\t")):
-            vertices.append(line.split()[1:4])
-        elif line.startswith(("f ", "f\t")):
-            corners = [int(word.partition("/")[0]) for word in line.split()[1:]]
+    places, corners, counts = array("d"), array("q"), array("q")
+    for line in text_lines(raw, are_continued=True):
+        if line.startswith((b"v ", b"v\t")):
+            x, y, z = line.split(None, 4)[1:4]
+            places.extend((float(x), float(y), float(z)))
+        elif line.startswith((b"f ", b"f\t")):
+            vertices, own = len(places) // 3, [int(word.partition(b"/")[0]) for word in line.split()[1:]]
+            if len(own) < 3:
+                raise MeshError(f"face {len(counts)} has {len(own)} corners; the file is damaged, export it again")
             # a negative index counts back from the vertices read so far
-            polygons.append([i + len(vertices) if i < 0 else i - 1 for i in corners])
-            if len(corners) < 3:
-                raise MeshError(f"face {len(polygons) - 1} has {len(corners)} corners; the file is damaged, export it again")
-    return np.array(vertices, dtype=np.float64).reshape(len(vertices), 3), _triangles(polygons)
+            corners.extend([i + vertices if i < 0 else i - 1 for i in own])
+            counts.append(len(own))
+    return np.asarray(places).reshape(-1, 3), triangles_of(corners, counts)[0]
 
 
 def _off(raw: bytes) -> tuple[Any, Any]:
-    rows = [line.partition("#")[0].split() for line in raw.decode("utf-8", "replace").splitlines()]
-    rows = [words for words in rows if words]
-    if not rows or not re.fullmatch("(ST)?C?N?OFF", rows[0][0].upper()) or "BINARY" in rows[0]:
+    rows = (words for line in text_lines(raw) if (words := line.partition(b"#")[0].split()))
+    first = next(rows, [b""])
+    if not re.fullmatch(b"(ST)?C?N?OFF", first[0].upper()) or b"BINARY" in first:
         raise MeshError("does not begin with OFF and numbers as text; the file is damaged or something else")
-    rows = ([rows[0][1:]] if len(rows[0]) > 1 else []) + rows[1:]
-    n, m = (int(word) for word in rows[0][:2])
-    if n < 0 or m < 0 or n + m > len(rows) - 1:
-        raise MeshError(f"claims {n} vertices and {m} faces, but {len(rows) - 1} lines follow; the file is cut short")
-    if more := len(rows) - 1 - n - m:
+    n, m = (int(word) for word in (first[1:] or next(rows, []))[:2])
+    follow = sum(bool(line.partition(b"#")[0].strip()) for line in text_lines(raw)) - (1 if len(first) > 1 else 2)
+    if n < 0 or m < 0 or n + m > follow:
+        raise MeshError(f"claims {n} vertices and {m} faces, but {follow} lines follow; the file is cut short")
+    if more := follow - n - m:
         raise MeshError(f"{lines(more)} after the {n + m} that it claims: something would be left out; export it again")
-    polygons = [_polygon(i, words) for i, words in enumerate(rows[n + 1 : n + m + 1])]
-    return np.array([words[:3] for words in rows[1 : n + 1]], dtype=np.float64).reshape(n, 3), _triangles(polygons)
+    places, corners, counts = array("d"), array("q"), array("q")
+    for x, y, z, *_ in islice(rows, n):
+        places.extend((float(x), float(y), float(z)))
+    for i, words in enumerate(rows):
+        own = _polygon(i, words)
+        corners.extend(own)
+        counts.append(len(own))
+    return np.asarray(places).reshape(n, 3), triangles_of(corners, counts)[0]
 
 
-def _polygon(i: int, words: list[str]) -> list[int]:
+def _polygon(i: int, words: list[bytes]) -> list[int]:
     """Corners of face i of an OFF file; colours may follow them."""
     count, corners = int(words[0]), [int(word) for word in words[1:4]]
     if count < 3 or count > len(words) - 1:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinetree.errors import MeshError
+from kinetree.tasks.numerics.input.text_lines import text_lines
 
 _MOST_PROPERTIES = 1000
 """Of a header; meshes have some ten, and each is looked for in every row."""
@@ -41,24 +42,22 @@ def elements(header: bytes) -> list[Element]:
 
 def refuse_wrong_rows(claimed: list[Element], body: bytes) -> None:
     """Refuses the text after the header if its lines are not the rows that the header claims; raises MeshError."""
-    rows = [words for line in body.decode("utf-8", "replace").splitlines() if (words := line.split())]
-    count = sum(element.rows for element in claimed)
-    if len(rows) < count:
-        raise MeshError(f"its header claims {count} lines, {len(rows)} follow; the file is cut short")
-    if len(rows) > count:
+    count, follow = sum(element.rows for element in claimed), sum(not line.isspace() for line in text_lines(body) if line)
+    if follow < count:
+        raise MeshError(f"its header claims {count} lines, {follow} follow; the file is cut short")
+    if follow > count:
         raise MeshError(
-            f"{lines(len(rows) - count)} after the {count} that its header claims: something would be left out; the file is"
+            f"{lines(follow - count)} after the {count} that its header claims: something would be left out; the file is"
             " damaged or badly written, export it again"
         )
-    begin = 0
+    rows = (words for line in text_lines(body) if (words := line.split()))
     for name, number, lists in claimed:
-        for i, words in enumerate(itertools.islice(rows, begin, begin + number)):
+        for i, words in enumerate(itertools.islice(rows, number)):
             if not _fits(words, lists, 3 if name == "face" else 0):
-                row = " ".join(words)[:_QUOTED]
+                row = b" ".join(words).decode("utf-8", "replace")[:_QUOTED]
                 raise MeshError(
                     f"{name} {i} is {row!r}, which is not what its header says; the file is damaged, export it again"
                 )
-        begin += number
 
 
 def refuse_wrong_faces(face: Mapping[str, Any]) -> None:
@@ -88,7 +87,7 @@ def lines(more: int) -> str:
     return f"{more} more line{'' if more == 1 else 's'}"
 
 
-def _fits(words: list[str], lists: tuple[bool, ...], corners: int) -> bool:
+def _fits(words: list[bytes], lists: tuple[bool, ...], corners: int) -> bool:
     """Whether a row has exactly these properties, its lists whole numbers and, in faces, of three or more."""
     at = 0
     try:
