@@ -19,6 +19,8 @@ _UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm"}
 """Units by their length in metres; any other stage is brought to metres."""
 _MOST_FRAMES = 100_000
 _MOST_VERTICES = 50_000_000
+_MOST_FACES = 2 * _MOST_VERTICES
+_MOST_PRIMS = 100_000
 _DEEPEST = 1000
 """Prims, lists and dictionaries within each other; bodies have some tens."""
 _PIECE_BYTES = 2**20
@@ -37,7 +39,7 @@ class AnimatedUsd:
         """Opens the stage; raises SourceError where it cannot be, needs other files, or does not change over time."""
         self.name = str(path)
         try:
-            pxr = {name: import_module(f"pxr.{name}") for name in ("Gf", "Sdf", "Usd", "UsdGeom", "UsdSkel")}
+            pxr = {name: import_module(f"pxr.{name}") for name in ("Gf", "Pcp", "Sdf", "Usd", "UsdGeom", "UsdSkel")}
         except ImportError:
             raise SourceError(f"{path}: USD is read by usd-core; pip install 'kinetree[usd]'") from None
         self._geom, self._usd = pxr["UsdGeom"], pxr["Usd"]
@@ -77,6 +79,11 @@ class AnimatedUsd:
             raise SourceError(f"{path}: cannot be read as USD; the file is damaged or something else")
         if outside:
             raise SourceError(_composed(path, outside[0]))
+        if _has_more_prims(layer, pxr["Pcp"], pxr["Sdf"].Path.absoluteRootPath):
+            raise SourceError(
+                f"{path}: its stage has more than {_MOST_PRIMS} prims, as often as they are inherited or referred to; no body"
+                " needs as many"
+            )
         baked = pxr["Sdf"].Layer.CreateAnonymous()
         baked.timeCodesPerSecond = layer.timeCodesPerSecond  # else its time codes would be stretched
         stage = self._usd.Stage.Open(layer, baked)
@@ -98,6 +105,7 @@ class AnimatedUsd:
         placed = self._geom.XformCache(code)
         V: list[Floats] = [np.empty((0, 3))]
         F: list[Any] = [np.empty((0, 3), np.int64)]
+        begin, faces = 0, 0
         for mesh in self._meshes:
             if mesh.ComputeVisibility(code) == "invisible":
                 continue
@@ -108,10 +116,27 @@ class AnimatedUsd:
             turned = (mesh.GetOrientationAttr().Get() == "leftHanded") != (np.linalg.det(M[:3, :3]) < 0)
             G = _fans(counts, corners, self.name)
             V.append((X @ M[:3, :3] + M[3, :3]) * self._scale)
-            F.append((G[:, ::-1] if turned else G) + sum(map(len, V[:-1])))
-        if sum(map(len, V)) > _MOST_VERTICES:
-            raise SourceError(f"{self.name}, frame {t}: more than {_MOST_VERTICES} vertices; no frame needs as many")
+            F.append((G[:, ::-1] if turned else G) + begin)
+            begin, faces = begin + len(X), faces + len(G)
+            if begin > _MOST_VERTICES or faces > _MOST_FACES:
+                most = f"{_MOST_VERTICES} vertices or {_MOST_FACES} faces"
+                raise SourceError(f"{self.name}, frame {t}: more than {most}; no frame needs as many")
         return checked(np.concatenate(V), np.concatenate(F), f"{self.name}, frame {t}")
+
+
+def _has_more_prims(layer: Any, pcp: Any, root: Any) -> bool:
+    """Whether a stage would have more prims than any body needs; they are composed one by one, a stage composes them all."""
+    cache, waiting, prims = pcp.Cache(pcp.LayerStackIdentifier(layer), usd=True), [root], 0
+    while waiting and prims <= _MOST_PRIMS:
+        path = waiting.pop()
+        index, _ = cache.ComputePrimIndex(path)
+        if index.hasAnyPayloads and not cache.IsPayloadIncluded(path):
+            cache.RequestPayloads([path], [])
+            index, _ = cache.ComputePrimIndex(path)
+        names, _ = index.ComputePrimChildNames()
+        waiting += [path.AppendChild(name) for name in names]
+        prims += 1
+    return prims > _MOST_PRIMS
 
 
 def _composed(path: Path, other: str) -> str:

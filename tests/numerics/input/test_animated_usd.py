@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from kinetree.errors import SourceError
+from kinetree.tasks.numerics.input import animated_usd
 from kinetree.tasks.numerics.input.animated import read_animated
 from kinetree.tasks.numerics.input.animated_usd import AnimatedUsd
 
@@ -130,6 +131,52 @@ def test_text_nested_beyond_reason_ends_in_words_and_not_in_the_process(tmp_path
         path.write_text(text)
     with pytest.raises(SourceError, match=r"deep\.usd.: its prims or values are nested more than 1000 deep"):
         AnimatedUsd(path)
+
+
+def unfolding(arc, levels):
+    """A body that holds ten of another that hold ten of another, and so on."""
+    head = "#usda 1.0\n(\n    startTimeCode = 0\n    endTimeCode = 5\n)\n"
+    places = "float3[] points.timeSamples = {0: [(0,0,0),(1,0,0),(0,1,0)], 5: [(0,0,0),(1,0,0),(0,2,0)]}"
+    mesh = f'def Mesh "m" {{\n {places}\n int[] faceVertexCounts = [3]\n int[] faceVertexIndices = [0,1,2]\n}}\n'
+    text = f'{head}def "root" ({arc} = </c{levels - 1}>) {{}}\nclass "c0" {{\n{mesh}}}\n'
+    for k in range(1, levels):
+        text += f'class "c{k}" {{\n' + "".join(f'def "k{j}" ({arc} = </c{k - 1}>) {{}}\n' for j in range(10)) + "}\n"
+    return text
+
+
+@pytest.mark.parametrize("arc", ["inherits", "specializes", "references", "payload"])
+@pytest.mark.parametrize("packed", [False, True])
+def test_stage_that_unfolds_without_bound_is_refused_before_it_is_composed(tmp_path, monkeypatch, arc, packed):
+    path = tmp_path / ("walk.usdz" if packed else "walk.usda")
+
+    def write(levels):
+        if packed:
+            with zipfile.ZipFile(path, "w") as archive:
+                archive.writestr("walk.usda", unfolding(arc, levels))
+        else:
+            path.write_text(unfolding(arc, levels))
+
+    monkeypatch.setattr(animated_usd, "_MOST_PRIMS", 500)
+    write(3)
+    if packed or arc in ("inherits", "specializes"):
+        assert len(AnimatedUsd(path).mesh(5)[1]) == 100
+        write(5)
+        with pytest.raises(SourceError, match=r"walk\.usd.: its stage has more than 500 prims, as often as they are inherited"):
+            AnimatedUsd(path)
+    else:
+        with pytest.raises(SourceError, match="is composed of other files"):
+            AnimatedUsd(path)
+
+
+@pytest.mark.parametrize(("limit", "most"), [("_MOST_VERTICES", 299), ("_MOST_FACES", 99)])
+def test_meshes_are_counted_before_they_are_put_together(tmp_path, monkeypatch, limit, most):
+    (tmp_path / "walk.usda").write_text(unfolding("inherits", 3))
+    frames = AnimatedUsd(tmp_path / "walk.usda")
+    assert len(frames.mesh(0)[0]) == 300
+    monkeypatch.setattr(animated_usd, limit, most)
+    monkeypatch.setattr(animated_usd.np, "concatenate", pytest.fail)
+    with pytest.raises(SourceError, match=rf"walk\.usda, frame 0: more than .*\b{most}\b.*; no frame needs as many"):
+        frames.mesh(0)
 
 
 def test_package_that_refers_to_a_file_whose_name_begins_like_its_own_is_refused(stage, tmp_path):
