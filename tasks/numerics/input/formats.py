@@ -21,7 +21,7 @@ from kinetree.tasks.numerics.input import draco
 from kinetree.tasks.numerics.input.gltf import Gltf
 from kinetree.tasks.numerics.input.gltf_size import unfolded_bytes
 from kinetree.tasks.numerics.input.ply_rows import elements, lines, refuse_wrong_faces, refuse_wrong_rows
-from kinetree.tasks.numerics.input.ply_triangles import binary_triangles
+from kinetree.tasks.numerics.input.ply_triangles import binary_triangles, text_polygons
 from kinetree.tasks.numerics.input.polygons import triangles_of
 from kinetree.tasks.numerics.input.text_lines import text_lines
 from kinetree.tasks.numerics.input.unpacked import bomb, too_large
@@ -30,6 +30,8 @@ MOST_BYTES = 2**31
 """Of one mesh as a file: fifty million vertices and twice as many faces in binary."""
 _MOST_VERTICES = 50_000_000  # a small GLB may place one mesh any number of times; no frame of a body comes near this
 _MOST_FACES = 2 * _MOST_VERTICES
+_MOST_UNUSUAL_BYTES = 2**26
+"""Of a PLY's text that trimesh reads, which takes up to 75 times as many of memory."""
 _COARSEST = 1e-3
 """Share of the body's diagonal by which coordinates may go up in steps; such steps are noise of 0.03 %. Not varied so far."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -154,6 +156,11 @@ def _ply(raw: bytes) -> tuple[Any, Any]:
         raise MeshError("its header has two elements of one name; the file is damaged, export it again")
     if re.search(rb"^\s*format\s+ascii", header, re.MULTILINE):
         refuse_wrong_rows(rows, body)
+        if (polygons := text_polygons(header, body)) is not None:
+            return polygons
+        if len(body) > _MOST_UNUSUAL_BYTES:
+            size = f"{len(body)} bytes of text in an unusual layout, more than {_MOST_UNUSUAL_BYTES}"
+            raise MeshError(f"{size}; save it as binary")
     elif (triangles := binary_triangles(header, body)) is not None:
         return triangles
     from trimesh.exchange.ply import load_ply
