@@ -5,6 +5,7 @@ Sources: Wavefront OBJ and MTL (Bourke's notes); Turk 1994 for PLY with the prop
 """
 
 import re
+from array import array
 from collections.abc import Callable
 from io import BytesIO
 from typing import Any, NamedTuple
@@ -14,9 +15,11 @@ from trimesh.exchange.ply import load_ply
 from trimesh.geometry import triangulate_quads
 
 from kinetree.errors import MeshError
-from kinetree.tasks.numerics.arrays import Faces, Floats, Ints
+from kinetree.tasks.numerics.arrays import Faces, Floats
 from kinetree.tasks.numerics.input.gltf_appearance import Material, SurfaceAppearance, glb_appearance
 from kinetree.tasks.numerics.input.pictures import MOST_BYTES, Picture, picture
+from kinetree.tasks.numerics.input.polygons import triangles_of
+from kinetree.tasks.numerics.input.text_lines import text_lines
 
 Beside = Callable[[str], bytes | None]
 """Bytes of a file that lies beside the mesh, by its name; None where it is not there or may not be opened."""
@@ -70,74 +73,71 @@ def names_appearance(raw: bytes, suffix: str) -> bool:
 
 _MOST_HEADER = 65536
 """Bytes of a PLY in which its header ends."""
+_MOST_TEXT_BYTES = 2**26
+"""Of a PLY's text whose colours are read, which takes up to 75 times as many of memory."""
 
 
 class _Corners(NamedTuple):
-    """Polygons by their corners: vertex, texture coordinate (−1: none) and material."""
+    """Polygons one after the other: vertex and texture coordinate (−1: none) of each corner, corners and material of each."""
 
-    vertex: list[int]
-    coordinate: list[int]
-    polygons: list[list[int]]
-    material: list[int]
+    vertex: "array[int]"
+    coordinate: "array[int]"
+    counts: "array[int]"
+    material: "array[int]"
 
 
 def _obj(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
-    colours: list[list[float]] = []
-    uv: list[list[float]] = []
+    colours, uv = array("d"), array("d")
     libraries: list[str] = []
     used = {"": 0}
-    corners, current, vertices = _Corners([], [], [], []), 0, 0
-    for line in raw.decode("utf-8", "replace").replace("\\\r\n", " ").replace("\\\n", " ").splitlines():
-        key, _, rest = line.strip().partition(" ")
-        words = rest.split()
-        if key == "v":
+    corners, current, vertices = _Corners(array("q"), array("q"), array("q"), array("q")), 0, 0
+    for line in text_lines(raw, are_continued=True):
+        key, _, rest = line.strip().partition(b" ")
+        if key == b"v":
             vertices += 1
-            colours += [[float(w) for w in words[3:6]]] if len(words) == 6 else []
-        elif key == "vt":
-            uv.append([float(w) for w in (*words, "0")[:2]])
-        elif key == "mtllib":
-            libraries.append(rest.strip())
-        elif key == "usemtl":
-            current = used.setdefault(rest.strip(), len(used))
+            words = rest.split(None, 7)
+            colours.extend(map(float, words[3:6] if len(words) == 6 else ()))
+        elif key == b"vt":
+            uv.extend(map(float, (*rest.split(None, 2), b"0")[:2]))
+        elif key == b"mtllib":
+            libraries.append(rest.strip().decode("utf-8", "replace"))
+        elif key == b"usemtl":
+            current = used.setdefault(rest.strip().decode("utf-8", "replace"), len(used))
             if len(used) > MOST_MATERIALS:
                 raise MeshError(f"it uses more than {MOST_MATERIALS} materials")
-        elif key == "f":
-            _add_polygon(corners, words, vertices, len(uv), current)
-    F, V_of, at = _triangulated(corners)
+        elif key == b"f":
+            _add_polygon(corners, rest.split(), vertices, len(uv) // 2, current)
+    F, polygon = triangles_of(corners.vertex, corners.counts)
     materials, pictures, missing = _materials(list(used), libraries, beside)
-    coordinates = np.array([*uv, [0.0, 0.0]]) * (1.0, -1.0) + (0.0, 1.0)  # glTF's begin in the upper left
-    colour = _linear(np.array(colours)) if colours and len(colours) == vertices else None
+    colour = _linear(np.reshape(colours, (-1, 3))) if len(colours) == 3 * vertices > 0 else None
     if not uv and colour is None and len(used) == 1:
         return None
     return SurfaceAppearance(
-        faces=V_of[F],
-        uv=coordinates[np.array(corners.coordinate)[F]] if uv else None,
-        colour=None if colour is None else colour[V_of[F]],
-        material=np.array(corners.material)[at],
+        faces=F,
+        uv=_flipped(uv)[triangles_of(corners.coordinate, corners.counts)[0]] if uv else None,
+        colour=None if colour is None else colour[F],
+        material=np.asarray(corners.material)[polygon],
         materials=materials,
         pictures=pictures,
         missing=missing,
     )
 
 
-def _add_polygon(corners: _Corners, words: list[str], vertices: int, coordinates: int, material: int) -> None:
+def _flipped(uv: "array[float]") -> Floats:
+    """(coordinate, 2) from the upper left, as glTF has them; a last one for corners without any."""
+    return np.append(uv, (0.0, 0.0)).reshape(-1, 2) * (1.0, -1.0) + (0.0, 1.0)
+
+
+def _add_polygon(corners: _Corners, words: list[bytes], vertices: int, coordinates: int, material: int) -> None:
     """One face of an OBJ; negative indices count back from what was read so far."""
-    begin = len(corners.vertex)
     for word in words:
-        v, _, rest = word.partition("/")
-        t = rest.partition("/")[0]
+        v, _, rest = word.partition(b"/")
+        t = rest.partition(b"/")[0]
         corners.vertex.append(int(v) + vertices if int(v) < 0 else int(v) - 1)
         at = -1 if not t else int(t) + coordinates if int(t) < 0 else int(t) - 1
         corners.coordinate.append(at if 0 <= at < coordinates else -1)
-    corners.polygons.append(list(range(begin, len(corners.vertex))))
+    corners.counts.append(len(words))
     corners.material.append(material)
-
-
-def _triangulated(corners: _Corners) -> tuple[Ints, Ints, Ints]:
-    """(face, corner) of corners, in the order of the geometry's triangles · vertex of each corner · polygon of each face."""
-    F = np.asarray(triangulate_quads(corners.polygons), dtype=np.int64).reshape(-1, 3)
-    begins = np.array([p[0] for p in corners.polygons])
-    return F, np.array(corners.vertex), np.searchsorted(begins, F.min(axis=1), side="right") - 1
 
 
 def _materials(
@@ -189,6 +189,8 @@ def _entered(file: str, beside: Beside, pictures: list[Picture], missing: list[s
 
 def _ply(raw: bytes, beside: Beside) -> SurfaceAppearance | None:
     header = raw.partition(b"end_header")[0].decode("ascii", "replace")
+    if "format ascii" in header and len(raw) > _MOST_TEXT_BYTES:
+        raise MeshError(f"{len(raw)} bytes of text, more than {_MOST_TEXT_BYTES}; save it as binary")
     mesh = load_ply(BytesIO(raw), skip_materials=True, fix_texture=False)
     rows, polygons = (mesh["metadata"]["_ply_raw"][k]["data"] for k in ("vertex", "face"))
     F = np.asarray(triangulate_quads(mesh["faces"]), dtype=np.int64).reshape(-1, 3)

@@ -1,5 +1,7 @@
 """What a file says its surface looks like, by the corners of the faces that geometry is read with."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import trimesh
@@ -123,6 +125,28 @@ def test_colours_that_are_no_numbers_are_refused(old, new):
     assert old in QUADS
     with pytest.raises(MeshError, match=r"^its colours are not all finite; export it again$"):
         read(QUADS.replace(old, new), ".obj", {"two.mtl": TWO, "nan.mtl": b"newmtl first\nKd nan inf -1\n"})
+
+
+def test_appearance_of_an_obj_takes_little_more_memory_than_its_arrays():
+    raw = b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nvt 0 0\n" + b"f 1/1 2/1 3/1\n" * 10**5
+    F = mesh_of(raw, "frame", ".obj")[1]
+    tracemalloc.start()
+    look = surface_appearance(raw, ".obj", F, FILES.get)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    kept = look.faces.nbytes + look.uv.nbytes + look.colour.nbytes + look.material.nbytes
+    assert len(look.faces) == 10**5
+    assert peak < 2 * kept
+
+
+def test_colours_of_a_long_text_of_ply_are_refused(monkeypatch):
+    V, F = sphere(1)
+    rgb = np.zeros((len(V), 3), np.uint8)
+    raw = trimesh.Trimesh(V, F, vertex_colors=rgb, process=False).export(file_type="ply", encoding="ascii")
+    assert read(raw, ".ply") is not None
+    monkeypatch.setattr(module, "_MOST_TEXT_BYTES", len(raw) - 1)
+    with pytest.raises(MeshError, match=rf"^{len(raw)} bytes of text, more than {len(raw) - 1}; save it as binary$"):
+        read(raw, ".ply")
 
 
 def test_formats_without_appearance_have_none():
