@@ -18,7 +18,7 @@ class LaidParts(Artifact):
     translation: Annotated[Floats, Array("float64", FRAME, PART, XYZ, unit="length")]
     """x(t) = rotation · v + translation for a vertex v of the reference mesh."""
     stiffness: Annotated[Floats, Array("float64", FRAME, PART, FREEDOM, OTHER_FREEDOM)]
-    """How firmly the surface holds the part against a turn about the origin and a shift."""
+    """How firmly the surface holds the part against a turn about its joint and a shift."""
     square: Annotated[Floats, Array("float64", FRAME, PART, unit="length²")]
     """Mean squared distance of the part from the surface."""
     hinge_joint: Annotated[Ints, Array("int32", HINGE)]

@@ -37,7 +37,7 @@ class LaidParts(NamedTuple):
     frame                 : (laid,) place among the frames, ascending
     joint                 : (part,) about which each part turns, in the tree's order, ascending
     rotation, translation : (laid, part, 3, 3) · (laid, part, xyz) from the reference, mesh unit
-    stiffness             : (laid, part, 6, 6) of the fit about the origin, see `shift_stiffness`
+    stiffness             : (laid, part, 6, 6) of the fit about the part's joint, see `shift_stiffness`
     square                : (laid, part) mean squared distance from the surface, mesh unit²
     hinges                : what parts leave of these surfaces in pairs, with a hinge at several places
     """
@@ -86,7 +86,7 @@ def _pieces(V: Floats, F: Ints, area: Floats, tree: FirstTree, chosen: LaidParts
         if len(own) >= chosen.least_vertices:
             mass = tree.W[own, part] * np.sqrt(area[own] / area.sum())
             middle = np.average(V[own], axis=0, weights=mass**2)
-            pieces[part] = sampled_piece(V[own], N[own], mass, np.zeros(len(own), np.bool_), middle, middle)
+            pieces[part] = sampled_piece(V[own], N[own], mass, np.zeros(len(own), np.bool_), middle, tree.rest[part])
     return pieces
 
 

@@ -117,7 +117,7 @@ def piece_fit(
 
 
 def shift_stiffness(piece: Piece, fit: PieceFit, target: Target, settings: PieceFitSettings | None = None) -> Floats:
-    """(6, 6) how firmly the matches hold the piece where it lies: of a turn about the origin, radian, then a shift, mesh unit.
+    """(6, 6) how firmly the matches hold the piece where it lies: of a turn about its joint, radian, then a shift, mesh unit.
 
     The mean over the piece of w [n nᵀ + along I] as it acts on the points' displacements, w as in the last step of a fit.
     """
@@ -127,9 +127,9 @@ def shift_stiffness(piece: Piece, fit: PieceFit, target: Target, settings: Piece
     across, cosine = (d * normal).sum(axis=1), (n * normal).sum(axis=1)
     near = (across**2 + chosen.weighed_along * (d**2).sum(axis=1)) / (chosen.scales[-1] * target.size) ** 2
     w = np.where(cosine > chosen.least_cosine, piece.mass * cosine / (1.0 + near) ** 2, 0.0) / piece.mass.sum()
-    J = np.empty((len(y), 6, 4))
-    J[:, :3, 0], J[:, 3:, 0] = np.cross(y, normal), normal
-    J[:, :3, 1:] = np.sqrt(chosen.along) * np.cross(y[:, None], np.eye(3)).transpose(0, 2, 1)
+    J, lever = np.empty((len(y), 6, 4)), y - (fit.pose.R @ piece.joint + fit.pose.t)
+    J[:, :3, 0], J[:, 3:, 0] = np.cross(lever, normal), normal
+    J[:, :3, 1:] = np.sqrt(chosen.along) * np.cross(lever[:, None], np.eye(3)).transpose(0, 2, 1)
     J[:, 3:, 1:] = np.sqrt(chosen.along) * np.eye(3)
     return np.asarray(np.einsum("p,pik,pjk->ij", w, J, J))
 

@@ -66,16 +66,22 @@ class SurfaceJoints(NamedTuple):
 
 
 class _PartFits(NamedTuple):
-    """A part in the frames: R (frame, 3, 3), t (frame, xyz), stiffness (frame, 6, 6) about the origin, square (frame,)."""
+    """A part in the frames: R (frame, 3, 3), t (frame, xyz), stiffness (frame, 6, 6) about its joint, square (frame,), and
+    that joint in the reference (xyz,).
+    """
 
     R: Floats
     t: Floats
     H: Floats
     square: Floats
+    joint: Floats
 
 
 class _Pull(NamedTuple):
-    """What frames say of one joint: M c = d, weighted by Q (frame, 3, 3), seen (frame,)."""
+    """What frames say of the shift s of one joint: M s = d, weighted by Q (frame, 3, 3), seen (frame,).
+
+    The shift and not the place: of a body far from the origin a place has no digits left for it.
+    """
 
     M: Floats
     d: Floats
@@ -99,17 +105,17 @@ def surface_joints(
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
     spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
     shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)
-    parts = {part: _PartFits(*(a[:, k] for a in laid[2:6])) for k, part in enumerate(laid.joint.tolist())}
+    parts = {part: _PartFits(*(a[:, k] for a in laid[2:6]), tree.rest[part]) for k, part in enumerate(laid.joint.tolist())}
     for joint, above in enumerate(tree.parents.tolist()):
         if joint in parts and above in parts:
             pull = _pull(parts[above], parts[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
             radius = float(tree.radius[joint])
             if may_move[joint]:
-                moved[joint] = _moved_joint(pull, rest[joint], chosen.spread * radius, chosen)
+                moved[joint] += _agreed_shift(pull, chosen.spread * radius, chosen)
             if _often_shown(pull):
                 moved[joint] += shifts[joint] * (not stays[joint] and (moved[joint] == rest[joint]).all())
-                places = _of_halves(pull, rest[joint], chosen.free_spread * radius, chosen)
-                offset[joint] = np.sqrt(np.square(places - moved[joint]).sum(axis=2).mean())
+                left = _of_halves(pull, chosen.free_spread * radius, chosen) - (moved[joint] - rest[joint])
+                offset[joint] = np.sqrt(np.square(left).sum(axis=2).mean())
     return SurfaceJoints(moved, offset, hinge_offsets(tree, laid.hinges, moved, share))
 
 
@@ -135,14 +141,14 @@ def _pull(above: _PartFits, own: _PartFits, c: Floats, seen: Floats, chosen: Sur
     for laid in (above, own):
         loose += laid.square[:, None, None] * np.linalg.inv(_joint_stiffness(laid, c))
     M = np.eye(3) - back @ own.R
-    d = np.einsum("fxy,fy->fx", back, own.t - above.t)
+    d = np.einsum("fxy,fy->fx", back, (own.R @ c + own.t) - (above.R @ c + above.t))
     Q = chosen.points * np.linalg.inv(back @ loose @ above.R)
     return _Pull(M, d, np.asarray(Q, np.float64), seen)
 
 
 def _joint_stiffness(laid: _PartFits, c: Floats) -> Floats:
     """(frame, 3, 3) how firmly the fits hold a part's point c, its rotation free."""
-    y = np.einsum("fxy,y->fx", laid.R, c) + laid.t
+    y = laid.R @ (c - laid.joint)
     about = np.tile(np.eye(6), (len(y), 1, 1))
     for x in range(3):
         a, b = (x + 1) % 3, (x + 2) % 3
@@ -154,29 +160,29 @@ def _joint_stiffness(laid: _PartFits, c: Floats) -> Floats:
     return np.asarray(shift - both.transpose(0, 2, 1) @ free + SINGULAR * np.eye(3))
 
 
-def _moved_joint(pull: _Pull, c: Floats, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
-    """(xyz,) the joint moved, or as it is where halves of the frames disagree."""
-    way = _centre(pull, c, sigma, chosen) - c
-    one, other = _of_halves(pull, c, sigma, chosen)
+def _agreed_shift(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
+    """(xyz,) where the joint goes from where it is, mesh unit; nowhere where halves of the frames disagree."""
+    way = _shift(pull, sigma, chosen)
+    one, other = _of_halves(pull, sigma, chosen)
     agree = np.linalg.norm(one - other, axis=1) < chosen.agree * np.linalg.norm(way)
-    return np.asarray(c + way) if agree.all() else c
+    return way if agree.all() else np.zeros(3)
 
 
-def _of_halves(pull: _Pull, c: Floats, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
-    """(half, way to halve, xyz) the centres of each second frame and of the others, and of each second quarter."""
+def _of_halves(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
+    """(half, way to halve, xyz) the shifts by each second frame and by the others, and by each second quarter."""
     frame = np.arange(len(pull.seen))
     halves = (frame % 2, frame * 4 // len(frame) % 2)
-    return np.array([[_centre(_Pull(*(a[half == k] for a in pull)), c, sigma, chosen) for half in halves] for k in (0, 1)])
+    return np.array([[_shift(_Pull(*(a[half == k] for a in pull)), sigma, chosen) for half in halves] for k in (0, 1)])
 
 
-def _centre(pull: _Pull, c: Floats, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
-    """(xyz,) the rotation centre of some frames, drawn to c; frames that stay off count less."""
-    w, at, hold = pull.seen + 1e-3, c, np.eye(3) / sigma**2
+def _shift(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings) -> Floats:
+    """(xyz,) from the joint to the rotation centre of some frames, drawn to the joint; frames that stay off count less."""
+    w, way, hold = pull.seen + 1e-3, np.zeros(3), np.eye(3) / sigma**2
     for _ in range(chosen.rounds):
         A = np.einsum("f,fyx,fyz,fzw->xw", w, pull.M, pull.Q, pull.M)
         g = np.einsum("f,fyx,fyz,fz->x", w, pull.M, pull.Q, pull.d)
-        at = np.linalg.solve(A + hold, g + hold @ c)
-        e = pull.M @ at - pull.d
+        way = np.asarray(np.linalg.solve(A + hold, g))
+        e = pull.M @ way - pull.d
         off = np.sqrt(np.einsum("fx,fxy,fy->f", e, pull.Q, e))
         w = (pull.seen + 1e-3) / (1.0 + (off / max(chosen.outlier * float(np.median(off)), 1e-300)) ** 2)
-    return np.asarray(at)
+    return way

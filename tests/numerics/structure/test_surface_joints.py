@@ -77,6 +77,14 @@ def test_the_same_far_from_the_origin(lengths: float) -> None:
     np.testing.assert_allclose(there.offset, here.offset, atol=1e-3)
 
 
+def test_a_body_in_metres_lies_as_well_a_thousand_kilometres_away() -> None:
+    size, shift = 0.1, 1e6 * np.array([0.6, -0.64, 0.48])
+    (_, here), (_, there) = on_surfaces(scale=size), on_surfaces(scale=size, shift=shift)
+    np.testing.assert_allclose(there.rest - shift, here.rest, atol=1e-5 * size)
+    for name in ("offset", "hinge"):
+        np.testing.assert_allclose(getattr(there, name), getattr(here, name), atol=1e-5 * size)
+
+
 def test_joints_of_limbs_with_the_trunk_stay() -> None:
     before, after = moved()
     np.testing.assert_array_equal(before[:2], after[:2])
