@@ -6,7 +6,8 @@ s_vj = Σ w_va over the parts a at or beyond joint j this is linear in a vertex'
     x_v(t) = x_0(t) + Σ_a R_a w_va v + Σ_j s_vj (R_p(j) − R_j) rest_j
 
 so that a fit needs only Σ φ φᵀ and Σ x φᵀ, whatever the number of vertices. Bone lengths are the same
-in all frames because the model has no others.
+in all frames because the model has no others. Both sums are about the middle of the body, so that they keep their digits
+wherever it lies.
 """
 
 from typing import NamedTuple
@@ -26,10 +27,13 @@ class Sums(NamedTuple):
     """The sums over vertices that a fit needs; each vertex has a vector φ of n numbers, four times the number of parts.
 
     G : (frame or 1, n, n) Σ τ φ φᵀ, C : (frame, xyz, n) Σ τ x φᵀ; φ is w_va v, by part, then s_vj
+    origin, middle : (xyz,) · (frame, xyz) means in the reference and in the frames, from which v and x are taken, mesh unit
     """
 
     G: Floats
     C: Floats
+    origin: Floats
+    middle: Floats
 
 
 class Motion(NamedTuple):
@@ -71,15 +75,19 @@ def sums(V: Floats, x: Floats, W: Floats, parents: Ints, tau: Floats) -> Sums:
     W    : (vertex, part) skinning weights, a part after its parent
     tau  : (vertex,) weight of every vertex in all frames, or (frame, vertex)
     """
+    share = tau / np.maximum(tau.sum(axis=-1, keepdims=True), np.finfo(float).tiny)
+    origin = share.reshape(-1, len(V)).mean(axis=0) @ V
+    middle = np.einsum("tv,tvx->tx", np.broadcast_to(share, x.shape[:2]), x)
+    V, x = V - origin, x - middle[:, None]
     phi = np.concatenate([(W[:, :, None] * V[:, None]).reshape(len(V), -1), W @ beyond(parents).T], axis=1)
     if tau.ndim == 1:
         weighted = tau[:, None] * phi
         rows = np.ascontiguousarray(x.transpose(0, 2, 1)).reshape(-1, len(V))
-        return Sums((phi.T @ weighted)[None], (rows @ weighted).reshape(len(x), 3, -1))
+        return Sums((phi.T @ weighted)[None], (rows @ weighted).reshape(len(x), 3, -1), origin, middle)
     row, place = np.nonzero(phi)
     start = np.searchsorted(row, np.arange(len(phi) + 1))
     x, tau, value = np.ascontiguousarray(x), np.ascontiguousarray(tau), phi[row, place]
-    return Sums(*_sums(start, np.ascontiguousarray(place), value, x, tau, phi.shape[1]))
+    return Sums(*_sums(start, np.ascontiguousarray(place), value, x, tau, phi.shape[1]), origin, middle)
 
 
 def fitted(s: Sums, start: Motion, parents: Ints, expected: PosePrior | None = None, *, rounds: int = 10) -> Motion:
@@ -91,8 +99,8 @@ def fitted(s: Sums, start: Motion, parents: Ints, expected: PosePrior | None = N
     expected : where poses are held; nowhere if not given
     rounds   : at most; it ends earlier when nothing turns any more
     """
-    motion = start
-    levers = _levers(start.rest, parents)
+    motion = Motion(start.rest - s.origin, start.R, start.x + start.R[:, 0] @ s.origin - s.middle)
+    levers = _levers(motion.rest, parents)
     for _ in range(rounds):
         H, g = _normal_equations(s, motion, parents, levers)
         if expected is not None:
@@ -104,7 +112,7 @@ def fitted(s: Sums, start: Motion, parents: Ints, expected: PosePrior | None = N
         motion = Motion(motion.rest, rotations(omega) @ motion.R, motion.x + move[:, -3:])
         if np.abs(omega).max(initial=0.0) < STILL:
             break
-    return motion
+    return Motion(start.rest, motion.R, motion.x + s.middle - motion.R[:, 0] @ s.origin)
 
 
 def placed(motion: Motion, parents: Ints) -> Floats:

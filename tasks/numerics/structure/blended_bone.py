@@ -88,7 +88,9 @@ def blended_bone(skin: MovingSkin, hold: float, rounds: int) -> MovingSkin:
 def refitted(skin: MovingSkin) -> MovingSkin:
     """The same skin with the rigid motion of its last part that explains it best, weights and other parts as they are."""
     R, t = skin.R.copy(), skin.t.copy()
-    _refit(skin.V, skin.x, skin.W, skin.area, R, t)
+    follows = skin.area * skin.W[:, -1] ** 2
+    middle = follows @ skin.V / max(follows.sum(), np.finfo(float).tiny)
+    _refit(skin.V, skin.x, skin.W, skin.area, middle, R, t)
     return skin._replace(R=R, t=t)
 
 
@@ -114,20 +116,25 @@ def refitted_about(skin: MovingSkin, joint: Floats) -> MovingSkin:
 
 
 @compiled
-def _refit(V: Floats, x: Floats, W: Floats, area: Floats, R: Floats, t: Floats) -> None:
-    """Writes the motion of the last part; arrays as in `MovingSkin`."""
+def _refit(V: Floats, x: Floats, W: Floats, area: Floats, middle: Floats, R: Floats, t: Floats) -> None:
+    """Writes the motion of the last part; middle (xyz,) of the skin that follows it, other arrays as in `MovingSkin`."""
     bone = W.shape[1] - 1
-    wanted = np.empty((1, len(V), 3))
+    near, wanted, there = V - middle, np.empty((1, len(V), 3)), np.empty(3)
     for f in range(len(x)):
         m = np.zeros(MOMENTS)
+        for i in range(3):
+            there[i] = t[f, 0, i] + R[f, 0, i, 0] * middle[0] + R[f, 0, i, 1] * middle[1] + R[f, 0, i, 2] * middle[2]
         for v in range(len(V)):
             own = W[v, bone]
             if own <= FAINT:
                 continue
             for i in range(3):
-                wanted[0, v, i] = (x[f, v, i] - _carried(V, R, t, W, f, v, i, bone)) / own
-            added(m, V, wanted, 0, v, area[v] * own * own)
+                wanted[0, v, i] = (x[f, v, i] - _carried(V, R, t, W, f, v, i, bone)) / own - there[i]
+            added(m, near, wanted, 0, v, area[v] * own * own)
         motion(m, R[f, bone], t[f, bone])
+        for i in range(3):
+            turned = R[f, bone, i, 0] * middle[0] + R[f, bone, i, 1] * middle[1] + R[f, bone, i, 2] * middle[2]
+            t[f, bone, i] += there[i] - turned
 
 
 @compiled

@@ -24,6 +24,20 @@ def test_poses_of_a_skinned_body_are_found_from_rest() -> None:
     assert predicted(body.V, body.W, found, body.parents) == pytest.approx(body.x, abs=1e-3)
 
 
+@pytest.mark.parametrize("frames_alike", [True, False], ids=["frames alike", "each frame's own weights"])
+def test_a_body_in_metres_is_found_as_well_a_thousand_kilometres_away(frames_alike: bool) -> None:
+    body, size, shift = chain((-1.5, 1.5), blend=1.0), 0.1, 1e6 * np.array([0.6, -0.64, 0.48])
+    tau = body.area if frames_alike else np.tile(body.area, (24, 1))
+
+    def found(shift: np.ndarray) -> Motion:
+        V, x, start = size * body.V + shift, size * body.x + shift, at_rest(size * body.joints + shift, 24)
+        return fitted(sums(V, x, body.W, body.parents, tau), start, body.parents, rounds=30)
+
+    here, there = found(np.zeros(3)), found(shift)
+    np.testing.assert_allclose(there.R, here.R, atol=1e-6)
+    np.testing.assert_allclose(placed(there, body.parents) - shift, placed(here, body.parents), atol=1e-6 * size)
+
+
 def test_bones_have_one_length_whatever_the_vertices_do() -> None:
     body = three_arms()
     noisy = body.x + np.random.default_rng(1).normal(0, 1.0, body.x.shape)
@@ -46,9 +60,10 @@ def test_sums_are_those_of_every_vertex_in_every_frame() -> None:
     body, rng = three_arms(), np.random.default_rng(2)
     tau, W = rng.random(body.x.shape[:2]), rng.random(body.W.shape) * (body.W > 0)
     found = sums(body.V, body.x, W, body.parents, tau)
-    phi = np.concatenate([(W[:, :, None] * body.V[:, None]).reshape(len(body.V), -1), W @ beyond(body.parents).T], axis=1)
+    V, x = body.V - found.origin, body.x - found.middle[:, None]
+    phi = np.concatenate([(W[:, :, None] * V[:, None]).reshape(len(V), -1), W @ beyond(body.parents).T], axis=1)
     np.testing.assert_allclose(found.G, np.einsum("tv,va,vb->tab", tau, phi, phi, optimize=True), atol=1e-9)
-    np.testing.assert_allclose(found.C, np.einsum("tv,tvx,va->txa", tau, body.x, phi, optimize=True), atol=1e-9)
+    np.testing.assert_allclose(found.C, np.einsum("tv,tvx,va->txa", tau, x, phi, optimize=True), atol=1e-9)
 
 
 def test_part_without_evidence_turns_as_expected() -> None:

@@ -29,6 +29,15 @@ def test_with_the_true_weights_one_fit_finds_the_motion() -> None:
     np.testing.assert_allclose(found.t, TRUE.t, atol=1e-6)
 
 
+def test_a_motion_is_found_as_well_far_from_the_origin() -> None:
+    shift = 1e6 * np.array([0.6, -0.64, 0.48])
+    start = spoilt()
+    far = start._replace(V=start.V + shift, x=start.x + shift, t=start.t + shift - start.R @ shift)
+    found, there = refitted(start), refitted(far)
+    np.testing.assert_allclose(there.R, found.R, atol=1e-8)
+    np.testing.assert_allclose(there.squares(), found.squares(), atol=1e-8)
+
+
 def test_every_round_explains_the_skin_better() -> None:
     start = spoilt()
     left = [blended_bone(start, 1e-8, rounds).squares().mean() for rounds in (1, 4, 16)]
