@@ -458,6 +458,42 @@ def test_own_input_is_never_overwritten(out, scans):
     assert names(scans) == frames
 
 
+@pytest.mark.parametrize(
+    ("form", "name", "known"),
+    [
+        ("usd", "z.usdz", ".usda or .usd"),
+        ("usd", "z.usdc", ".usda or .usd"),
+        ("glb", "z.bvh", ".glb"),
+        ("glb", "precious.json", ".glb"),
+        ("zarr", "precious.json", ".zarr"),
+        ("names", "precious.json", ".yaml, .yml or .txt"),
+        ("json-schema", "names.yaml", ".json"),
+    ],
+)
+def test_a_file_is_named_as_its_kind_is_and_replaces_none_of_another(out, tmp_path, form, name, known):
+    for there in (False, True):
+        if there:
+            (tmp_path / name).write_text("mine")
+        with pytest.raises(ConfigError, match=f"{name}: what is written there ends in {re.escape(known)}; name it so"):
+            export(str(out), form, tmp_path / name)
+        assert (tmp_path / name).exists() == there
+    assert (tmp_path / name).read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["walk.usda", "walk.USD"])
+def test_usd_is_written_as_text_by_both_names_that_readers_take(out, tmp_path, name):
+    export(str(out), "usd", tmp_path / name)
+    assert (tmp_path / name).read_bytes().startswith(b"#usda")
+
+
+@pytest.mark.parametrize("form", ["json", "zarr"])
+def test_a_file_without_an_ending_is_not_replaced(out, tmp_path, form):
+    (tmp_path / "Makefile").write_text("mine")
+    with pytest.raises(ConfigError, match=f"Makefile: what is written there ends in .{form}"):
+        export(str(out), form, tmp_path / "Makefile")
+    assert (tmp_path / "Makefile").read_text() == "mine"
+
+
 def test_what_is_neither_file_nor_folder_is_never_replaced(out, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(ConfigError, match="neither a file nor a folder, and would be overwritten"):
@@ -520,6 +556,6 @@ def test_a_store_that_cannot_be_written_is_told_beside_what_is_written(out, tmp_
     (remark,) = [text for text in json.loads(printed.out)["remarks"] if "nothing is kept" in text]
     assert re.fullmatch(r"store .*/store: cannot write .*: Permission denied; .*; computed in memory, nothing is kept", remark)
     assert printed.err == ""
-    for to in ("trc", "names"):
-        export(str(out), to, tmp_path / f"walk-{to}.trc", changed)
+    for to, name in (("trc", "walk-again.trc"), ("names", "walk.yaml")):
+        export(str(out), to, tmp_path / name, changed)
         assert capsys.readouterr().err.count("computed in memory, nothing is kept\n") == 1

@@ -3,7 +3,7 @@
 import contextlib
 import json
 from collections.abc import Collection, Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from kinetree.errors import ConfigError, DamagedArtifactError, StoreError
@@ -100,30 +100,49 @@ def write_result(owned: Owned, schedule: Schedule, entry: Entry) -> list[str]:
     return [*files, *([name] if name else [])]
 
 
-def write_elsewhere(path: Path, schedule: Schedule, task: str, inputs: Collection[str] = ()) -> list[Path]:
+def write_elsewhere(
+    path: Path, schedule: Schedule, task: str, inputs: Collection[str] = (), endings: Collection[str] | None = None
+) -> list[Path]:
     """Leaves what one task's artifacts leave at a path of the user's: one file or group is named so, several lie in it.
 
-    inputs : endings of files, such as ".txt", all of which are read from a folder that is the input
-    raises : as `write_results`; ConfigError where that would overwrite or join what the input is read from, or a device
+    inputs  : endings of files, such as ".txt", all of which are read from a folder that is the input
+    endings : that a single file may have; None: that of the file in the run's own folder
+    raises  : as `write_results`; ConfigError where that would overwrite or join what the input is read from, or a device, or
+              name a file as another kind of files is named
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise ConfigError(f"{path}: neither a file nor a folder, and would be overwritten; name another path with --output")
     done = [e for e in schedule.entries.values() if e.node.task == task and e.state in DONE]
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
-    if any(views.group_name(e.task.returns) for e in done):
+    if groups := [name for e in done if (name := views.group_name(e.task.returns))]:
         _refuse_input([path], schedule, inputs)
+        refuse_ending(path, endings or [PurePath(groups[0]).suffix])
         _put_group(beside, path.name, schedule, done[0])
         return [path]
     is_folder = path.is_dir() or len(files) > 1
     targets = [path / name for name in files] if is_folder else [path]
     _refuse_input([path, *targets], schedule, inputs)
+    if not is_folder:
+        refuse_ending(path, endings or [PurePath(name).suffix for name in files])
     if is_folder and not path.exists():
         beside.put_all(path.name, files)
     else:
         for target, data in zip(targets, files.values(), strict=True):
             Folder(target.parent, "output folder", beside="").put(target.name, data)
     return targets
+
+
+def refuse_ending(path: Path, endings: Collection[str]) -> None:
+    """A file that ends as another kind misleads programs, and one that lies there is another program's.
+
+    endings : that the kind has, such as ".txt"; no ending at all is as good where nothing lies there, or a folder
+    raises  : ConfigError
+    """
+    if path.suffix.lower() not in endings and (path.suffix or path.is_file()):
+        *others, last = endings
+        named = f"{', '.join(others)} or {last}" if others else last
+        raise ConfigError(f"{path}: what is written there ends in {named}; name it so")
 
 
 def leaves(cls: type[Artifact]) -> bool:

@@ -1,6 +1,7 @@
 """`kinetree export`: the result of a run as a file that other programs open."""
 
 import json
+from collections.abc import Collection
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -47,6 +48,8 @@ NAMES = "names"
 """What is written though no task writes it: the schema of skeleton.json, and names of joints for --names."""
 MESH_FILES = (".ply", ".obj", ".off", ".stl", ".glb", ".gltf")
 """Endings of meshes: one more of these in the folder of the input would be read as a frame or refused."""
+ENDINGS = {"usd": (".usda", ".usd"), NAMES: (".yaml", ".yml", ".txt"), SCHEMA: (".json",)}
+"""Endings of a single file, where the run's own file does not say which is the only one."""
 
 
 def export(
@@ -82,15 +85,15 @@ def export(
     if to == SCHEMA:
         from kinetree.tasks.results.formats.document import schema
 
-        _write_text(json.dumps(schema(), indent=2) + "\n", output)
+        _write_text(json.dumps(schema(), indent=2) + "\n", output, ENDINGS[SCHEMA])
         return
     if to in EXTRAS and find_spec(EXTRAS[to]) is None:
         raise ConfigError(f"--to {to} needs a package that is not installed: pip install 'kinetree[{to}]' brings it")
     pipeline = pipeline_of(run, sets=[*(sets or ()), *(() if names is None else (_names_setting(names),))])
     if to == NAMES:
-        _write_text(_names_text(pipeline), output)
+        _write_text(_names_text(pipeline), output, ENDINGS[NAMES])
         return
-    written, remarks = _written(pipeline, FORMATS[to], output, names)
+    written, remarks = _written(pipeline, to, output, names)
     if as_json:
         print_json({"files": [str(path) for path in written], "remarks": remarks})
         return
@@ -103,7 +106,7 @@ def export(
         typer.echo(f"… and {len(written) - len(named)} more files beside it")
 
 
-def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | None) -> tuple[list[Path], list[str]]:
+def _written(pipeline: "Pipeline", to: str, output: Path | None, names: str | None) -> tuple[list[Path], list[str]]:
     """Where the files are, and the remarks on them and on what --names names."""
     from kinetree.pipeline import views
     from kinetree.pipeline.output.output import write_elsewhere, write_result
@@ -111,6 +114,7 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | 
     from kinetree.schemas.structure.joint_names import STYLES
     from kinetree.tasks.views.structure import unknown_joints
 
+    task = FORMATS[to]
     there = pipeline.computed(task, LAID_OUT_BY)
     schedule = there.schedule
     done = [entry for entry in schedule.entries.values() if entry.node.task == task]
@@ -119,7 +123,7 @@ def _written(pipeline: "Pipeline", task: str, output: Path | None, names: str | 
     if (named := _joint_names(schedule)) is not None:
         remarks += unknown_joints("joint_names.rename" if names is None or names in STYLES else names, named)
     if output is not None:
-        return write_elsewhere(output, schedule, task, MESH_FILES), remarks
+        return write_elsewhere(output, schedule, task, MESH_FILES, ENDINGS.get(to)), remarks
     owned = Owned.of(pipeline.config.output)
     return [owned.folder / name for entry in done for name in write_result(owned, schedule, entry)], remarks
 
@@ -163,10 +167,13 @@ def _joint_names(schedule: "Schedule") -> "JointNames | None":
     return next((cast("JointNames", schedule.value(node)) for node in nodes), None)
 
 
-def _write_text(text: str, output: Path | None) -> None:
+def _write_text(text: str, output: Path | None, endings: Collection[str]) -> None:
+    from kinetree.pipeline.output.output import refuse_ending
+
     if output is None:
         typer.echo(text, nl=False)
         return
+    refuse_ending(output, endings)
     try:
         output.write_text(text, "utf-8")
     except OSError as error:
