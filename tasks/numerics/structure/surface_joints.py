@@ -105,7 +105,10 @@ def surface_joints(
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
     spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
     shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)
-    parts = {part: _PartFits(*(a[:, k] for a in laid[2:6]), tree.rest[part]) for k, part in enumerate(laid.joint.tolist())}
+    parts = {
+        part: _PartFits(laid.rotation[:, k], laid.translation[:, k], laid.stiffness[:, k], laid.square[:, k], tree.rest[part])
+        for k, part in enumerate(laid.joint.tolist())
+    }
     for joint, above in enumerate(tree.parents.tolist()):
         if joint in parts and above in parts:
             pull = _pull(parts[above], parts[joint], rest[joint], np.minimum(share[:, above], share[:, joint]), chosen)
