@@ -1,12 +1,33 @@
 """The sequence as a whole: which frames, how fast, in what unit, and which frames decide about the others."""
 
 import collections.abc as abc
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from kinetree.schemas.array import Artifact, Index, Params
 from kinetree.schemas.input.source import BadFrame
+
+UNIT_WORDS = {
+    "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
+    "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
+    "dm": ("decimetre", "decimetres", "decimeter", "decimeters"),
+    "m": ("metre", "metres", "meter", "meters"),
+    "km": ("kilometre", "kilometres", "kilometer", "kilometers"),
+    "in": ("inch", "inches"),
+    "ft": ("foot", "feet"),
+}
+"""What people call each unit of length."""
+
+
+def _abbreviated(unit: Any) -> Any:
+    """The unit in short, of any word for it in any case; what is none stays as it is."""
+    word = unit.lower() if isinstance(unit, str) else unit
+    return next((short for short, words in UNIT_WORDS.items() if word == short or word in words), unit)
+
+
+Unit = Annotated[Literal["mm", "cm", "dm", "m", "km", "in", "ft"], BeforeValidator(_abbreviated)]
+"""A unit of length whose length is known."""
 
 
 class SequenceParams(Params):
@@ -14,8 +35,8 @@ class SequenceParams(Params):
 
     fps: float | None = Field(default=None, gt=0)
     """Frames a second; None takes what the files state, or leaves it unknown."""
-    unit: str | None = None
-    """Unit of the coordinates, e.g. mm; None takes what the files state, or leaves it unknown."""
+    unit: Unit | None = None
+    """Unit of the coordinates: mm, cm, dm, m, km, in or ft; None takes what the files state, or leaves it unknown."""
     learn_from: str = ":"
     """Frames from which the body is learned, as start:stop:step; the others are posed and change no other frame."""
 

@@ -47,5 +47,7 @@ class PlacedFile(Exported):
     """Length of one unit of the input that was assumed, metres."""
     metres_from: Literal["parameter", "unit", "size"]
     """What that length is from: a parameter, the sequence's unit, or the size of the body, which is a guess."""
+    unknown_unit: str | None
+    """Unit that the input states, where nobody knows its length."""
     assumed_fps: float | None
     """Assumed frames a second; None where the sequence has a frame rate."""

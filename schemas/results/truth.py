@@ -8,6 +8,7 @@ from pydantic import Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Ints, Params, PathLike
 from kinetree.schemas.dims import FRAME, JOINT, VERTEX, XYZ
+from kinetree.schemas.input.sequence import Unit
 
 
 class TruthParams(Params):
@@ -20,7 +21,7 @@ class TruthParams(Params):
     first: int | None = Field(default=None, ge=0)
     """Number of the frame that the truth begins with, where its file does not number frames; None: the sequence's first if
     both have as many frames, else 0."""
-    unit: str | None = None
+    unit: Unit | None = None
     """Unit of the truth's coordinates where its file has none, e.g. cm; None: the sequence's unit."""
 
 

@@ -129,7 +129,8 @@ def placed_remarks(file: PlacedFile, scale: str) -> tuple[str, ...]:
     """
     rate = f"frame rate not known: {file.assumed_fps:g} frames a second assumed; set sequence.fps" if file.assumed_fps else ""
     unit = next((unit for unit in METRES if METRES[unit] == file.metres), f"{file.metres} m")
-    guess = f"unit not known: by the size of the body, one unit is taken for 1 {unit}"
+    stated = f"unit {file.unknown_unit!r} is not known" if file.unknown_unit else "unit not known"
+    guess = f"{stated}: by the size of the body, one unit is taken for 1 {unit}"
     size = f"{guess}; set sequence.unit or {scale}" if file.metres_from == "size" else ""
     up = f"up direction not certain: {file.up} of the input is taken to point up; set up_direction.up"
     return tuple(line for line in (rate, size, up if file.up_confidence < UNSURE else "") if line)

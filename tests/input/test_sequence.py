@@ -1,13 +1,16 @@
 """Contracts of the sequence: frames in order, what the user says before what files state, disagreement refused."""
 
+from typing import get_args
+
 import pytest
 
 from kinetree.errors import SourceError
 from kinetree.pipeline.views import remarks
-from kinetree.schemas.input.sequence import Sequence, SequenceParams
+from kinetree.schemas.input.sequence import Sequence, SequenceParams, Unit
 from kinetree.schemas.input.source import BadFrame, Source
 from kinetree.tasks.input.sequence import sequence
 from kinetree.tasks.numerics.input.frame_numbers import TAKE
+from kinetree.tasks.numerics.results.units import METRES
 
 
 def frames(*fields, start=0):
@@ -34,6 +37,25 @@ def test_files_that_disagree_are_refused_with_the_key_that_settles_it():
         sequence(frames((30.0, None), (25.0, None)), SequenceParams())
     with pytest.raises(SourceError, match=r"different units \(\['cm', 'mm'\]\); say which with sequence\.unit"):
         sequence(frames((None, "mm"), (None, "cm")), SequenceParams(fps=25))
+
+
+@pytest.mark.parametrize(
+    ("said", "unit"),
+    [("MM", "mm"), ("feet", "ft"), ("foot", "ft"), ("inches", "in"), ("Inch", "in"), ("metres", "m"), ("meter", "m"),
+     ("M", "m"), ("millimetres", "mm"), ("centimeter", "cm"), ("km", "km"), (None, None)],
+)  # fmt: skip
+def test_unit_is_known_by_its_plain_names_in_any_case(said, unit):
+    assert SequenceParams(unit=said).unit == unit
+
+
+@pytest.mark.parametrize("unit", ["furlong", "", "µm", "mmm", 5])
+def test_unit_that_is_not_known_is_refused_with_those_that_are(unit):
+    with pytest.raises(ValueError, match="'mm', 'cm', 'dm', 'm', 'km', 'in' or 'ft'"):
+        SequenceParams(unit=unit)
+
+
+def test_every_unit_that_is_known_has_a_length():
+    assert get_args(get_args(Unit)[0]) == tuple(METRES)
 
 
 @pytest.mark.parametrize("fps", [0, -25, float("inf"), float("nan")])

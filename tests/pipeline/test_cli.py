@@ -513,7 +513,7 @@ def command(*arguments, **env):
 
 
 def test_terminal_that_knows_only_ascii_still_gets_an_answer(scans, tmp_path):
-    done = command("plan", "-i", str(scans), "--set", "sequence.unit=μ", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    done = command("plan", "-i", str(scans), "--set", "report.title=μ", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
     assert done.returncode == 0, done.stderr
     assert b"mesh \\xd73: 3 stale" in done.stdout
 

@@ -65,10 +65,10 @@ def test_last_set_wins():
 
 
 def test_chain_of_files_is_followed_to_its_end(write):
-    write("a.yaml", "sequence: {fps: 1, unit: a}\nmesh: {merge: 0.01}")
+    write("a.yaml", "sequence: {fps: 1, unit: cm}\nmesh: {merge: 0.01}")
     write("sub/b.yaml", "extends: ../a.yaml\nsequence: {fps: 2}")
     config = of(write("c.yaml", "extends: sub/b.yaml\nmesh: {component_share: 0.5}"))
-    assert config.params["sequence"].model_dump() == {"fps": 2.0, "unit": "a", "learn_from": ":"}
+    assert config.params["sequence"].model_dump() == {"fps": 2.0, "unit": "cm", "learn_from": ":"}
     assert config.params["mesh"].model_dump() == {"merge": 0.01, "component_share": 0.5}
 
 
@@ -362,22 +362,23 @@ def test_numbers_are_read_as_people_write_them(text, value):
 
 
 def test_values_may_hold_equals_signs_and_spaces():
-    assert of(None, "sequence.unit=a=b c").params["sequence"].unit == "a=b c"
-    assert of(None, " sequence.unit = mm ").params["sequence"].unit == "mm"
+    assert of(None, "report.title=a=b c").params["report"].title == "a=b c"
+    assert of(None, " report.title = mm ").params["report"].title == "mm"
 
 
 # ── what is kept, and what is never part of a key ───────────────────────────────────────────────────────────────────
 
 
 @given(
-    st.floats(0, 0.09), st.none() | st.floats(1e-3, 1e6), st.none() | st.text(), st.text(),
+    st.floats(0, 0.09), st.none() | st.floats(1e-3, 1e6), st.text(), st.text(),
     st.none() | st.integers(1, 99), st.sampled_from(["sync", "threads", "processes"]),
 )  # fmt: skip
 @example(0.0, None, "1e3", "0E0", None, "sync")  # texts to YAML 1.1, numbers to 1.2
-def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, workers, executor):
+def test_saved_configuration_says_the_same_again(merge, fps, title, frames, workers, executor):
     blocks = {
         "mesh": {"merge": merge},
-        "sequence": {"fps": fps, "unit": unit},
+        "sequence": {"fps": fps},
+        "report": {"title": title},
         "source": {"input": "/scans/[1]", "frames": frames},
         "output": "/out",
         "compute": {"workers": workers, "executor": executor},
@@ -390,7 +391,7 @@ def test_saved_configuration_says_the_same_again(merge, fps, unit, frames, worke
 def test_saved_configuration_is_read_back_from_the_output_folder(tmp_path):
     from kinetree.pipeline.output.output import write_config
 
-    config = of({"output": str(tmp_path / "out"), "source": {"input": "x", "frames": "10:50:2"}, "sequence": {"unit": "no"}})
+    config = of({"output": str(tmp_path / "out"), "source": {"input": "x", "frames": "10:50:2"}, "report": {"title": "no"}})
     write_config(config)
     assert of(tmp_path / "out") == config
 

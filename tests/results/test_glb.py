@@ -106,7 +106,7 @@ def test_unknown_unit_is_guessed_from_the_size_of_the_body_and_said(body, size, 
     exported = glb(unknown, plain(unknown), Y_UP, GlbParams())
     assert (exported.metres, exported.metres_from) == (metres, "size")
     assert views.remarks(exported) == (
-        f"unit not known: by the size of the body, one unit is taken for 1 {unit}; set sequence.unit or glb.scale",
+        f"unit 'ell' is not known: by the size of the body, one unit is taken for 1 {unit}; set sequence.unit or glb.scale",
     )
 
 

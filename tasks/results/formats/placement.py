@@ -20,6 +20,7 @@ class Placement(NamedTuple):
     up_confidence: float
     metres: float
     metres_from: Literal["parameter", "unit", "size"]
+    unknown_unit: str | None
     assumed_fps: float | None
 
 
@@ -32,10 +33,11 @@ def placement(skeleton: Skeleton, estimate: UpDirection, up: Axis | None = None,
     assumed = ASSUMED_FPS if skeleton.fps is None else None
     direction = (estimate.up, estimate.confidence) if up is None else (up, 1.0)
     if metres is not None:
-        return Placement(*direction, metres, "parameter", assumed)
+        return Placement(*direction, metres, "parameter", None, assumed)
     if skeleton.unit in METRES:
-        return Placement(*direction, METRES[str(skeleton.unit)], "unit", assumed)
-    return Placement(*direction, guessed_metres(float(np.ptp(skeleton.vertices, axis=0).max())), "size", assumed)
+        return Placement(*direction, METRES[str(skeleton.unit)], "unit", None, assumed)
+    guess = guessed_metres(float(np.ptp(skeleton.vertices, axis=0).max()))
+    return Placement(*direction, guess, "size", skeleton.unit, assumed)
 
 
 def placed(skeleton: Skeleton, rotation: Floats, scale: float) -> Skeleton:
