@@ -35,8 +35,11 @@ def test_help_of_the_command_names_every_picture() -> None:
 def test_picture_of_a_step_that_a_method_does_not_have_is_refused(fetch: Any, tmp_path: Path) -> None:
     of_2014 = PLOTS_OF_METHOD["mesoscopic-2014"]
     assert set(PLOTS) - set(of_2014) == {"elimination"}
-    with pytest.raises(ConfigError, match="plot 'elimination' is not known; known plots: .*merging"):
+    with pytest.raises(ConfigError, match=r"plot 'elimination' is of method mesoscopic, and this run .*; its plots: .*merging"):
         draw("elimination", fetch, [0], tmp_path / "a.png", plots=of_2014)
+    for what in ("clusters", "coherence", "description", "endoskeleton"):
+        with pytest.raises(ConfigError, match=f"plot '{what}' is of method reeb or reeb-2009, and this run has another; its"):
+            draw(what, fetch, [0], tmp_path / "a.png")
     assert list(tmp_path.iterdir()) == []
 
 

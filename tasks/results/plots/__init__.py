@@ -66,10 +66,14 @@ def draw(
     frames : source frame numbers to draw, where a picture shows single frames
     up     : axis that points up, see `view`
     style  : for screens, or for papers
-    raises : ConfigError where no plot has that name, the file's ending is none of FORMATS or it cannot be written
+    raises : ConfigError where none of them has that name, the file's ending is none of FORMATS or it cannot be written
     """
     if name not in plots:
-        raise ConfigError(f"plot {name!r} is not known; known plots: {', '.join(sorted(plots))}")
+        methods = [method for method, own in PLOTS_OF_METHOD.items() if name in own]
+        known = ", ".join(sorted(plots))
+        if methods:
+            raise ConfigError(f"plot {name!r} is of method {' or '.join(methods)}, and this run has another; its plots: {known}")
+        raise ConfigError(f"plot {name!r} is not known; known plots: {known}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
     write_figure(plots[name](fetch, frames, up), path, style)
