@@ -70,10 +70,11 @@ def draw(
     """
     if name not in plots:
         methods = [method for method, own in PLOTS_OF_METHOD.items() if name in own]
-        known = ", ".join(sorted(plots))
+        plots_of_run = ", ".join(sorted(plots))
         if methods:
-            raise ConfigError(f"plot {name!r} is of method {' or '.join(methods)}, and this run has another; its plots: {known}")
-        raise ConfigError(f"plot {name!r} is not known; known plots: {known}")
+            of_method = f"plot {name!r} is of method {' or '.join(methods)}"
+            raise ConfigError(f"{of_method}, and this run has another; its plots: {plots_of_run}")
+        raise ConfigError(f"plot {name!r} is not known; known plots: {plots_of_run}")
     if path.suffix.lower() not in FORMATS:
         raise ConfigError(f"{path}: pictures end in {', '.join(FORMATS)}")
     write_figure(plots[name](fetch, frames, up), path, style)
