@@ -27,8 +27,9 @@ from typer.main import get_command
 
 from kinetree.errors import ClusterError, ConfigError, InputError, KinetreeError, ServiceError
 from kinetree.pipeline.application import Application, Command, Shortcut
-from kinetree.pipeline.command_line.printable import printable, quoted
+from kinetree.pipeline.command_line.printable import printable
 from kinetree.pipeline.running.interrupts import heed, is_interrupted
+from kinetree.pipeline.settings.option import OptionSetting
 
 EXITS = "Exit codes: 0 done · 1 nodes failed · 2 the input is wrong · 3 cluster or service failed, try again · 130 interrupted"
 ENVIRONMENT = (
@@ -176,8 +177,8 @@ def _with_shortcuts(function: Callable[..., None], shortcuts: tuple[Shortcut, ..
 
     @functools.wraps(function)
     def with_sets(**arguments: Any) -> None:
-        values = {shortcut.parameter: arguments.pop(name) for name, shortcut in names.items()}
-        sets = [f"{parameter}={quoted(value)}" for parameter, value in values.items() if value is not None]
+        values = [(shortcut, arguments.pop(name)) for name, shortcut in names.items()]
+        sets = [OptionSetting.of(s.options[0], s.parameter, value) for s, value in values if value is not None]
         function(**{**arguments, "sets": [*(arguments["sets"] or ()), *sets]})
 
     parameters = [p for p in own.values() if p.name == "config"] + [*more.values()]

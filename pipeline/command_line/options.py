@@ -10,7 +10,8 @@ from rich.console import Console
 
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application, current
-from kinetree.pipeline.command_line.printable import printable, quoted
+from kinetree.pipeline.command_line.printable import printable
+from kinetree.pipeline.settings.option import OptionSetting
 
 if TYPE_CHECKING:
     from kinetree.pipeline.inspect import Pipeline
@@ -101,7 +102,8 @@ def pipeline_of(
 
     application = current()
     folders = {"output": output, "store": store}
-    changes = [*(sets or ()), *(f"{key}={quoted(value)}" for key, value in folders.items() if value is not None)]
+    named = (OptionSetting.of(f"--{key}", key, value) for key, value in folders.items() if value is not None)
+    changes = [*(sets or ()), *named]
     has_input = _has_input(application, changes)
     target = config if config is not None or has_input else here()
     if target is None and not has_input and store is None:

@@ -1,6 +1,4 @@
-"""Text that other people named, made safe to print or to parse: a file may be called anything, and a terminal obeys what it
-is sent.
-"""
+"""Text that other people named, made safe to print: a file may be called anything, and a terminal obeys what it is sent."""
 
 
 def printable(text: object, *, lines: bool = False) -> str:
@@ -9,11 +7,6 @@ def printable(text: object, *, lines: bool = False) -> str:
     lines : whether line ends stay, for a text whose own they are
     """
     return "".join(c if c.isprintable() or (lines and c == "\n") else _escaped(c) for c in str(text))
-
-
-def quoted(text: str) -> str:
-    """The text as a YAML string, whatever characters it has."""
-    return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\U{ord(c):08x}" for c in text) + '"'
 
 
 def _escaped(character: str) -> str:

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
 from kinetree.pipeline.settings.blocks import Reading, block, blocks_at, compute_block, expanded, is_output, override, portable
+from kinetree.pipeline.settings.option import as_typed
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 
@@ -125,7 +126,7 @@ class Origins:
     blocks: frozenset[Any]
     """The keys at the top of it."""
     options: Mapping[str, str]
-    """The --set options by the parameter they set."""
+    """What was typed on the command line by the parameter that it sets."""
 
     def of(self, *keys: str) -> str:
         """The option that set the value at the keys, above or below them; where none did, the file."""
@@ -175,7 +176,7 @@ def load(target: str | Path | Mapping[str, Any] | None, application: Application
     reading = Reading.of(methods, application.presets)
     blocks, where = blocks_at(target, reading)
     sets = tuple(sets)
-    origins = Origins(where, frozenset(blocks), {text.partition("=")[0].strip(): f"--set {text}" for text in sets})
+    origins = Origins(where, frozenset(blocks), {text.partition("=")[0].strip(): as_typed(text) for text in sets})
     for text in sets:
         override(blocks, text, reading.paths)
     return resolved(blocks, origins, application, reading, is_left=is_output(target))

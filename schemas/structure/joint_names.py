@@ -1,8 +1,8 @@
 """Names that people know for the joints of people and four-legged animals, and which way the body faces."""
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from kinetree.schemas.array import Array, Artifact, Floats, Params
 from kinetree.schemas.dims import XYZ
@@ -14,10 +14,20 @@ CERTAIN_FRONT = 0.5
 """Confidence of the front below which a run warns that left and right may be exchanged, and files are not turned by it."""
 
 
+def _no_file(style: Any) -> Any:
+    """The style; raises ValueError where it looks like a file of names, which an export takes."""
+    if isinstance(style, str) and style not in STYLES and ("." in style or "/" in style):
+        raise ValueError(
+            f"a run takes a style: {', '.join(STYLES)}; a file of names is for kinetree export --names FILE, and"
+            " joint_names.rename sets single names"
+        )
+    return style
+
+
 class JointNamesParams(Params):
     """How joints are named in files and tables; the skeleton itself keeps its own names."""
 
-    style: Style = "kinetree"
+    style: Annotated[Style, BeforeValidator(_no_file)] = "kinetree"
     """Whose names: kinetree has pelvis, spine, chest, neck, head, shoulder_l …; none keeps root, limb_a_1 and so on."""
     front: Axis | None = None
     """Direction of the coordinates that the body faces in the reference frame; None finds it. Left and right follow from it."""

@@ -512,6 +512,29 @@ def command(*arguments, **env):
     )
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--output", "s3://bucket/walk"), "--output s3://bucket/walk: output: s3://bucket/walk is the address of a service"),
+        (("--store", "ftp://host/walk"), "--store ftp://host/walk: store: ftp://host/walk is the address of a service"),
+        (
+            ("--names", "nm/mixamo.yaml"),
+            "--names nm/mixamo.yaml: joint_names.style: a run takes a style: kinetree, mixamo, smpl, openpose, vrm, isb, none; a",
+        ),
+        (("--names", "mixamoo"), "--names mixamoo: joint_names.style: input should be 'kinetree', "),
+    ],
+)
+def test_an_option_whose_value_is_refused_is_named_as_it_was_typed(kinetree, scans, arguments, words):
+    code, _, complained = kinetree("plan", "-i", "scans", *arguments)
+    assert (code, complained[: len(f"kinetree: {words}")]) == (2, f"kinetree: {words}")
+
+
+def test_a_run_says_where_a_file_of_names_goes(kinetree, scans):
+    code, _, complained = kinetree("plan", "-i", "scans", "--names", "names.yaml")
+    assert code == 2
+    assert "a file of names is for kinetree export --names FILE, and joint_names.rename sets single names" in complained
+
+
 def test_terminal_that_knows_only_ascii_still_gets_an_answer(scans, tmp_path):
     done = command("plan", "-i", str(scans), "--set", "report.title=μ", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
     assert done.returncode == 0, done.stderr
