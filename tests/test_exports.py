@@ -411,6 +411,12 @@ def test_names_of_joints_that_are_not_there_are_told_and_too_long_ones_refused(o
     assert "arm" not in printed
     export(str(out), "bvh", tmp_path / "again.bvh", ["joint_names.rename={arm: jaw, elbow: x}"])
     assert "joint_names.rename: no joint that was found is called elbow\n" in capsys.readouterr().err
+    export(str(out), "bvh", tmp_path / "again.bvh", ["joint_names.rename={arm: a b}"])
+    assert "joint_names.rename: names in bvh are of a-z, A-Z, 0-9 and _: 'a b' is a_b\n" in capsys.readouterr().err
+    export(str(out), "glb", tmp_path / "again.glb", ["joint_names.rename={arm: a b, tail: hand}"])
+    told = capsys.readouterr().err
+    assert "joint_names.rename: a name that another joint has gets a number: hand is hand_2\n" in told
+    assert "a-z" not in told
     (tmp_path / "names.yaml").write_text(f"arm: {'x' * 101}\n")
     with pytest.raises(ConfigError, match="has 101 letters; 100 are the most"):
         export(str(out), "bvh", names=str(tmp_path / "names.yaml"))

@@ -112,7 +112,7 @@ def _written(pipeline: "Pipeline", to: str, output: Path | None, names: str | No
     from kinetree.pipeline.output.output import write_elsewhere, write_result
     from kinetree.pipeline.output.ownership import Owned
     from kinetree.schemas.structure.joint_names import STYLES
-    from kinetree.tasks.views.structure import unknown_joints
+    from kinetree.tasks.views.structure import renaming_remarks
 
     task = FORMATS[to]
     there = pipeline.computed(task, LAID_OUT_BY)
@@ -121,7 +121,7 @@ def _written(pipeline: "Pipeline", to: str, output: Path | None, names: str | No
     remarks_made = dict.fromkeys(text for entry in done for text in views.remarks(schedule.value(entry.node)))
     remarks = [*([there.unkept] if there.unkept else []), *remarks_made]
     if (named := _joint_names(schedule)) is not None:
-        remarks += unknown_joints("joint_names.rename" if names is None or names in STYLES else names, named)
+        remarks += renaming_remarks("joint_names.rename" if names is None or names in STYLES else names, named, (to,))
     if output is not None:
         return write_elsewhere(output, schedule, task, MESH_FILES, ENDINGS.get(to)), remarks
     owned = Owned.of(pipeline.config.output)

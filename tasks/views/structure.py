@@ -1,6 +1,6 @@
 """Views of the artifacts of the shelf `structure`."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from kinetree.tasks.numerics.structure.anatomical_names import Named
 
 
-UNKNOWN_NAMED = 5
-"""Joints to rename that are not there and are named one by one."""
+NAMED_ONE_BY_ONE = 5
+"""Joints to rename that are not called as it was set, of each kind."""
 
 
 @remarks_of(KinematicTree)
@@ -144,25 +144,49 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
 
 @remarks_of(JointNames)
 def joint_names_remarks(names: JointNames) -> tuple[str, ...]:
-    """What the body was recognised as, whether left and right may be exchanged, and which joints to rename are not there."""
-    return (*_recognised(names), *unknown_joints("joint_names.rename", names))
+    """What the body was recognised as, whether left and right may be exchanged, and what became of joints to rename."""
+    return (*_recognised(names), *renaming_remarks("joint_names.rename", names))
 
 
-def unknown_joints(where: str, names: JointNames) -> tuple[str, ...]:
-    """One sentence on the joints to rename that were not found under any of their names; nothing where all were.
+def renaming_remarks(where: str, names: JointNames, formats: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Joints to rename that were not found under any of their names, or are called otherwise; none where all is as it was set.
 
-    where : what says that they are renamed
+    where   : what says that they are renamed
+    formats : of the files that are written; None for all
     """
+    from kinetree.tasks.results.formats.names import IDENTIFIER_FORMATS, identifiers  # its shelf imports all that computes
+
+    rename = names.spelling.rename
+    if not rename:
+        return ()
+    known = {*names.given, *_unnumbered(names, {})}
+    unknown = [joint for joint in rename if joint not in known]
+    wanted = _unnumbered(names, rename)
+    taken = [f"{w} is {name}" for w, name in zip(wanted, names.names, strict=True) if w in rename.values() and w != name]
+    plain = [(name, text) for name, text in zip(names.names, identifiers(names.names), strict=True) if name != text]
+    unheld = [f"{name!r} is {text}" for name, text in plain if name in rename.values()]
+    plain_in = [form for form in IDENTIFIER_FORMATS if formats is None or form in formats]
+    told = {
+        "no joint that was found is called ": unknown,
+        "a name that another joint has gets a number: ": taken,
+        f"names in {', '.join(plain_in)} are of a-z, A-Z, 0-9 and _: ": unheld if plain_in else [],
+    }
+    return tuple(f"{where}: {what}{_some(joints)}" for what, joints in told.items() if joints)
+
+
+def _unnumbered(names: JointNames, rename: Mapping[str, str]) -> list[str]:
+    """(joint,) what each joint would be called if it were alone."""
     from kinetree.tasks.numerics.structure.name_styles import styled_names
 
-    if not names.spelling.rename:
-        return ()
-    known, style, sides = set(names.given), names.spelling.style, names.spelling.side_suffixes
-    for name, anatomy in zip(names.given, names.anatomy, strict=True):
-        known |= {*styled_names([_station(anatomy)], [name], style, sides, {})}
-    unknown = [joint for joint in names.spelling.rename if joint not in known]
-    more = f" and {len(unknown) - UNKNOWN_NAMED} more" if len(unknown) > UNKNOWN_NAMED else ""
-    return (f"{where}: no joint that was found is called {', '.join(unknown[:UNKNOWN_NAMED])}{more}",) if unknown else ()
+    style, sides = names.spelling.style, names.spelling.side_suffixes
+    own = zip(names.given, names.anatomy, strict=True)
+    return [styled_names([_station(anatomy)], [name], style, sides, rename)[0] for name, anatomy in own]
+
+
+def _some(texts: Sequence[str]) -> str:
+    """The first of the texts, and how many more there are."""
+    more = f" and {len(texts) - NAMED_ONE_BY_ONE} more" if len(texts) > NAMED_ONE_BY_ONE else ""
+    return f"{', '.join(texts[:NAMED_ONE_BY_ONE])}{more}"
 
 
 def _station(anatomy: str) -> "Named | None":

@@ -519,7 +519,7 @@ def command(*arguments, **env):
         (("--store", "ftp://host/walk"), "--store ftp://host/walk: store: ftp://host/walk is the address of a service"),
         (
             ("--names", "nm/mixamo.yaml"),
-            "--names nm/mixamo.yaml: joint_names.style: a run takes a style: kinetree, mixamo, smpl, openpose, vrm, isb, none; a",
+            "--names nm/mixamo.yaml: joint_names.style: a run takes a style: kinetree, mixamo, smpl, openpose, vrm, isb, none;",
         ),
         (("--names", "mixamoo"), "--names mixamoo: joint_names.style: input should be 'kinetree', "),
     ],

@@ -55,6 +55,19 @@ def test_names_of_joints_that_are_not_there_are_told(human):
     assert told.endswith("is called elbow.L")
 
 
+def test_names_that_are_taken_are_numbered_and_told(human):
+    found = named(human, rename={"pelvis": "elbow_l"})
+    assert {"elbow_l", "elbow_l_2"} <= set(found.names)
+    (_, told) = views.remarks(found)
+    assert told == "joint_names.rename: a name that another joint has gets a number: elbow_l is elbow_l_2"
+
+
+def test_names_that_files_cannot_hold_are_told(human):
+    (_, told) = views.remarks(named(human, rename={"pelvis": "a b!?", "neck": "hals"}))
+    assert told == "joint_names.rename: names in bvh, trc, c3d, usd, rignet are of a-z, A-Z, 0-9 and _: 'a b!?' is a_b__"
+    assert len(views.remarks(named(human, style="mixamo"))) == 1  # which has a colon of its own
+
+
 def test_no_style_leaves_the_names_of_the_skeleton(human):
     found = named(human, style="none")
     assert (found.names, found.topology) == (human.names, "unknown")

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from kinetree.schemas.structure.joint_names import JointNames
 
 SIDES = {"_l": "left", "_r": "right"}
+IDENTIFIER_FORMATS = ("bvh", "trc", "c3d", "usd", "rignet")
+"""Formats whose joints are named by `identifiers`."""
 NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_]")
 
 
