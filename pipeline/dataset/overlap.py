@@ -1,4 +1,4 @@
-"""Where a data set must not write: into the inputs of its sequences, where it looks for sequences, or into its own store."""
+"""Where a data set must not write: into the inputs of its sequences, and where it looks for sequences."""
 
 import os
 from collections.abc import Mapping
@@ -14,10 +14,10 @@ OUTPUT = f"results/{NAME}"
 
 
 def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], sequences: Any, base: Path, where: str) -> None:
-    """Results must not lie where a later run would look for sequences, nor in the folder of the store."""
+    """Results must not lie where a later run would look for sequences."""
     patterns = [sequences] if isinstance(sequences, str) else sequences if isinstance(sequences, list) else []
     wild = [os.path.normpath(base / Path(p).expanduser()) for p in patterns if WILD.search(p) and "://" not in p]
-    for name, config in configs.items():
+    for config in configs.values():
         places = {"output": config.output, **({"store": config.store} if isinstance(config.store, Path) else {})}
         for key, place in places.items():
             for pattern in wild:
@@ -34,7 +34,3 @@ def refuse_overlap(configs: Mapping[str, Config], inputs: Mapping[str, str], seq
                     raise ConfigError(
                         f"{where}: {key} {place} lies in {path}, the input of {other}; name a folder outside it, e.g. {OUTPUT}"
                     )
-        if isinstance(config.store, Path) and config.output.is_relative_to(config.store):
-            raise ConfigError(
-                f"{where}: the output of {name}, {config.output}, lies in the store; name the store otherwise with store:"
-            )

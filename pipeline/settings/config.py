@@ -19,11 +19,14 @@ from kinetree.errors import ConfigError
 from kinetree.pipeline.application import Application
 from kinetree.pipeline.settings.blocks import Reading, block, blocks_at, compute_block, expanded, is_output, override, portable
 from kinetree.pipeline.settings.option import as_typed
+from kinetree.pipeline.storage.store import MARKER
 from kinetree.pipeline.suggest import nearest
 from kinetree.schemas.array import Params
 
 M = TypeVar("M", bound=BaseModel)
 BUCKET = "s3://"
+SCHEME = re.compile(r"(?:.*/)?[A-Za-z][A-Za-z0-9+.-]+:(?=/)")
+"""What an address begins with, also one that was taken for the path of a folder; a drive has one letter."""
 """How the address of a bucket begins, which may take the place of the store's folder."""
 RUN_KEYS = ("extends", "method", "output", "store", "compute")
 
@@ -199,6 +202,7 @@ def resolved(
     else:
         store = _folder(blocks, "store", origins) or store
     _refuse_own_input(params, output, origins.file)
+    _refuse_stores(output, store, origins.of("output"))
     compute = checked(Compute, compute_block(blocks, reading), "compute", origins)
     return Config(method, params, output, store, compute, is_left)
 
@@ -220,6 +224,13 @@ def _refuse_own_input(params: Mapping[str, Params], output: Path, where: str) ->
                 value = getattr(value, key, None)
             if value and Path(value).absolute() == output:
                 raise ConfigError(f"{where}: output {output} is also {'.'.join((name, *keys))}; name a folder of its own")
+
+
+def _refuse_stores(output: Path, store: Path | str, where: str) -> None:
+    """A store holds nothing but its own; what a run leaves among its files would be in the way of both."""
+    for folder in (output, *output.parents):
+        if folder == store or os.access(folder / MARKER, os.F_OK):
+            raise ConfigError(f"{where}: output {output} lies in the store {folder}; name a folder outside of it")
 
 
 def with_compute(config: Config, **changes: Any) -> Config:
@@ -291,6 +302,12 @@ def _folder(blocks: Mapping[str, Any], key: str, origins: Origins) -> Path | Non
         raise ConfigError(f"{where}: {key}: expected the path of a folder, got {_short(path)}; put it in quotes if it is one")
     if "://" in path:
         raise ConfigError(f"{where}: {key}: {path} is the address of a service, which is not supported; give a folder")
+    scheme = SCHEME.match(path)
+    if scheme and not os.access(expanded(scheme[0]), os.F_OK):
+        raise ConfigError(
+            f"{where}: {key}: {path} looks like the address of a service, which is not supported; give a folder, and make"
+            f" {scheme[0]} first if it is one"
+        )
     return expanded(path).absolute()
 
 

@@ -13,6 +13,7 @@ from kinetree.pipeline.output.output import as_yaml
 from kinetree.pipeline.settings.blocks import Reading
 from kinetree.pipeline.settings.config import Compute, load, with_compute
 from kinetree.pipeline.settings.yaml_text import parsed
+from kinetree.pipeline.storage.store import Store
 from kinetree.tasks.application import APPLICATION
 
 PRESETS = Reading.of({}, APPLICATION.presets).preset_names
@@ -430,6 +431,33 @@ def test_compute_preset_is_one_of_those_there_are():
 def test_workers_default_to_the_cores_this_process_may_use():
     assert Compute().worker_count == len(os.sched_getaffinity(0))
     assert Compute(workers=7).worker_count == 7
+
+
+@pytest.mark.parametrize("inside", ["", "artifacts", "a/b"])
+def test_output_in_a_store_is_refused(tmp_path, inside):
+    there, output = tmp_path / "walk" / "store", tmp_path / "walk" / "store" / inside
+    Store.at(there).create()
+    assert refusal({"output": str(output)}) == f"config: output {output} lies in the store {there}; name a folder outside of it"
+    assert refusal(None, f"output={output}").startswith(f"--set output={output}: output {output} lies in the store {there}; ")
+    own = {"store": str(tmp_path / "new"), "output": str(tmp_path / "new" / inside)}
+    assert "lies in the store" in refusal(own), "also before it is made"
+
+
+@pytest.mark.parametrize("key", ["store", "output"])
+@pytest.mark.parametrize("address", ["nosuch:/foo", "s3:/bucket/x", "a/gs+x:/foo"])
+def test_what_looks_like_the_address_of_a_service_makes_no_folder(tmp_path, monkeypatch, key, address):
+    monkeypatch.chdir(tmp_path)
+    assert refusal(None, f"{key}={address}") == (
+        f"--set {key}={address}: {key}: {tmp_path}/{address} looks like the address of a service, which is not supported;"
+        f" give a folder, and make {tmp_path}/{address.partition(':')[0]}: first if it is one"
+    )
+
+
+@pytest.mark.parametrize("name", ["C:/walk", "walk: 1/out", "7:/x", "there:/out", "walk:"])
+def test_names_with_colons_are_folders(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "there:").mkdir()
+    assert of({"output": name}).output == tmp_path / name
 
 
 def test_output_among_the_users_own_files_is_refused(tmp_path):

@@ -111,7 +111,7 @@ def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
         ({"output": "takes/{name}/out"}, r"output .*/takes/a/out lies in .*/takes/a, the input of a"),
         ({"output": "takes/out/{name}"}, r"lies in .*/takes/out, which the pattern .*/takes/\* would take for a sequence"),
         ({"store": "takes/a/store"}, r"store .*/takes/a/store lies in .*/takes/a, the input of a"),
-        ({"store": "results/a"}, "the output of a, .*/results/a, lies in the store"),
+        ({"store": "results/a"}, r"output .*/results/a lies in the store .*/results/a; name a folder outside of it"),
         ({"sequnces": "x"}, "no such key 'sequnces'; did you mean 'sequences'"),
         ({"points": {"scael": 2}}, r"lab.yaml: points.scael: no such key; did you mean 'scale'"),
         ({"overrides": {"a": {"points": {"scale": "x"}}}}, r"lab.yaml: overrides.a: points.scale: .*number"),

@@ -18,7 +18,7 @@ from kinetree.tasks.application import APPLICATION
 
 @pytest.fixture
 def config(tmp_path):
-    return load({"output": str(tmp_path / "deep" / "out"), "sequence": {"unit": "µm: #1"}}, APPLICATION)
+    return load({"output": str(tmp_path / "deep" / "out"), "report": {"title": "µm: #1"}}, APPLICATION)
 
 
 def test_configuration_is_left_as_yaml_with_a_word_about_itself(config):
