@@ -79,7 +79,7 @@ Follow = Annotated[
 ]
 FollowIdle = Annotated[
     float | None,
-    typer.Option("--follow-idle", min=0, metavar="SECONDS", help="Follow until nothing new came for so long."),
+    typer.Option("--follow-idle", min=0, metavar="SECONDS", help="Follow, until nothing new came for so long; means --follow."),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 out = Console(soft_wrap=True, highlight=False, width=None if sys.stdout.isatty() else 200)  # a pipe cuts no table short
