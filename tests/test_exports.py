@@ -461,6 +461,9 @@ def test_own_input_is_never_overwritten(out, scans):
     frames = names(scans)
     with pytest.raises(ConfigError, match="the input is all files of this kind in this folder"):
         export(str(out), "glb", scans)
+    for form in ("csv", "rignet"):
+        with pytest.raises(ConfigError, match=f"{scans}: the input is the files in this folder; name another with --output"):
+            export(str(out), form, scans)
     assert names(scans) == frames
 
 

@@ -116,13 +116,13 @@ def write_elsewhere(
     files = {name.rpartition("/")[2]: data for e in done for name, data in _files(schedule, e).items()}
     beside = Folder(path.parent, "output folder", beside="")
     if groups := [name for e in done if (name := views.group_name(e.task.returns))]:
-        _refuse_input([path], schedule, inputs)
+        _refuse_input(path, [], schedule, inputs)
         refuse_ending(path, endings or [PurePath(groups[0]).suffix])
         _put_group(beside, path.name, schedule, done[0])
         return [path]
     is_folder = path.is_dir() or len(files) > 1
     targets = [path / name for name in files] if is_folder else [path]
-    _refuse_input([path, *targets], schedule, inputs)
+    _refuse_input(path, targets, schedule, inputs)
     if not is_folder:
         refuse_ending(path, endings or [PurePath(name).suffix for name in files])
     if is_folder and not path.exists():
@@ -191,11 +191,13 @@ def _damage_discarded(schedule: Schedule, entry: Entry) -> Iterator[None]:
         raise
 
 
-def _refuse_input(targets: list[Path], schedule: Schedule, inputs: Collection[str]) -> None:
-    """What the input is read from is the user's own and may be all there is."""
+def _refuse_input(path: Path, targets: list[Path], schedule: Schedule, inputs: Collection[str]) -> None:
+    """What the input is read from is the user's own and may be all there is; targets are the files that lie at the path."""
     origins = [artifact for members in schedule.origin_artifacts.values() for artifact in members.values()]
     places = {Path(str(getattr(a, name))).resolve() for a in origins for name in a.location_fields() if name == "path"}
-    for target in targets:
+    if len(targets) > 1 and sum(place.parent == path.resolve() for place in places) > 1:
+        raise ConfigError(f"{path}: the input is the files in this folder; name another with --output")
+    for target in (path, *targets):
         beside = sum(place.parent == target.resolve().parent for place in places)
         if target.resolve() in places:
             raise ConfigError(f"{target}: the input is read from it; name another path with --output")
