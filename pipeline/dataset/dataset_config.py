@@ -120,19 +120,22 @@ def load(target: str | Path | Mapping[str, Any], application: Application, sets:
     options = {text.partition("=")[0].strip(): f"--set {text}" for text in sets}
     parameter = _input_parameter(application, blocks, where)
     own = _overrides(content.get("overrides"), where)
-    configs: dict[str, Config] = {}
     missing: dict[str, list[str]] = {}
-    for name, path in inputs.items():
+
+    def configured(name: str, patterns: Iterable[str], missing: dict[str, list[str]]) -> Config:
         mine, origins = dict(blocks), dict(options)
-        for pattern, above in own.items():
-            if fnmatchcase(name, pattern):
-                mine = merged(mine, absolute(above, base, reading.paths))
-                origins |= dict.fromkeys(_leaves(above), f"{where}: overrides.{pattern}")
-        mine = merged(_filled(mine, name, path, reading, missing), _nested(parameter, path))
-        configs[name] = resolved(mine, Origins(where, frozenset(content), origins), application, reading)
-    first = next(iter(configs.values()))
+        for pattern in patterns:
+            mine = merged(mine, absolute(own[pattern], base, reading.paths))
+            origins |= dict.fromkeys(_leaves(own[pattern]), f"{where}: overrides.{pattern}")
+        mine = merged(_filled(mine, name, inputs[name], reading, missing), _nested(parameter, inputs[name]))
+        return resolved(mine, Origins(where, frozenset(content), origins), application, reading)
+
+    configs = {name: configured(name, [p for p in own if fnmatchcase(name, p)], missing) for name in inputs}
+    first_name, first = next(iter(configs.items()))
     refuse_overlap(configs, inputs, content["sequences"], base, where)
     lost = [pattern for pattern in own if not any(fnmatchcase(name, pattern) for name in inputs)]
+    for pattern in lost:  # of sequences to come, which it must not refuse then
+        configured(first_name, [pattern], {})
     notes += [f"overrides.{pattern}: no sequence has this name; {nearest(pattern, inputs)}" for pattern in lost]
     notes += [f"{path}: there is none for {_some(names)}" for path, names in missing.items()]
     retention = checked(Retention, content.get("retention") or {}, "retention", Origins(where, frozenset(content), {}))

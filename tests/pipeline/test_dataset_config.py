@@ -96,6 +96,20 @@ def test_a_name_that_overrides_know_and_nobody_has_is_noted(load):
 
 
 @pytest.mark.parametrize(
+    ("block", "words"),
+    [
+        ({"pionts": {}}, "overrides.late_*: no such key 'pionts'; did you mean 'points'?"),
+        ({"points": {"scael": 2}}, "overrides.late_*: points.scael: no such key; did you mean 'scale'?"),
+        ({"points": {"scale": "x"}}, "overrides.late_*: points.scale: "),
+    ],
+)
+def test_what_overrides_say_of_sequences_to_come_is_checked_too(load, block, words):
+    with pytest.raises(ConfigError) as refused:
+        load("takes/walk", overrides={"late_*": block})
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
     ("keys", "words"),
     [
         ({"sequences": None}, r"sequences is missing: say which there are, e\.g\. sequences: takes/\*"),
