@@ -63,11 +63,11 @@ def summaries(schedule: Schedule) -> dict[str, Any]:
 def write_results(owned: Owned, schedule: Schedule) -> list[str]:
     """Leaves the files and groups of every artifact that has some, each whole or not at all; returns their names.
 
-    One that lies there with the same bytes is not touched.
+    What other graphs' runs made lies in folders of theirs. One that lies there with the same bytes is not touched.
     raises : StoreError where the folder cannot be written or has such a file of somebody else's; DamagedArtifactError, after
              which a run makes it again
     """
-    done = [e for e in schedule.entries.values() if e.state in DONE and leaves(e.task.returns)]
+    done = [e for e in schedule.entries.values() if e.state in DONE and not e.task.is_linked and leaves(e.task.returns)]
     return [name for entry in done for name in write_result(owned, schedule, entry)]
 
 

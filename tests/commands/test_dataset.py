@@ -12,7 +12,9 @@ from kinetree.errors import ConfigError
 from kinetree.pipeline.command_line.cli import command_line
 from kinetree.pipeline.dataset.dataset import Dataset
 from kinetree.pipeline.output.outcome import Outcome
+from kinetree.pipeline.output.ownership import MARKER
 from kinetree.schemas.registration.frame_confidence import FrameConfidence
+from kinetree.schemas.results.evaluation import Summary
 from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.application import APPLICATION
 
@@ -30,7 +32,7 @@ def lab(tmp_path):
     zero = np.zeros(len(body.frames))
     sure = FrameConfidence(frames=body.frames, residual=zero, uncovered=zero, unreliable=zero, inlier=zero == 0)
     data_set.store.create()
-    artifacts = {"skeleton": body, "evaluation": evaluated(None), "frame_confidence": sure}
+    artifacts = {"skeleton": body, "evaluation": evaluated(Summary(scored=2, found=1)), "frame_confidence": sure}
     artifacts["up_direction"] = UpDirection(up="z", confidence=1.0)
     artifacts["verdict"] = judged(body)
     digests = {name: data_set.store.publish(artifact)[0] for name, artifact in artifacts.items()}
@@ -53,6 +55,12 @@ def test_the_page_is_made_of_what_lies_in_the_store(lab):
     assert '<a href="walk/report.html">walk</a>' in page
     assert "mesh[frame=3]: MeshError: torn" in page
     assert [row["frames"] for row in lab.table()] == [None, 12]
+
+
+def test_nothing_of_a_single_sequence_is_left_above_all(lab):
+    assert lab.report()["status"] == "done"
+    own = {"index.html", "summary.csv", "summary.json", "outcome.json", "store", "walk", "dance"}
+    assert {path.name for path in lab.config.root.iterdir() if path.name != MARKER} == own
 
 
 def test_the_page_is_not_made_again_while_nothing_changed(lab):
