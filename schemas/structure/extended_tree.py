@@ -1,4 +1,4 @@
-"""The agreed tree with the joints at ends of limbs that the frames' surfaces alone show (ours)."""
+"""The agreed tree with the joints that the frames' surfaces alone show, at ends of limbs and within the trunk (ours)."""
 
 from collections.abc import Sequence
 from typing import Annotated, ClassVar
@@ -19,15 +19,15 @@ class ExtendedTreeParams(Params):
 
 
 class ExtendedTree(JointTree):
-    """The agreed tree; a joint at an end and the part beyond it come after all others."""
+    """The agreed tree with joints at ends of limbs and within the trunk; those at ends come after all others."""
 
     opens: ClassVar[tuple[str, ...]] = ("laid", "laid/frame")
     cut_frame: int | None = None
     """As AgreedTree has it."""
     laid: tuple[int, ...] = ()
     """Source frames on whose surfaces parts are laid by themselves; a few of them are a member of "laid"."""
-    ends: int = 0
-    """How many of the joints, the last ones, the frames' surfaces alone show."""
+    shown: tuple[int, ...] = ()
+    """Joints that the frames' surfaces alone show, ascending."""
     end_positions: Annotated[Floats, Array("float64", FRAME, END_VERTEX, XYZ, unit="length")]
     """Where the frames have the vertices on either side of the joints that their surfaces alone show, by number."""
 

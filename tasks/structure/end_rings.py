@@ -1,4 +1,4 @@
-"""The last parts of limbs on the surfaces of a few frames, with a hinge at rings across them."""
+"""Last parts of limbs, and the trunk, on the surfaces of a few frames, with a hinge at rings across them."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -11,19 +11,29 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
+from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import end_rings as numerics
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
+from kinetree.tasks.structure.arguments.aligned_body import tips_of
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
 
 
 @task(over="judged")
 def end_rings(
-    reference: Reference, agreed_tree: AgreedTree, alignment: Mapping[int, Alignment], mesh: Mapping[int, Mesh]
+    reference: Reference,
+    agreed_tree: AgreedTree,
+    alignment: Mapping[int, Alignment],
+    mesh: Mapping[int, Mesh],
+    leaves: Leaves,
 ) -> EndRings:
-    """Lays the last parts of limbs on the frames' surfaces, as one piece and with a hinge at several rings (ours)."""
+    """Lays last parts of limbs and the trunk on the frames' surfaces, as one piece and with a hinge at several rings (ours)."""
     V, F, area = area_of(reference)
     tree, frame = restored(agreed_tree), np.array([agreed_tree.frames.index(f) for f in mesh])
-    rings = numerics.end_rings(V, F, area, tree)
+    pairs = limb_pairs(V, F, tips_of(reference, leaves))
+    inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    rings = numerics.end_rings(V, F, area, tree, inside)
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
     surface = cache(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
     fits: list[numerics.Fits] = [{} for _ in rings]

@@ -52,7 +52,7 @@ def extended_tree(
         frames=frames,
         cut_frame=agreed_tree.cut_frame,
         laid=tuple(frames[t] for t in laid),
-        ends=len(ends),
+        shown=tree.shown,
         end_positions=tree.end_x,
         **fields_of(tree),
     )
@@ -71,8 +71,8 @@ def _ends(
     surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, body.surface.size))
     confidence = np.asarray(body.trust, np.float64)
     frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
-    rings = rings_numerics.end_rings(V, F, area, tree)
     pairs = limb_pairs(V, F, body.tips)
     inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    rings = rings_numerics.end_rings(V, F, area, tree, inside)
     mirrored = [part for part in np.unique(tree.label[pairs.tip]).tolist() if inside[part]]
     return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, takes, mirrored)

@@ -13,15 +13,15 @@ from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.structure import rigid_parts as numerics
 from kinetree.tasks.numerics.structure.elimination import EliminationSettings
-from kinetree.tasks.numerics.structure.end_effectors import leaf_vertices
 from kinetree.tasks.numerics.structure.given_correspondence import limited_confidence
 from kinetree.tasks.numerics.structure.oversegmentation import OversegmentationSettings
+from kinetree.tasks.structure.arguments.aligned_body import tips_of
 
 
 @task(among=Sequence, block=RigidPartsParams)
 def rigid_parts(reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves, params: CutParams) -> RigidParts:
     """Divides the surface into the rigid parts that the motion shows (2014, Sec. 6.1 and 6.2)."""
-    aligned, at = list(alignment.values()), leaves.frames.index(reference.frame)
+    aligned = list(alignment.values())
     frames, x = tuple(alignment), np.stack([a.vertices for a in aligned])
     confidence = limited_confidence(np.stack([a.confidence for a in aligned]))
     parts = numerics.rigid_parts(
@@ -29,7 +29,7 @@ def rigid_parts(reference: Reference, alignment: Mapping[int, Alignment], leaves
         np.asarray(reference.faces, dtype=np.int64),
         x,
         confidence,
-        leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
+        tips_of(reference, leaves),
         settings=parts_settings(params),
         takes=take_spans(frames),
     )

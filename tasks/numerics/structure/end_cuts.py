@@ -32,17 +32,21 @@ class EndCut(NamedTuple):
     """A ring across a part.
 
     part   : in the tree's order
+    above  : the part that hangs together with the piece before the ring: that above, or of the root one below
     centre : (xyz,) of the ring in the reference, mesh unit
     radius : of the ring, mesh unit
     own    : (own,) vertices of the part
     beyond : (own,) how far each lies beyond the ring along the surface, negative before it, mesh unit
+    hung   : parts that hang on the piece beyond the ring; none at the end of a limb
     """
 
     part: int
+    above: int
     centre: Floats
     radius: float
     own: Ints
     beyond: Floats
+    hung: tuple[int, ...] = ()
 
     @property
     def far(self) -> Flags:
@@ -77,25 +81,34 @@ def end_cuts(
         distance = from_border(V, edge, label, part)
         inside = edge[(label[edge] == part).all(axis=1)]
         for level in np.array(chosen.levels) * np.quantile(distance[own], chosen.farthest):
-            cut = _ring(V, part, own, distance, inside, float(level))
-            if cut is not None and _is_wide(cut, area, rest[part], chosen):
+            cut = ring_at(V, (part, int(parents[part])), own, distance, inside, float(level))
+            if cut is not None and is_wide(cut, area, chosen) and _is_apart(cut, rest[part], chosen):
                 yield cut
 
 
-def _ring(V: Floats, part: int, own: Ints, distance: Floats, inside: Ints, level: float) -> EndCut | None:
-    """The ring at one distance; None where no edge crosses it."""
+def ring_at(V: Floats, parts: tuple[int, int], own: Ints, distance: Floats, inside: Ints, level: float) -> EndCut | None:
+    """The ring at one distance from where a part meets another; None where no edge crosses it.
+
+    parts    : the part and the other one
+    own      : (own,) its vertices
+    distance : (vertex,) mesh unit
+    inside   : (edge, 2) its edges
+    """
     a, b = inside[(distance[inside[:, 0]] < level) & (distance[inside[:, 1]] >= level)].T
     if not len(a):
         return None
     middle = (V[a] + V[b]) / 2
     centre = middle.mean(axis=0)
     radius = float(np.sqrt(((middle - centre) ** 2).sum(axis=1).mean()))
-    return EndCut(part, centre, radius, own, distance[own] - level)
+    return EndCut(*parts, centre, radius, own, distance[own] - level)
 
 
-def _is_wide(cut: EndCut, area: Floats, joint: Floats, chosen: EndCutsSettings) -> bool:
-    """Whether there is enough surface on both sides, and the ring is not where the part's joint already lies."""
-    for side in (cut.far, ~cut.far):
-        if side.sum() < chosen.least_vertices or area[cut.own[side]].sum() < chosen.least_area * area.sum():
-            return False
+def is_wide(cut: EndCut, area: Floats, chosen: EndCutsSettings) -> bool:
+    """Whether there is enough surface on both sides."""
+    sides = [cut.own[cut.far], cut.own[~cut.far]]
+    return all(len(v) >= chosen.least_vertices and area[v].sum() >= chosen.least_area * area.sum() for v in sides)
+
+
+def _is_apart(cut: EndCut, joint: Floats, chosen: EndCutsSettings) -> bool:
+    """Whether the ring is not where the part's joint already lies."""
     return bool(np.linalg.norm(cut.centre - joint) >= chosen.apart * cut.radius)

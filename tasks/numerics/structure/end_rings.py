@@ -1,4 +1,4 @@
-"""The last parts of limbs on the frames' surfaces, with a hinge at rings across them (ours, see `end_joints`)."""
+"""Last parts of limbs, and the trunk, on the frames' surfaces, with a hinge at rings across them (ours, see `end_joints`)."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, sampled_piece
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
+from kinetree.tasks.numerics.structure.trunk_cuts import trunk_cuts
 
 Fits = dict[int, HingedFit]
 """By frame, how a ring's part lies."""
@@ -100,8 +101,8 @@ class EndFrames(NamedTuple):
         return EndFrames(tree, dict(zip(frame.tolist(), visible, strict=True)), surface)
 
     def goal(self, f: int, ring: EndRing) -> Floats:
-        """(xyz,) where the rest of the body has the joint of a ring's part, mesh unit."""
-        p = self.tree.parents[ring.cut.part]
+        """(xyz,) where the rest of the body has the joint of the piece before a ring, mesh unit."""
+        p = ring.cut.above
         return np.asarray(self.tree.R[f, p] @ ring.piece.joint + self.tree.t[f, p])
 
     def showing(self, which: Iterable[int], rings: Sequence[EndRing]) -> Iterator[tuple[int, Target, list[int]]]:
@@ -112,14 +113,21 @@ class EndFrames(NamedTuple):
                 yield f, self.surface(f), there
 
 
-def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree) -> list[EndRing]:
-    """All rings across the last parts of limbs, part by part.
+def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags) -> list[EndRing]:
+    """All rings across the last parts of limbs and across the trunk, part by part.
 
     V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
+    mirrored   : (part,) whether each is of a limb with a mirror image
     """
-    N, W = smoothed_normals(V, F), tree.W
-    cuts = end_cuts(V, F, area, tree.label, tree.parents, tree.rest)
-    return [EndRing(c, sampled_piece(V[c.own], N[c.own], W[c.own, c.part], c.far, c.centre, tree.rest[c.part])) for c in cuts]
+    N = smoothed_normals(V, F)
+    of = (V, F, area, tree.label, tree.parents, tree.rest)
+    return [_ring(V, N, tree, cut) for cut in (*end_cuts(*of), *trunk_cuts(*of, mirrored))]
+
+
+def _ring(V: Floats, N: Floats, tree: FirstTree, cut: EndCut) -> EndRing:
+    """A ring with points of its part, which hangs on the piece before it."""
+    v, lower = cut.own, cut.part if tree.parents[cut.part] == cut.above else cut.above
+    return EndRing(cut, sampled_piece(V[v], N[v], tree.W[v, cut.part], cut.far, cut.centre, tree.rest[lower]))
 
 
 def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Sequence[Fits]) -> None:

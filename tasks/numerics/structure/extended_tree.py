@@ -1,55 +1,77 @@
-"""A tree with the joints within the last parts of its limbs that the frames' surfaces show (ours, see `end_joints`)."""
+"""A tree with the joints at ends of limbs and within the trunk that the frames' surfaces show (ours, see `end_joints`)."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.end_joints import EndJoint
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.rotation_centres import drift
 from kinetree.tasks.numerics.structure.skinning import skinning
 
 
 def extended_tree(
-    body: MovingSurface, tree: FirstTree, ends: Sequence[EndJoint], confidence: Floats, noise: float
+    body: MovingSurface, tree: FirstTree, found: Sequence[EndJoint], confidence: Floats, noise: float
 ) -> FirstTree:
-    """The tree with a part more beyond every joint at an end, after all others, and vertices there as the frames show them.
+    """The tree with a part more beyond every joint that the surfaces show, and vertices there as the frames show them.
 
-    ends       : one at least
+    A part at an end comes after all others. One within the trunk carries the parts that hang on it, and comes before them.
+
+    found      : one at least
     confidence : (frame, vertex) 0 to 1
     noise      : error of a vertex below which its motion says nothing of its skinning weights, mesh unit
     """
-    x = moved_ends(body, tree, ends)
-    count, label = len(tree.parents), tree.label.copy()
-    for k, end in enumerate(ends, start=count):
-        label[end.cut.own[end.cut.far]] = k
-    nearer = [end.cut.part for end in ends]
-    R, t = (_with_pieces(mine, [getattr(end, name) for end in ends], nearer) for mine, name in ((tree.R, "R"), (tree.t, "t")))
-    beyond = np.stack([end.residual for end in ends], axis=1)
+    x = moved_ends(body, tree, found)
+    count, label, parents = len(tree.parents), tree.label.copy(), np.append(tree.parents, [one.cut.part for one in found])
+    for k, one in enumerate(found, start=count):
+        label[one.cut.own[one.cut.far]] = k
+        parents[list(one.cut.hung)] = k
+    order = _parts_after_parents(parents, [k for k, one in enumerate(found, start=count) if not one.cut.hung])
+    place = np.argsort(order)
+    nearer = [one.cut.part for one in found]
+    pieces = ((tree.R, [one.R for one in found]), (tree.t, [one.t for one in found]))
+    R, t = (np.ascontiguousarray(_with_pieces(mine, theirs, nearer)[:, order]) for mine, theirs in pieces)
+    beyond = np.stack([one.residual for one in found], axis=1)
     unexplained = np.concatenate([tree.unexplained, beyond], axis=1)
     unexplained[:, nearer] = beyond
-    parents = np.concatenate([tree.parents, nearer])
+    parents = np.where(parents[order] < 0, -1, place[parents[order]])
+    label = place[label]
     share = confident_share(label, body.area, confidence, len(R), len(parents))
-    centre = np.stack([end.cut.centre for end in ends])
-    pair = np.stack([nearer, np.arange(count, len(parents))], axis=1)
     new = tree._replace(
         parents=parents,
-        ends=len(ends),
+        place=np.where(tree.place < 0, -1, place[tree.place]),
+        shown=tuple(sorted(place[count:].tolist())),
         label=label,
         W=skinning(body.V, body.F, x, label, R, t, parents, confidence, noise),
         R=R,
         t=t,
         certain_share=share,
-        rest=np.concatenate([tree.rest, centre]),
-        drift=np.concatenate([tree.drift, drift(R, t, pair, centre, share)]),
-        unexplained=unexplained,
-        radius=np.append(tree.radius, [end.cut.radius for end in ends]),
+        rest=np.concatenate([tree.rest, np.stack([one.cut.centre for one in found])])[order],
+        drift=np.append(tree.drift, np.zeros(len(found)))[order],
+        unexplained=unexplained[:, order],
+        radius=np.append(tree.radius, [one.cut.radius for one in found])[order],
     )
-    return new._replace(end_x=x[:, new.at_ends])
+    changed = np.array([k for k in range(1, len(parents)) if k in new.shown or parents[k] in new.shown])
+    drifts = new.drift.copy()
+    drifts[changed] = new.drift_at(new.rest)[changed]
+    return new._replace(drift=drifts, end_x=x[:, new.at_ends])
+
+
+def _parts_after_parents(parents: Ints, last: Sequence[int]) -> Ints:
+    """(part,) the parts in an order in which each comes after its parent; as they were where that is so, `last` ones last.
+
+    parents : (part,) −1 for the root
+    """
+    order: list[int] = []
+    waiting = [k for k in range(len(parents)) if k not in last]
+    while waiting:
+        following = next(k for k in waiting if parents[k] < 0 or parents[k] in order)
+        order.append(following)
+        waiting.remove(following)
+    return np.array([*order, *last], np.int64)
 
 
 def moved_ends(body: MovingSurface, tree: FirstTree, ends: Sequence[EndJoint]) -> Floats:
@@ -67,4 +89,4 @@ def _with_pieces(mine: Floats, pieces: Sequence[Floats], nearer: Sequence[int]) 
     out = np.concatenate([mine, np.stack([piece[:, 1] for piece in pieces], axis=1)], axis=1)
     for piece, part in zip(pieces, nearer, strict=True):
         out[:, part] = piece[:, 0]
-    return np.ascontiguousarray(out)
+    return out

@@ -39,7 +39,7 @@ class FirstTree(NamedTuple):
 
     parents       : (part,) −1 for the root
     place         : (given,) place in the tree of every part that was given, −1 for those dropped and those without vertices
-    ends          : how many of the parts, the last ones, lie beyond joints that the frames' surfaces alone show
+    shown         : parts beyond joints that the frames' surfaces alone show, ascending
     label         : (vertex,) part
     W             : (vertex, part) skinning weights
     R, t          : (frame, part, 3, 3) · (frame, part, xyz) from the reference
@@ -54,7 +54,7 @@ class FirstTree(NamedTuple):
 
     parents: Ints
     place: Ints
-    ends: int
+    shown: tuple[int, ...]
     label: Ints
     W: Floats
     R: Floats
@@ -70,12 +70,12 @@ class FirstTree(NamedTuple):
     @property
     def has_bones(self) -> bool:
         """Whether some of its parts are bones that no cut can find, see `hidden_bones`."""
-        return bool(len(self.parents) - self.ends > (self.place >= 0).sum())
+        return bool(len(self.parents) - len(self.shown) > (self.place >= 0).sum())
 
     @property
     def at_ends(self) -> Flags:
         """(vertex,) whether a vertex is of a part on either side of a joint that the frames' surfaces alone show."""
-        beyond = np.arange(len(self.parents) - self.ends, len(self.parents))
+        beyond = np.array(self.shown, np.int64)
         return np.isin(self.label, np.append(beyond, self.parents[beyond]))
 
     @property
@@ -121,7 +121,7 @@ def in_tree_order(joints: TreeJoints, parts: int) -> FirstTree:
     return FirstTree(
         parents=tree.parents,
         place=place,
-        ends=0,
+        shown=(),
         label=joints.label,
         W=joints.W,
         R=joints.R,

@@ -127,15 +127,14 @@ def kinematic_tree(
     has_necks       : whether bones are looked for that the shape alone shows, see `necks`
     """
     V = body.V
-    if first.ends:
+    if first.shown:
         x = body.x.copy()
         x[:, first.at_ends] = first.end_x
         body = body._replace(x=x)
     tree = _posed(body, first, confidence, further, laid)
     if has_necks:
-        parts = len(first.parents) - first.ends
         hanging = necks(V, body.F, first.label, first.parents, tree.motion.rest, first.radius)
-        if chosen := [neck for neck in hanging if neck.part < parts]:
+        if chosen := [neck for neck in hanging if neck.part not in first.shown]:
             tree = necked_tree(tree, chosen)
     if has_second_ends:
         leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
@@ -242,6 +241,6 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
         hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
-        end_joints=tuple(joint[parts - first.ends : parts].tolist()),
+        end_joints=tuple(sorted(joint[list(first.shown)].tolist())),
         neck_joints=tuple(sorted(joint[np.flatnonzero(tree.is_neck)].tolist())),
     )

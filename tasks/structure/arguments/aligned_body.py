@@ -35,7 +35,7 @@ class AlignedBody(NamedTuple):
 
 def aligned_body(reference: Reference, alignment: Mapping[int, Alignment], leaves: Leaves) -> AlignedBody:
     """What the numerics take of an aligned sequence."""
-    V, F, aligned, at = reference.vertices, reference.faces, list(alignment.values()), leaves.frames.index(reference.frame)
+    V, F, aligned = reference.vertices, reference.faces, list(alignment.values())
     x, trust = np.stack([a.vertices for a in aligned]), np.stack([a.confidence for a in aligned])
     confidence = limited_confidence(trust)  # residuals are not read where some are not certain
     return AlignedBody(
@@ -43,5 +43,11 @@ def aligned_body(reference: Reference, alignment: Mapping[int, Alignment], leave
         trust,
         confidence,
         confidence is None and is_given(trust, np.stack([a.residual for a in aligned])),
-        leaf_vertices(V, leaves.positions[:, at], leaves.rows[:, at], leaves.kept),
+        tips_of(reference, leaves),
     )
+
+
+def tips_of(reference: Reference, leaves: Leaves) -> Ints:
+    """(leaf,) vertices of the reference at the ends of limbs."""
+    at = leaves.frames.index(reference.frame)
+    return leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at], leaves.kept)

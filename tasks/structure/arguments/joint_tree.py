@@ -32,12 +32,13 @@ def restored(tree: JointTree) -> numerics.FirstTree:
     """What the numerics take of a tree; of the first one no joint at an end is known yet."""
     graph = {name: np.array(getattr(tree, name)) for name in numerics.PartGraph._fields if name != "dropped"}
     same = {name: np.array(getattr(tree, name)) for name in SAME}
-    ends, end_x = 0, np.zeros((len(tree.frames), 0, 3))
+    shown: tuple[int, ...] = ()
+    end_x = np.zeros((len(tree.frames), 0, 3))
     if isinstance(tree, ExtendedTree):
-        ends, end_x = tree.ends, np.array(tree.end_positions)
+        shown, end_x = tree.shown, np.array(tree.end_positions)
     return numerics.FirstTree(
         parents=np.array(tree.parents, np.int64),
-        ends=ends,
+        shown=shown,
         W=np.array(tree.skin),
         R=np.array(tree.rotation),
         t=np.array(tree.translation),

@@ -1,0 +1,132 @@
+"""Where a part of the trunk may be two: rings across it, at several distances from where it meets its neighbour (ours).
+
+Where a spine turns by 20° between pelvis and chest, aligned vertices spread the turn over both, so that a cut makes one part of
+them.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges, rings
+from kinetree.tasks.numerics.structure.end_cuts import EndCut, EndCutsSettings, is_wide, ring_at
+
+
+class TrunkCutsSettings(NamedTuple):
+    """Which rings are proposed. Chosen on the bodies that `EndJointsSettings.least_score_in_trunk` names."""
+
+    levels: tuple[float, ...] = (0.15, 0.29, 0.43, 0.57, 0.71, 0.85)
+    """Distances from the border, shares of the greatest on the part."""
+    neighbours: int = 3
+    """Parts that meet the part, at least: a part of the trunk carries limbs."""
+    apart: float = 0.6
+    """Distance of a ring's centre from the part's joints, in radii of the ring, at least. True ones lie 0.68 and more away;
+    rings beside a chest that is there already, which score as much, 0.32 and 0.52."""
+    on_one_side: float = 0.65
+    """Share of every neighbour's border that lies on one side of the ring, at least. Rings that part a border, through
+    shoulders, score up to 0.074 where nothing turns."""
+    least_piece: float = 0.03
+    """Share of the part's vertices from which on a piece of its surface counts: each side of a ring must be one."""
+
+
+class _Part(NamedTuple):
+    """A part of the trunk.
+
+    own    : (own,) its vertices
+    edge   : (edge, 2) from one of its vertices to any other
+    inside : (edge, 2) those within it
+    joints : by neighbour, (xyz,) where it meets the part, mesh unit
+    """
+
+    part: int
+    own: Ints
+    edge: Ints
+    inside: Ints
+    joints: dict[int, Floats]
+
+    def border(self, label: Ints, neighbour: int) -> Ints:
+        """Its vertices beside a neighbour's."""
+        return np.unique(self.edge[label[self.edge[:, 1]] == neighbour, 0])
+
+
+def trunk_cuts(
+    V: Floats,
+    F: Ints,
+    area: Floats,
+    label: Ints,
+    parents: Ints,
+    rest: Floats,
+    mirrored: Flags,
+    settings: TrunkCutsSettings | None = None,
+) -> Iterator[EndCut]:
+    """Rings across all parts of the trunk, from the part above, of the root from each part of the trunk that hangs on it.
+
+    V, F     : (vertex, xyz) reference, mesh unit · (face, corner)
+    area     : (vertex,) mesh unit²
+    label    : (vertex,) part
+    parents  : (part,) −1 for the root
+    rest     : (part, xyz) joints in the reference, mesh unit
+    mirrored : (part,) whether each is of a limb with a mirror image, so that it is not of the trunk
+    """
+    chosen = settings or TrunkCutsSettings()
+    start, ring = rings(F, len(V))
+    edges = ring_edges(start, ring)
+    for one in _parts(edges, label, parents, rest, chosen):
+        sides = [one.joints.keys() - {parents[one.part]}, {int(parents[one.part])}][int(parents[one.part] >= 0)]
+        for above in sorted(sides):
+            if not mirrored[one.part] and not mirrored[above]:
+                yield from _across(V, area, label, one, above, chosen)
+
+
+def _parts(edges: Ints, label: Ints, parents: Ints, rest: Floats, chosen: TrunkCutsSettings) -> Iterator[_Part]:
+    """The parts with enough neighbours."""
+    for part in range(len(parents)):
+        joints = {int(k): rest[k] for k in np.flatnonzero(parents == part)}
+        if parents[part] >= 0:
+            joints[int(parents[part])] = rest[part]
+        edge = edges[label[edges[:, 0]] == part]
+        if len(joints) >= chosen.neighbours and len(edge):
+            yield _Part(part, np.flatnonzero(label == part), edge, edge[label[edge[:, 1]] == part], joints)
+
+
+def _across(V: Floats, area: Floats, label: Ints, one: _Part, above: int, chosen: TrunkCutsSettings) -> Iterator[EndCut]:
+    """Rings between a part's border with one neighbour and its other neighbours, nearest first."""
+    border = one.border(label, above)
+    if not len(border):
+        return
+    limits = EndCutsSettings()
+    distance = dijkstra(edge_lengths(V, one.inside), directed=False, indices=border, min_only=True)
+    distance = np.where(np.isfinite(distance), distance, 0.0)
+    others = {k: one.border(label, k) for k in one.joints if k != above}
+    for level in np.array(chosen.levels) * np.quantile(distance[one.own], limits.farthest):
+        cut = ring_at(V, (one.part, above), one.own, distance, one.inside, float(level))
+        if cut is None or not is_wide(cut, area, limits) or not _is_free(cut, one, chosen):
+            continue
+        beyond = {k: float((distance[v] >= level).mean()) if len(v) else 0.0 for k, v in others.items()}
+        is_parted = any(1.0 - chosen.on_one_side < share < chosen.on_one_side for share in beyond.values())
+        hung = tuple(k for k, share in beyond.items() if share >= chosen.on_one_side)
+        if hung and not is_parted:
+            yield cut._replace(hung=hung)
+
+
+def _is_free(cut: EndCut, one: _Part, chosen: TrunkCutsSettings) -> bool:
+    """Whether the ring is not where one of the part's joints lies, and parts it in two pieces."""
+    nearest = min(float(np.linalg.norm(cut.centre - joint)) for joint in one.joints.values())
+    if nearest < chosen.apart * cut.radius:
+        return False
+    return all(_is_one(one, cut.own[side], chosen) for side in (cut.far, ~cut.far))
+
+
+def _is_one(one: _Part, side: Ints, chosen: TrunkCutsSettings) -> bool:
+    """Whether vertices of a part are one piece of its surface, but for small ones."""
+    place = np.full(int(one.own.max()) + 1, -1)
+    place[side] = np.arange(len(side))
+    edge = place[one.inside]
+    edge = edge[(edge >= 0).all(axis=1)]
+    graph = coo_array((np.ones(len(edge)), (edge[:, 0], edge[:, 1])), shape=(len(side), len(side)))
+    pieces = np.bincount(connected_components(graph, directed=False)[1])
+    return int((pieces >= chosen.least_piece * len(one.own)).sum()) == 1
