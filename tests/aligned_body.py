@@ -70,10 +70,11 @@ def judged(
     reference: Reference,
     alignment: dict[int, Alignment],
     mesh: dict[int, Mesh],
+    leaves: Leaves,
 ) -> tuple[EndRings, ...]:
-    """What the frames of every run show of rings at ends."""
+    """What the frames of every run show of rings."""
     runs = [tree.members("judged/frame", (k,)) for k in tree.members("judged", ())]
-    return tuple(end_rings(reference, tree, {f: alignment[f] for f in run}, {f: mesh[f] for f in run}) for run in runs)
+    return tuple(end_rings(reference, tree, {f: alignment[f] for f in run}, {f: mesh[f] for f in run}, leaves) for run in runs)
 
 
 def extended(
@@ -85,7 +86,7 @@ def extended(
     surface_joints: bool = True,
 ) -> ExtendedTree:
     """The tree with joints at ends."""
-    rings, params = judged(tree, reference, alignment, mesh), ExtendedTreeParams(surface_joints=surface_joints)
+    rings, params = judged(tree, reference, alignment, mesh, leaves), ExtendedTreeParams(surface_joints=surface_joints)
     return extended_tree(reference, tree, rings, alignment, mesh, leaves, params)
 
 

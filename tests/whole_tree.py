@@ -54,7 +54,7 @@ def joints_at_ends(
     """The joints at ends, judged in runs of frames as tasks judge them."""
     count = len(body.x)
     frames = EndFrames.of(tree, body.area, np.arange(count), confidence, cache(surface))
-    rings, runs = end_rings(body.V, body.F, body.area, tree), []
+    rings, runs = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(len(tree.parents)), mirrored)), []
     for run in judged_runs(count, body.takes, settings):
         fits: list[Fits] = [{} for _ in rings]
         lay_rings(frames, run, rings, fits)

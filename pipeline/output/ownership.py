@@ -58,7 +58,6 @@ class Owned:
             self.names.update(new)
             _place(self.folder).put(MARKER, json.dumps({"files": sorted(self.names)}, indent=1).encode())
 
-
     def _inside(self, paths: Iterable[str]) -> Iterator[str]:
         for path in paths:
             _place(self.folder).refuse_outside(path)

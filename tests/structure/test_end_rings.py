@@ -11,7 +11,7 @@ from kinetree.tasks.structure.first_tree import first_tree
 def runs() -> tuple[EndRings, ...]:
     reference, parts, alignment, mesh, leaves = tube(0.99)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    return judged(agreed(first, reference, alignment, mesh, leaves), reference, alignment, mesh)
+    return judged(agreed(first, reference, alignment, mesh, leaves), reference, alignment, mesh, leaves)
 
 
 def test_runs_of_frames_together_are_all_frames_and_have_the_same_rings() -> None:

@@ -22,7 +22,7 @@ def tree_of_tube(trust: float, surface_joints: bool = True, end_joints: bool = T
 
 def test_a_joint_that_the_frames_alone_show_comes_last() -> None:
     tree = tree_of_tube(0.99)
-    assert (tree.ends, tree.parents) == (1, (-1, 0, 1))
+    assert (tree.shown, tree.parents) == ((2,), (-1, 0, 1))
     assert tree.end_positions.shape == (24, int(restored(tree).at_ends.sum()), 3)
 
 
@@ -45,7 +45,7 @@ def test_parts_that_end_limbs_with_a_mirror_image_are_told(
 def test_where_all_is_given_or_it_is_not_asked_the_tree_is_the_first(trust: float, end_joints: bool) -> None:
     tree, (reference, parts, alignment, mesh, leaves) = tree_of_tube(trust, end_joints=end_joints), tube(trust)
     first = first_tree(reference, parts, alignment, mesh, leaves, FirstTreeParams())
-    assert tree.ends == 0
+    assert tree.shown == ()
     for name in first.array_fields():
         np.testing.assert_array_equal(getattr(tree, name), getattr(first, name), err_msg=name)
 

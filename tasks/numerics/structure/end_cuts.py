@@ -38,6 +38,7 @@ class EndCut(NamedTuple):
     own    : (own,) vertices of the part
     beyond : (own,) how far each lies beyond the ring along the surface, negative before it, mesh unit
     hung   : parts that hang on the piece beyond the ring; none at the end of a limb
+    apart  : distance of the ring from the nearest of the part's joints, in radii of the ring; of rings across the trunk alone
     """
 
     part: int
@@ -47,6 +48,7 @@ class EndCut(NamedTuple):
     own: Ints
     beyond: Floats
     hung: tuple[int, ...] = ()
+    apart: float = np.inf
 
     @property
     def far(self) -> Flags:

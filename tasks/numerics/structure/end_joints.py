@@ -48,6 +48,9 @@ class EndJointsSettings(NamedTuple):
     least_score_in_trunk: float = 0.06
     """The same across the trunk. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans, four-legged and
     random trees 60 to 64."""
+    least_apart: float = 0.6
+    """Distance of a ring across the trunk from the nearest of the part's joints, in radii of the ring, at least: the likeliest
+    ring of a part that lies nearer says that the joint that is there is a little off."""
     goes_on: float = 0.5
     """How much of the turn of the body's joints goes on from frame to frame (`going_on`), below which the frames are too far
     apart for that to be asked of a ring. All frames of recorded bodies and of people 0 to 7 have 0.73 to 0.97, every fourth
@@ -161,16 +164,20 @@ def _evident(
 
 def _least(ring: EndRing, chosen: EndJointsSettings) -> float:
     """The score that a ring needs."""
-    return chosen.least_score_in_trunk if ring.cut.hung else chosen.least_score
+    if ring.cut.hung:
+        return chosen.least_score_in_trunk
+    return chosen.least_score_if_short if _is_short(ring, chosen) else chosen.least_score
+
+
+def _is_short(ring: EndRing, chosen: EndJointsSettings) -> bool:
+    """Whether the piece before the ring is short."""
+    return bool(np.linalg.norm(ring.cut.centre - ring.piece.joint) < chosen.slice_length * ring.cut.radius)
 
 
 def _is_joint(ring: EndRing, shown: RingEvidence, is_mirrored: bool, chosen: EndJointsSettings) -> bool:
     """Whether both pieces turn enough, and the nearer one is no slice of a joint that is there already."""
-    if ring.cut.hung:
-        return shown.far >= chosen.degrees and shown.near >= chosen.nearer
-    length = float(np.linalg.norm(ring.cut.centre - ring.piece.joint))
-    is_doubtful = is_mirrored or shown.near < shown.far or shown.score < chosen.least_score_if_short
-    is_slice = length < chosen.slice_length * ring.cut.radius and is_doubtful
+    is_clear = ring.cut.apart >= chosen.least_apart if ring.cut.hung else not _is_short(ring, chosen)
+    is_slice = not is_clear and (bool(ring.cut.hung) or is_mirrored or shown.near < shown.far)
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice
 
 

@@ -23,9 +23,6 @@ class TrunkCutsSettings(NamedTuple):
     """Distances from the border, shares of the greatest on the part."""
     neighbours: int = 3
     """Parts that meet the part, at least: a part of the trunk carries limbs."""
-    apart: float = 0.6
-    """Distance of a ring's centre from the part's joints, in radii of the ring, at least. True ones lie 0.68 and more away;
-    rings beside a chest that is there already, which score as much, 0.32 and 0.52."""
     on_one_side: float = 0.65
     """Share of every neighbour's border that lies on one side of the ring, at least. Rings that part a border, through
     shoulders, score up to 0.074 where nothing turns."""
@@ -104,20 +101,18 @@ def _across(V: Floats, area: Floats, label: Ints, one: _Part, above: int, chosen
     others = {k: one.border(label, k) for k in one.joints if k != above}
     for level in np.array(chosen.levels) * np.quantile(distance[one.own], limits.farthest):
         cut = ring_at(V, (one.part, above), one.own, distance, one.inside, float(level))
-        if cut is None or not is_wide(cut, area, limits) or not _is_free(cut, one, chosen):
+        if cut is None or not is_wide(cut, area, limits) or not _is_in_two(cut, one, chosen):
             continue
         beyond = {k: float((distance[v] >= level).mean()) if len(v) else 0.0 for k, v in others.items()}
         is_parted = any(1.0 - chosen.on_one_side < share < chosen.on_one_side for share in beyond.values())
         hung = tuple(k for k, share in beyond.items() if share >= chosen.on_one_side)
         if hung and not is_parted:
-            yield cut._replace(hung=hung)
+            nearest = min(float(np.linalg.norm(cut.centre - joint)) for joint in one.joints.values())
+            yield cut._replace(hung=hung, apart=nearest / max(cut.radius, np.finfo(float).tiny))
 
 
-def _is_free(cut: EndCut, one: _Part, chosen: TrunkCutsSettings) -> bool:
-    """Whether the ring is not where one of the part's joints lies, and parts it in two pieces."""
-    nearest = min(float(np.linalg.norm(cut.centre - joint)) for joint in one.joints.values())
-    if nearest < chosen.apart * cut.radius:
-        return False
+def _is_in_two(cut: EndCut, one: _Part, chosen: TrunkCutsSettings) -> bool:
+    """Whether the ring parts the part in two pieces."""
     return all(_is_one(one, cut.own[side], chosen) for side in (cut.far, ~cut.far))
 
 

@@ -6,6 +6,7 @@ from articulated import Known
 from scipy.spatial.transform import Rotation
 from shipped import TREE
 from smeared import END, Frames, aligned, found_in, moving, turning
+from trunk import MIRRORED, trunk
 from whole_tree import joints_at_ends, whole_tree
 
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
@@ -38,7 +39,7 @@ def whole(is_asked: bool, degrees: float = 25.0) -> tuple[KinematicTree, Derivat
 def test_the_new_part_hangs_on_the_one_that_it_was_cut_from() -> None:
     _, before, _, after = with_ends()
     assert after.parents.tolist() == [*before.parents.tolist(), 1]
-    assert (after.ends, before.ends) == (1, 0)
+    assert (after.shown, before.shown) == ((2,), ())
     assert not after.has_bones
     np.testing.assert_allclose(after.rest[2], [0.0, 0.0, END], atol=0.4)
     assert after.drift[2] < 0.01 * np.sqrt(aligned(turning()).area.sum())
@@ -123,3 +124,35 @@ def test_where_it_is_not_asked_or_nothing_turns_the_body_stays_as_aligned() -> N
     assert sum(kind == "joint" for kind in tree.kinds) == 1
     assert derivation.end_joints == ()
     assert sum(kind == "joint" for kind in whole(True, 0.0)[0].kinds) == 1
+
+
+@pytest.mark.parametrize("root", [0, 1])
+def test_a_part_of_the_trunk_is_two_and_its_limbs_hang_on_the_one_beyond(root: int) -> None:
+    turn = turning()
+    body, tree = trunk(turn, root)
+    ones, surface = np.ones(body.x.shape[:2]), Frames(turn, 0.02).prepared(body.size)
+    (found,) = joints_at_ends(body, tree, ones, surface, mirrored=MIRRORED)
+    np.testing.assert_allclose(found.cut.centre, 0.0, atol=0.7)
+    after = extended_tree(body, tree, [found], ones, 0.002)
+    new = 2
+    assert after.shown == (new,)
+    assert after.parents.tolist() == [-1, 0, root, new, new]
+    assert not after.has_bones
+    z, label = body.V[:, 2], after.label
+    assert z[label == new].max() < z[label == root].max()
+    np.testing.assert_array_equal(after.at_ends, np.isin(tree.label, [root]))
+    limbs = [after.place[2], after.place[3]]
+    np.testing.assert_array_equal(after.rest[limbs], tree.rest[[2, 3]])
+    np.testing.assert_array_equal(after.R[:, limbs], tree.R[:, [2, 3]])
+    true = turn[:, 1]
+    between = np.einsum("tyx,tyz->txz", after.R[:, new], after.R[:, after.parents[new]])
+    angles = [np.degrees(np.arccos(np.clip((np.trace(Q, axis1=1, axis2=2) - 1) / 2, -1, 1))) for Q in (between, true)]
+    assert np.abs(angles[0] - angles[1]).mean() < 3.0
+
+
+def test_a_trunk_that_does_not_bend_stays_one() -> None:
+    turn = turning()
+    turn[:, 1] = np.eye(3)
+    body, tree = trunk(turn)
+    shown = Frames(turn, 0.02).prepared(body.size)
+    assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, mirrored=MIRRORED) == []

@@ -25,7 +25,7 @@ def star(joints: Floats, off: Floats, noise: float = 0.02, axes: int = 2, scale:
     none = np.zeros(0)
     graph = PartGraph(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ())
     tree = FirstTree(
-        parents=np.array([-1, *[0] * len(joints)]), place=np.arange(count), ends=0, label=np.zeros(1, np.int64),
+        parents=np.array([-1, *[0] * len(joints)]), place=np.arange(count), shown=(), label=np.zeros(1, np.int64),
         W=np.zeros((1, count)), R=R, t=t, certain_share=None, rest=rest, drift=np.zeros(count),
         unexplained=np.zeros((FRAMES, count)), radius=scale * np.array([0.0, *[RADIUS] * len(joints)]),
         end_x=np.zeros((FRAMES, 0, 3)), graph=graph,

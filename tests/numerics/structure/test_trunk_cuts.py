@@ -1,0 +1,72 @@
+"""Rings across the trunk: between the part above and the limbs that hang on it, where they part no border."""
+
+import numpy as np
+import pytest
+from smeared import END, turning
+from trunk import LIMBS, MIRRORED, trunk
+
+from kinetree.tasks.numerics.arrays import Ints
+from kinetree.tasks.numerics.structure.end_cuts import EndCut
+from kinetree.tasks.numerics.structure.trunk_cuts import trunk_cuts
+
+BODY, TREE = trunk(turning(0.0))
+
+
+def cuts(
+    label: Ints = TREE.label,
+    parents: Ints = TREE.parents,
+    mirrored: tuple[int, ...] = MIRRORED,
+) -> list[EndCut]:
+    of_limbs = np.isin(np.arange(len(parents)), mirrored)
+    rest = np.concatenate([TREE.rest, np.full((1, 3), 9.0)])[: len(parents)]
+    return list(trunk_cuts(BODY.V, BODY.F, BODY.area, label, parents, rest, of_limbs))
+
+
+def test_rings_lie_between_the_part_above_and_the_limbs() -> None:
+    found = cuts()
+    assert len(found) >= 3
+    assert {(cut.part, cut.above, cut.hung) for cut in found} == {(0, 1, (2, 3))}
+    heights = [cut.centre[2] for cut in found]
+    assert heights == sorted(heights, reverse=True)
+    assert heights[-1] > LIMBS
+    assert heights[0] < END
+    for cut in found:
+        np.testing.assert_allclose(cut.centre[:2], 0.0, atol=0.05)
+        assert (BODY.V[cut.own[cut.far], 2] < BODY.V[cut.own[~cut.far], 2].max()).all()
+
+
+def test_seen_from_the_part_above_they_are_the_same() -> None:
+    body, tree = trunk(turning(0.0), root=1)
+    of_limbs = np.isin(np.arange(4), MIRRORED)
+    found = list(trunk_cuts(body.V, body.F, body.area, tree.label, tree.parents, tree.rest, of_limbs))
+    assert {(cut.part, cut.above, cut.hung) for cut in found} == {(1, 0, (2, 3))}
+    assert [cut.centre[2] for cut in found] == pytest.approx([cut.centre[2] for cut in cuts()])
+
+
+def test_a_part_with_two_neighbours_and_limbs_have_none() -> None:
+    merged = np.where(TREE.label == 3, 2, TREE.label)
+    assert cuts(merged, TREE.parents[:3]) == []
+    assert cuts(mirrored=(0, 1, 2, 3)) == []
+    assert cuts(mirrored=(1, 2, 3)) == []
+
+
+def test_no_ring_parts_the_border_of_a_limb() -> None:
+    V = BODY.V
+    side = (V[:, 0] > 0.8) & (np.abs(V[:, 2]) < 2.0)
+    beside = np.where(side & (TREE.label == 0), 4, TREE.label)
+    heights = [cut.centre[2] for cut in cuts(beside, np.append(TREE.parents, 0), (2, 3, 4))]
+    assert all(abs(z) > 0.5 for z in heights)
+    assert any(abs(cut.centre[2]) < 0.5 for cut in cuts())
+
+
+def test_how_far_rings_lie_from_joints_is_told() -> None:
+    for cut in cuts():
+        nearest = np.linalg.norm(TREE.rest[1:] - cut.centre, axis=1).min()
+        assert cut.apart == pytest.approx(nearest / cut.radius)
+
+
+def test_each_side_of_a_ring_is_one_piece() -> None:
+    """From the middle of a tube rings go to both ends at once."""
+    V = BODY.V
+    label = np.where(np.abs(V[:, 2]) < 0.3, 1, np.where(V[:, 2] > END, 2, np.where(V[:, 2] < LIMBS, 3, 0)))
+    assert cuts(label, np.array([-1, 0, 0, 0])) == []
