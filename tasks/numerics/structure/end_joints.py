@@ -41,10 +41,10 @@ class EndJointsSettings(NamedTuple):
     least_score: float = 0.005
     """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans,
     four-legged and random trees 60 to 63: of 26 true joints the least has 0.0061, rings where nothing turns 0.0032 at most."""
-    least_score_if_short: float = 0.012
-    """The same where the nearer piece is shorter than `slice_length`, as a neck is. On the same bodies five true heads have
-    0.0164 to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads 0.0046 and 0.0070, of which one took
-    the place of its head."""
+    least_score_if_short: float = 0.0145
+    """The same where the nearer piece is shorter than `slice_length`, as a neck is. On these bodies five true heads have 0.0164
+    to 0.0263, two that shape gives as well 0.0117 and 0.0127; on these, humans and four-legged 0 to 9 and people 86 to 99 rings
+    within heads and beside a foot have 0.0130 at most."""
     least_score_in_trunk: float = 0.06
     """The same across the trunk. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans, four-legged and
     random trees 60 to 64."""
@@ -147,7 +147,7 @@ def _evident(
     mirrored: Collection[int],
     chosen: EndJointsSettings,
 ) -> list[tuple[_RingFits, float]]:
-    """Of each part's rings with enough score the one that leaves least, if it turns enough, and its score.
+    """Of each part's rings with enough score the likeliest one, if it turns enough, and its score.
 
     A part's rings are judged over all frames, or over those of the take in which one of them shows most.
     """
@@ -155,11 +155,19 @@ def _evident(
     for part in sorted({one.ring.cut.part for one in laid}):
         own = [k for k, one in enumerate(laid) if one.ring.cut.part == part]
         best = table[int(np.argmax([max(row[k].score for k in own) for row in table]))]
-        enough = [(best[k].gain, k) for k in own if best[k].score >= _least(laid[k].ring, chosen)]
+        enough = [(_rank(laid[k].ring, best[k]), k) for k in own if best[k].score >= _least(laid[k].ring, chosen)]
         k = max(enough)[1] if enough else own[0]
         if enough and _is_joint(laid[k].ring, best[k], part in mirrored, chosen):
             evident.append((laid[k], best[k].score))
     return evident
+
+
+def _rank(ring: EndRing, shown: RingEvidence) -> float:
+    """How likely a ring is among those of its part: the less it leaves, since scores stay alike along a limb.
+
+    Across the trunk, where rings come from several sides, by the score.
+    """
+    return shown.score if ring.cut.hung else shown.gain
 
 
 def _least(ring: EndRing, chosen: EndJointsSettings) -> float:
