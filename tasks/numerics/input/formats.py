@@ -75,7 +75,7 @@ def mesh_of(raw: bytes, name: str, suffix: str) -> tuple[Floats, Faces]:
     except (MeshError, SourceError) as error:
         raise MeshError(f"{name}: {error}") from None
     except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
+        reason = f"{type(error).__name__}: {error}".replace(": b'", ": '")  # a word of the file, read as bytes
         raise MeshError(
             f"{name}: cannot be read as {suffix[1:].upper()} ({reason}); the file is damaged or cut short"
         ) from error
