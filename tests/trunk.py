@@ -14,11 +14,12 @@ LIMBS = -3.2
 MIRRORED = (2, 3)
 
 
-def trunk(turn: Floats, root: int = 0) -> tuple[MovingSurface, FirstTree]:
+def trunk(turn: Floats, root: int = 0, place: float = 1.5) -> tuple[MovingSurface, FirstTree]:
     """The tube aligned as it is, and its tree: the trunk is part 0, the one above 1, limbs are 2 and 3.
 
     turn : (frame, part, 3, 3) of the three true parts
     root : 0; with 1 the part above is part 0 and the root, the trunk part 1
+    place : height of the trunk's joint where it is the root
     """
     body = chain((0.0, END), turn, along=60)
     z, right = body.V[:, 2], body.V[:, 0] > 0.0
@@ -27,7 +28,7 @@ def trunk(turn: Floats, root: int = 0) -> tuple[MovingSurface, FirstTree]:
     moved = [[rigid_motion(body.V[label == p], x[label == p], np.ones((label == p).sum())) for p in range(4)] for x in body.x]
     R, t = (np.array([[one[k] for one in frame] for frame in moved]) for k in (0, 1))
     aside = [[0.5, 0.0, LIMBS], [-0.5, 0.0, LIMBS]]
-    rest = np.array([[0.0, 0.0, -LIMBS if root else 0.0], [0.0, 0.0, END], *aside])
+    rest = np.array([[0.0, 0.0, place if root == 0 else 4.0], [0.0, 0.0, END], *aside])
     none = np.zeros(0)
     graph = PartGraph(label, np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ())
     frames = len(turn)

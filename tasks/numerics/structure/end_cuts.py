@@ -101,7 +101,7 @@ def ring_at(V: Floats, parts: tuple[int, int], own: Ints, distance: Floats, insi
         return None
     middle = (V[a] + V[b]) / 2
     centre = middle.mean(axis=0)
-    radius = float(np.sqrt(((middle - centre) ** 2).sum(axis=1).mean()))
+    radius = max(float(np.sqrt(((middle - centre) ** 2).sum(axis=1).mean())), float(np.finfo(float).tiny))
     return EndCut(*parts, centre, radius, own, distance[own] - level)
 
 

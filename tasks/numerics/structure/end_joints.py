@@ -85,7 +85,7 @@ class EndJoint(NamedTuple):
                where it is not seen
     residual : (frame,) root mean square distance from the surface, mesh unit
     visible  : (frame,) whether the frame's surface shows the part
-    score    : see `ring_evidence`; by halves, times `least_score` / `least_in_halves`
+    score    : see `ring_evidence`; by halves, times what the ring needs / `least_in_halves`
     """
 
     cut: EndCut
@@ -154,7 +154,7 @@ def _evident(
     table, evident = [_judged(frames, laid, pairs, span, chosen) for span in spans], []
     for part in sorted({one.ring.cut.part for one in laid}):
         own = [k for k, one in enumerate(laid) if one.ring.cut.part == part]
-        best = table[int(np.argmax([max(row[k].score for k in own) for row in table]))]
+        best = table[int(np.argmax([max(row[k].score / _least(laid[k].ring, chosen) for k in own) for row in table]))]
         enough = [(_rank(laid[k].ring, best[k]), k) for k in own if best[k].score >= _least(laid[k].ring, chosen)]
         k = max(enough)[1] if enough else own[0]
         if enough and _is_joint(laid[k].ring, best[k], part in mirrored, chosen):
@@ -216,8 +216,9 @@ def _judged(
     turns = _turns_of_halves(frames, [within[k] for k in by_halves], [mean[k] for k in by_halves])
     for k, of_halves in zip(by_halves, turns, strict=True):
         shown = evidence_of_halves(evidence[k], above[k], within[k].fits, steady[k], of_halves)
+        scaled = shown.score * _least(laid[k].ring, chosen) / chosen.least_in_halves
         if shown.score >= chosen.least_in_halves:
-            evidence[k] = shown._replace(score=shown.score * chosen.least_score / chosen.least_in_halves)
+            evidence[k] = shown._replace(score=max(scaled, evidence[k].score))
     return evidence
 
 

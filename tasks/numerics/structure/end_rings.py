@@ -108,7 +108,7 @@ class EndFrames(NamedTuple):
     def showing(self, which: Iterable[int], rings: Sequence[EndRing]) -> Iterator[tuple[int, Target, list[int]]]:
         """Frames that show some of the rings' parts, their surfaces, and which rings these are."""
         for f in map(int, which):
-            there = [k for k, ring in enumerate(rings) if self.visible[f][ring.cut.part]]
+            there = [k for k, ring in enumerate(rings) if self.visible[f][_lower(self.tree, ring.cut)]]
             if there:
                 yield f, self.surface(f), there
 
@@ -126,8 +126,13 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
 
 def _ring(V: Floats, N: Floats, tree: FirstTree, cut: EndCut) -> EndRing:
     """A ring with points of its part, which hangs on the piece before it."""
-    v, lower = cut.own, cut.part if tree.parents[cut.part] == cut.above else cut.above
-    return EndRing(cut, sampled_piece(V[v], N[v], tree.W[v, cut.part], cut.far, cut.centre, tree.rest[lower]))
+    v, joint = cut.own, tree.rest[_lower(tree, cut)]
+    return EndRing(cut, sampled_piece(V[v], N[v], tree.W[v, cut.part], cut.far, cut.centre, joint))
+
+
+def _lower(tree: FirstTree, cut: EndCut) -> int:
+    """Of a ring's part and the one above the ring that which hangs on the other."""
+    return cut.part if tree.parents[cut.part] == cut.above else cut.above
 
 
 def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Sequence[Fits]) -> None:
@@ -138,13 +143,14 @@ def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Se
     """
     R, t = frames.tree.R, frames.tree.t
     for f, target, there in frames.showing(which, rings):
-        whole: dict[int, PieceFit] = {}
+        whole: dict[tuple[int, int], PieceFit] = {}
         for k in there:
             (cut, piece), goal = rings[k], frames.goal(f, rings[k])
-            if cut.part not in whole:
+            of = (cut.part, cut.above)
+            if of not in whole:
                 start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
-                whole[cut.part] = laid_as_one(piece, start, goal, target)
-            fits[k][f] = laid_hinged(piece, whole[cut.part], goal, target, _nearest(fits[k], f))
+                whole[of] = laid_as_one(piece, start, goal, target)
+            fits[k][f] = laid_hinged(piece, whole[of], goal, target, _nearest(fits[k], f))
 
 
 def _nearest(known: Fits, f: int) -> Floats | None:

@@ -12,6 +12,9 @@ from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.skinning import skinning
 
+NEAREST = 20
+"""One in so many of the root's vertices, those nearest to its place, says on which side of a ring it lies."""
+
 
 def extended_tree(
     body: MovingSurface, tree: FirstTree, found: Sequence[EndJoint], confidence: Floats, noise: float
@@ -26,13 +29,18 @@ def extended_tree(
     """
     x = moved_ends(body, tree, found)
     count, label, parents = len(tree.parents), tree.label.copy(), np.append(tree.parents, [one.cut.part for one in found])
-    for k, one in enumerate(found, start=count):
-        label[one.cut.own[one.cut.far]] = k
-        parents[list(one.cut.hung)] = k
+    stays = [_keeps_root(body.V, tree, one) for one in found]
+    for k, (one, is_beyond) in enumerate(zip(found, stays, strict=True), start=count):
+        label[one.cut.own[one.cut.far ^ is_beyond]] = k
+        hung = np.isin(np.arange(len(parents)), one.cut.hung)
+        parents[(hung ^ is_beyond) & (parents == one.cut.part) & (np.arange(len(parents)) != k)] = k
     order = _parts_after_parents(parents, [k for k, one in enumerate(found, start=count) if not one.cut.hung])
     place = np.argsort(order)
     nearer = [one.cut.part for one in found]
-    pieces = ((tree.R, [one.R for one in found]), (tree.t, [one.t for one in found]))
+    pieces = [
+        (mine, [a[:, ::-1] if is_beyond else a for a, is_beyond in zip(theirs, stays, strict=True)])
+        for mine, theirs in ((tree.R, [one.R for one in found]), (tree.t, [one.t for one in found]))
+    ]
     R, t = (np.ascontiguousarray(_with_pieces(mine, theirs, nearer)[:, order]) for mine, theirs in pieces)
     beyond = np.stack([one.residual for one in found], axis=1)
     unexplained = np.concatenate([tree.unexplained, beyond], axis=1)
@@ -54,10 +62,21 @@ def extended_tree(
         unexplained=unexplained[:, order],
         radius=np.append(tree.radius, [one.cut.radius for one in found])[order],
     )
-    changed = np.array([k for k in range(1, len(parents)) if k in new.shown or parents[k] in new.shown])
+    moved = {*new.shown, *parents[list(new.shown)].tolist()}
+    changed = np.array([k for k in range(1, len(parents)) if k in moved or parents[k] in moved])
     drifts = new.drift.copy()
     drifts[changed] = new.drift_at(new.rest)[changed]
     return new._replace(drift=drifts, end_x=x[:, new.at_ends])
+
+
+def _keeps_root(V: Floats, tree: FirstTree, one: EndJoint) -> bool:
+    """Whether the root's place lies beyond a ring, so that the piece beyond it is the root and the other one hangs on it."""
+    cut = one.cut
+    if tree.parents[cut.part] >= 0:
+        return False
+    away = np.linalg.norm(V[cut.own] - tree.rest[cut.part], axis=1)
+    nearest = np.argsort(away, kind="stable")[: max(len(away) // NEAREST, 1)]
+    return bool(cut.far[nearest].mean() > 0.5)
 
 
 def _parts_after_parents(parents: Ints, last: Sequence[int]) -> Ints:

@@ -79,6 +79,12 @@ class FirstTree(NamedTuple):
         return np.isin(self.label, np.append(beyond, self.parents[beyond]))
 
     @property
+    def in_divided_trunk(self) -> Flags:
+        """(part,) whether a part's joint is at a piece of the trunk that the frames' surfaces alone show."""
+        carrying = np.intersect1d(np.array(self.shown, np.int64), self.parents)
+        return np.isin(np.arange(len(self.parents)), carrying) | np.isin(self.parents, carrying)
+
+    @property
     def residual(self) -> Floats:
         """(part,) root mean square of what the motions of its two parts leave unexplained, mesh unit; 0 for the root."""
         return both_residuals(self.unexplained, self.parents)

@@ -76,6 +76,11 @@ def _on_surface(
         above, own = _part_above(body, near), np.flatnonzero(np.isin(body.label, [near, far]))
         weight = W[own, near] + W[own, far]
         hinge, joint = body.rest[far], body.rest[near]
+        if near == 0 and (
+            beside := [k for k in np.flatnonzero(body.parents == 0).tolist() if k != far and (body.label == k).any()]
+        ):
+            above = max(beside, key=lambda k: int((body.label == k).sum()))
+            joint = body.rest[above]
         piece = sampled_piece(body.V[own], body.N[own], weight, body.label[own] == far, hinge, joint)
         (R, t), (Q, u) = (_rigid_part(body, x, mass, parts) for parts in ([near, far], [above]))
         goal = Q @ joint + u

@@ -153,7 +153,8 @@ def _posed(
     on_surface = SurfaceJoints(shared.rest, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        on_surface = surface_joints(first, laid, shared.rest, share, held=shared.is_shared, takes=body.takes)
+        held = shared.is_shared | first.in_divided_trunk
+        on_surface = surface_joints(first, laid, shared.rest, share, held=held, takes=body.takes)
     rest = on_surface.rest
     start = Motion(rest, first.R, first.t[:, 0].copy())
     poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)
@@ -241,6 +242,6 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
         hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
-        end_joints=tuple(sorted(joint[list(first.shown)].tolist())),
+        end_joints=tuple(sorted(joint[np.flatnonzero(np.isin(tree.carrier, first.shown) & ~tree.is_neck)].tolist())),
         neck_joints=tuple(sorted(joint[np.flatnonzero(tree.is_neck)].tolist())),
     )

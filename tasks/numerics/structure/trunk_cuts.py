@@ -98,17 +98,25 @@ def _across(V: Floats, area: Floats, label: Ints, one: _Part, above: int, chosen
     limits = EndCutsSettings()
     distance = dijkstra(edge_lengths(V, one.inside), directed=False, indices=border, min_only=True)
     distance = np.where(np.isfinite(distance), distance, 0.0)
-    others = {k: one.border(label, k) for k in one.joints if k != above}
+    others = {k: _border_or_nearest(V, label, one, k) for k in one.joints if k != above}
     for level in np.array(chosen.levels) * np.quantile(distance[one.own], limits.farthest):
         cut = ring_at(V, (one.part, above), one.own, distance, one.inside, float(level))
         if cut is None or not is_wide(cut, area, limits) or not _is_in_two(cut, one, chosen):
             continue
-        beyond = {k: float((distance[v] >= level).mean()) if len(v) else 0.0 for k, v in others.items()}
+        beyond = {k: float((distance[v] >= level).mean()) for k, v in others.items()}
         is_parted = any(1.0 - chosen.on_one_side < share < chosen.on_one_side for share in beyond.values())
         hung = tuple(k for k, share in beyond.items() if share >= chosen.on_one_side)
         if hung and not is_parted:
             nearest = min(float(np.linalg.norm(cut.centre - joint)) for joint in one.joints.values())
             yield cut._replace(hung=hung, apart=nearest / max(cut.radius, np.finfo(float).tiny))
+
+
+def _border_or_nearest(V: Floats, label: Ints, one: _Part, neighbour: int) -> Ints:
+    """The part's vertices beside a neighbour's; where they do not meet, the one nearest to their joint."""
+    border = one.border(label, neighbour)
+    if len(border):
+        return border
+    return one.own[[int(np.argmin(np.linalg.norm(V[one.own] - one.joints[neighbour], axis=1)))]]
 
 
 def _is_in_two(cut: EndCut, one: _Part, chosen: TrunkCutsSettings) -> bool:

@@ -95,6 +95,14 @@ def test_scores_by_halves_count_by_their_own_limit(below: float, joints: int) ->
     assert len(joints_at(to_and_fro(15.0), settings=EndJointsSettings(least_in_halves=below * limit))) == joints
 
 
+def test_halves_that_agree_more_never_lose_a_joint() -> None:
+    turn = to_and_fro(0.0)
+    turn[:, 2] = turning(25.0)[:, 2]
+    strict = {"slice_length": 10.0, "least_score_if_short": 0.02}
+    found = [joints_at(turn, settings=EndJointsSettings(least_in_halves=limit, **strict)) for limit in (0.01, 0.04)]
+    assert [len(joints) for joints in found] == [1, 1]
+
+
 @pytest.mark.parametrize("noise", [0.0, 0.02, 0.05])
 def test_no_joint_is_found_where_nothing_turns(noise: float) -> None:
     assert joints_at(0.0, noise) == []

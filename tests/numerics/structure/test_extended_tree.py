@@ -6,7 +6,7 @@ from articulated import Known
 from scipy.spatial.transform import Rotation
 from shipped import TREE
 from smeared import END, Frames, aligned, found_in, moving, turning
-from trunk import MIRRORED, trunk
+from trunk import LIMBS, MIRRORED, trunk
 from whole_tree import joints_at_ends, whole_tree
 
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
@@ -148,6 +148,22 @@ def test_a_part_of_the_trunk_is_two_and_its_limbs_hang_on_the_one_beyond(root: i
     between = np.einsum("tyx,tyz->txz", after.R[:, new], after.R[:, after.parents[new]])
     angles = [np.degrees(np.arccos(np.clip((np.trace(Q, axis1=1, axis2=2) - 1) / 2, -1, 1))) for Q in (between, true)]
     assert np.abs(angles[0] - angles[1]).mean() < 3.0
+
+
+def test_the_piece_where_the_root_lies_stays_the_root() -> None:
+    """Beyond the ring, amid the limbs: the other piece and the part above hang on it."""
+    turn = turning()
+    body, tree = trunk(turn, place=LIMBS + 0.5)
+    ones, surface = np.ones(body.x.shape[:2]), Frames(turn, 0.02).prepared(body.size)
+    (found,) = joints_at_ends(body, tree, ones, surface, mirrored=MIRRORED)
+    after = extended_tree(body, tree, [found], ones, 0.002)
+    assert (after.parents.tolist(), after.shown) == ([-1, 0, 0, 0, 3], (3,))
+    assert after.place.tolist() == [0, 4, 1, 2]
+    z, label = body.V[:, 2], after.label
+    assert z[label == 3].min() > z[label == 0].min()
+    assert after.in_divided_trunk.tolist() == [False, False, False, True, True]
+    root = np.einsum("txy,y->tx", after.R[:, 0], after.rest[0]) + after.t[:, 0]
+    assert np.linalg.norm(root - after.rest[0], axis=1).max() < 0.1  # the lowest piece of the tube stays
 
 
 def test_a_trunk_that_does_not_bend_stays_one() -> None:
