@@ -12,8 +12,8 @@ class AgreedTree(JointTree):
 
     opens: ClassVar[tuple[str, ...]] = ("judged", "judged/frame")
     judged: tuple[tuple[int, ...], ...] = ()
-    """Source frames in which rings at ends of limbs are judged, in runs of a few that follow each other: each is a member of
-    "judged". Empty where joints at ends are not looked for."""
+    """Source frames in which rings at ends of limbs and across the trunk are judged, in runs of a few that follow each other:
+    each is a member of "judged". Empty where such joints are not looked for."""
     cut_frame: int | None = None
     """Source frame of the cut whose tree this is, if another than that in the reference."""
     is_given: bool = False

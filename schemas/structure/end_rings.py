@@ -1,4 +1,4 @@
-"""The last parts of limbs on a few frames' surfaces, with a hinge at rings across them (ours)."""
+"""Last parts of limbs, and the trunk, on a few frames' surfaces, with a hinge at rings across them (ours)."""
 
 from typing import Annotated
 
@@ -9,7 +9,8 @@ from kinetree.schemas.dims import FRAME, RING, ROW, XYZ
 class EndRings(Artifact):
     """How the part of every ring lies in a few frames, as one piece and with a hinge at the ring.
 
-    Rings are those across the last parts of limbs of the first tree, part by part, nearest to the part's border first.
+    Rings are those across the last parts of limbs of the agreed tree, then those across the trunk, part by part, nearest to the
+    border first.
     """
 
     frame: Annotated[Ints, Array("int32", FRAME)]

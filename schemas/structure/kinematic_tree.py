@@ -50,10 +50,10 @@ class FirstTreeParams(JointParams, CutJointsParams):
 
 
 class AgreedTreeParams(JointParams):
-    """What counts as a joint, and whether joints at ends of limbs are looked for."""
+    """What counts as a joint, and whether joints that an alignment smears are looked for."""
 
     end_joints: bool = True
-    """Whether joints at ends of limbs that an alignment smears, as balls of feet, are looked for on the frames' surfaces."""
+    """Whether joints that an alignment smears, as balls of feet and spines, are looked for on the frames' surfaces."""
 
 
 class NeckParams(Params):

@@ -1,4 +1,4 @@
-"""The agreed tree with the joints at ends of limbs that the frames' surfaces alone show."""
+"""The agreed tree with the joints at ends of limbs and within the trunk that the frames' surfaces alone show."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -40,7 +40,7 @@ def extended_tree(
     leaves: Leaves,
     params: ExtendedTreeParams,
 ) -> ExtendedTree:
-    """Adds the joints at ends of limbs that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
+    """Adds the joints that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
     frames, tree, ends = agreed_tree.frames, restored(agreed_tree), list[EndJoint]()
     if end_rings:
         body = aligned_body(reference, alignment, leaves)

@@ -78,7 +78,7 @@ class EndJointsSettings(NamedTuple):
 
 
 class EndJoint(NamedTuple):
-    """A joint within the last part of a limb, and how the piece beyond it moves.
+    """A joint within the last part of a limb or within the trunk, and how the pieces on both sides of it move.
 
     cut      : where it lies
     R, t     : (frame, 2, 3, 3) · (frame, 2, xyz) of the nearer piece and of that beyond, from the reference; of the whole part
@@ -115,7 +115,7 @@ def end_joints(
     mirrored: Collection[int] = (),
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
-    """The joints that the frames show within the last parts of limbs, at most one in a part.
+    """The joints that the frames show within the last parts of limbs and within the trunk, at most one in a part.
 
     judged : by ring, how its part lies in the frames of `judged_frames`
     takes  : positions of the frames of each take, in order; None takes all as one

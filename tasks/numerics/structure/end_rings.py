@@ -90,7 +90,7 @@ class EndFrames(NamedTuple):
 
     @staticmethod
     def of(tree: FirstTree, area: Floats, frame: Ints, confidence: Floats, surface: Callable[[int], Target]) -> "EndFrames":
-        """Frames show a part where most of it and of the part above is certain.
+        """Frames show a part where most of it and of the part that it hangs on is certain.
 
         area       : (vertex,) any unit
         frame      : (frame,) places of these frames among all

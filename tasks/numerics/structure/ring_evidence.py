@@ -1,4 +1,4 @@
-"""What frames show of a hinge at a ring across the last part of a limb (ours, see `end_joints`)."""
+"""What frames show of a hinge at a ring across the last part of a limb or the trunk (ours, see `end_joints`)."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -13,7 +13,8 @@ FEWEST_PAIRS = 3
 """Pairs of frames that follow each other, below which nothing is said of a ring, by halves neither."""
 
 CHANCE = 1.6
-"""Standard errors by which turns of noise agree about the axis about which they agree best, one time in six at most."""
+"""Standard errors by which turns of noise in neighbouring frames agree about the axis about which they agree best, one time
+in six at most; by halves, one in five."""
 
 LEAST_SHARE = 0.01
 """Share of all turning that one axis has, below which its agreement counts less: rounding may agree about an axis that nothing

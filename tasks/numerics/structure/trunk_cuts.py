@@ -22,10 +22,10 @@ class TrunkCutsSettings(NamedTuple):
     levels: tuple[float, ...] = (0.15, 0.29, 0.43, 0.57, 0.71, 0.85)
     """Distances from the border, shares of the greatest on the part."""
     neighbours: int = 3
-    """Parts that meet the part, at least: a part of the trunk carries limbs."""
+    """Parts that hang on the part or that it hangs on, at least: a part of the trunk carries limbs."""
     on_one_side: float = 0.65
-    """Share of every neighbour's border that lies on one side of the ring, at least. Rings that part a border, through
-    shoulders, score up to 0.074 where nothing turns."""
+    """Share of the border with every other neighbour that lies on one side of the ring, at least. Rings that part a border,
+    through shoulders, score up to 0.074 where nothing turns."""
     least_piece: float = 0.03
     """Share of the part's vertices from which on a piece of its surface counts: each side of a ring must be one."""
 

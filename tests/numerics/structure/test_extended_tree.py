@@ -9,6 +9,7 @@ from smeared import END, Frames, aligned, found_in, moving, turning
 from trunk import LIMBS, MIRRORED, trunk
 from whole_tree import joints_at_ends, whole_tree
 
+from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
@@ -148,6 +149,42 @@ def test_a_part_of_the_trunk_is_two_and_its_limbs_hang_on_the_one_beyond(root: i
     between = np.einsum("tyx,tyz->txz", after.R[:, new], after.R[:, after.parents[new]])
     angles = [np.degrees(np.arccos(np.clip((np.trace(Q, axis1=1, axis2=2) - 1) / 2, -1, 1))) for Q in (between, true)]
     assert np.abs(angles[0] - angles[1]).mean() < 3.0
+
+
+def test_what_is_known_of_a_part_goes_with_it_where_the_order_changes() -> None:
+    turn = turning()
+    body, tree = trunk(turn)
+    four = np.arange(4.0)
+    tree = tree._replace(radius=1.0 + four, unexplained=np.tile(0.01 * (1.0 + four), (24, 1)), drift=0.001 * four)
+    ones, surface = np.ones(body.x.shape[:2]), Frames(turn, 0.02).prepared(body.size)
+    (found,) = joints_at_ends(body, tree, ones, surface, mirrored=MIRRORED)
+    after = extended_tree(body, tree, [found], ones, 0.002)
+    kept = after.place[1:]
+    np.testing.assert_array_equal(after.radius[kept], tree.radius[1:])
+    np.testing.assert_array_equal(after.unexplained[:, kept], tree.unexplained[:, 1:])
+    (new,) = after.shown
+    assert after.radius[new] == found.cut.radius
+    for part in (0, new):
+        np.testing.assert_array_equal(after.unexplained[:, part], found.residual)
+    np.testing.assert_allclose(after.drift[1:], after.drift_at(after.rest)[1:])
+    assert [bool(after._replace(label=np.array([k])).at_ends[0]) for k in range(5)] == [True, False, True, False, False]
+
+
+@pytest.mark.parametrize("settings", [EndJointsSettings(least_score_in_trunk=9.0), EndJointsSettings(least_apart=9.0)])
+def test_a_ring_across_the_trunk_must_be_clear_and_far_from_joints(settings: EndJointsSettings) -> None:
+    turn = turning()
+    body, tree = trunk(turn)
+    shown = Frames(turn, 0.02).prepared(body.size)
+    assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, settings, mirrored=MIRRORED) == []
+
+
+def test_a_root_that_a_frame_shows_counts_only_with_the_part_above_the_ring() -> None:
+    turn = turning()
+    body, tree = trunk(turn)
+    confidence = np.ones(body.x.shape[:2])
+    confidence[np.ix_([10, 11], tree.label == 1)] = 0.1
+    (found,) = joints_at_ends(body, tree, confidence, Frames(turn, 0.02).prepared(body.size), mirrored=MIRRORED)
+    assert np.flatnonzero(~found.visible).tolist() == [10, 11]
 
 
 def test_the_piece_where_the_root_lies_stays_the_root() -> None:
