@@ -11,7 +11,8 @@ from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
-from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
+from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.necked_tree import PosedTree, necked_tree
 from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -129,3 +130,28 @@ def test_lengths_are_held_and_weights_sum_to_one() -> None:
 def test_not_asked_for_there_is_none() -> None:
     tree, derivation = nodding(BOTTOM, False)
     assert (len(joint_heights(tree)), derivation.neck_joints) == (1, ())
+
+
+@pytest.mark.parametrize("has_necks", [False, True])
+def test_joints_that_surfaces_show_are_told_beside_a_neck(has_necks: bool) -> None:
+    V, F = bottle(3.0, 1.8)
+    low, time = float(V[:, 2].min()) + 2.0, np.arange(12.0)
+    swing = np.radians(20.0) * np.stack([np.sin(time), np.cos(time)])
+    about_x = [Rotation.from_rotvec(angle[:, None] * np.array([1.0, 0.0, 0.0])).as_matrix() for angle in swing]
+    R = np.stack([np.tile(np.eye(3), (12, 1, 1)), *about_x], axis=1)
+    rest = np.array([[0.0, 0.0, (low + TOP) / 2], [0.0, 0.0, TOP], [0.0, 0.0, low]])
+    t = np.stack([rest[p] - R[:, p] @ rest[p] for p in range(3)], axis=1)
+    label = np.where(V[:, 2] > TOP, 1, np.where(V[:, 2] < low, 2, 0))
+    x = np.einsum("tvxy,vy->tvx", R[:, label], V) + t[:, label]
+    none = np.zeros(0)
+    graph = PartGraph(label, np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ())
+    tree = FirstTree(
+        parents=np.array([-1, 0, 0]), place=np.array([0, 1]), shown=(2,), label=label, W=np.eye(3)[label], R=R, t=t,
+        certain_share=np.ones((12, 3)), rest=rest, drift=np.zeros(3), unexplained=np.full((12, 3), 0.01),
+        radius=np.array([0.0, 1.0, 1.0]), end_x=x[:, label != 1], graph=graph,
+    )  # fmt: skip
+    tips = np.array([V[:, 2].argmin(), V[:, 2].argmax()])
+    body = MovingSurface(V, F, x, Surface.of(V, F).area)
+    made, derivation = kinematic_tree(body, tree, tips, np.full(x.shape[:2], 0.99), has_necks=has_necks)
+    assert len(derivation.neck_joints) == has_necks
+    assert made.rest[list(derivation.end_joints), 2] == pytest.approx([low], abs=0.1)
