@@ -43,8 +43,8 @@ class EndJointsSettings(NamedTuple):
     four-legged and random trees 60 to 63: of 26 true joints the least has 0.0061, rings where nothing turns 0.0032 at most."""
     least_score_if_short: float = 0.0145
     """The same where the nearer piece is shorter than `slice_length`, as a neck is. On these bodies five true heads have 0.0164
-    to 0.0263, two that shape gives as well 0.0117 and 0.0127; on these, humans and four-legged 0 to 9 and people 86 to 99 rings
-    within heads and beside a foot have 0.0130 at most."""
+    to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads, of people 86 to 99 too, and beside a foot of
+    four-legged 0 have 0.0130 at most."""
     least_score_in_trunk: float = 0.06
     """The same across the trunk. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans, four-legged and
     random trees 60 to 64."""

@@ -94,7 +94,7 @@ def _parts_after_parents(parents: Ints, last: Sequence[int]) -> Ints:
 
 
 def moved_ends(body: MovingSurface, tree: FirstTree, ends: Sequence[EndJoint]) -> Floats:
-    """(frame, vertex, xyz) the aligned vertices, those of parts with a joint at an end where the frames have them."""
+    """(frame, vertex, xyz) the aligned vertices, those of parts with a ring that is a joint where the frames have them."""
     x = body.x.copy()
     for end in ends:
         v, weight = end.cut.own, tree.W[end.cut.own, end.cut.part]

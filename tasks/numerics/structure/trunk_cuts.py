@@ -73,8 +73,8 @@ def trunk_cuts(
     start, ring = rings(F, len(V))
     edges = ring_edges(start, ring)
     for one in _parts(edges, label, parents, rest, chosen):
-        sides = [one.joints.keys() - {parents[one.part]}, {int(parents[one.part])}][int(parents[one.part] >= 0)]
-        for above in sorted(sides):
+        is_root = parents[one.part] < 0
+        for above in sorted(one.joints) if is_root else [int(parents[one.part])]:
             if not mirrored[one.part] and not mirrored[above]:
                 yield from _across(V, area, label, one, above, chosen)
 
