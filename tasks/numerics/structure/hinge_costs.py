@@ -45,10 +45,10 @@ def hinged_limbs(
     """
     chosen, N, limbs = settings or HingePlacesSettings(), smoothed_normals(V, F), []
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    nearly = chosen._replace(length=chosen.margin * chosen.length, straight=chosen.margin * chosen.straight)
+    nearly = [of._replace(length=of.margin * of.length, straight=of.margin * of.straight) for of in (chosen, chosen.of_short)]
     for joint in sorted({*tree.label.tolist()} - {0}):
         end = _end(V, tree, joint)
-        axis = limb_axis(tree, tree.rest, joint, end, nearly)
+        axis = next((axis for of in nearly if (axis := limb_axis(tree, tree.rest, joint, end, of)) is not None), None)
         if axis is not None:
             limb = _limb(V, N, area, edge, tree, joint, end, axis, chosen)
             if _both_sides(limb.far[:, len(limb.hinge) // 2], chosen.least_points).all():

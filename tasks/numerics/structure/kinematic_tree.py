@@ -153,8 +153,7 @@ def _posed(
     on_surface = SurfaceJoints(shared.rest, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        held = shared.is_shared | first.in_divided_trunk
-        on_surface = surface_joints(first, laid, shared.rest, share, held=held, takes=body.takes)
+        on_surface = surface_joints(first, laid, shared.rest, share, held=shared.is_shared, takes=body.takes)
     rest = on_surface.rest
     start = Motion(rest, first.R, first.t[:, 0].copy())
     poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)

@@ -101,7 +101,7 @@ def surface_joints(
     takes : positions of the frames of each take, in order; None takes all as one
     """
     chosen, stays = settings or SurfaceJointsSettings(), np.zeros(len(rest), np.bool_) if held is None else held
-    may_move = within_limbs(tree.parents) & ~stays
+    may_move = within_limbs(tree.parents) & ~stays & ~tree.in_divided_trunk
     share, moved, offset = seen[laid.frame], rest.copy(), np.full(len(rest), np.nan)
     spans = [(laid.frame >= first) & (laid.frame < behind) for first, behind in score_spans(len(seen), takes)]
     shifts = hinge_shifts(tree, laid.hinges, rest, share, spans)

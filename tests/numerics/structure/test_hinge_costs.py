@@ -34,8 +34,8 @@ def last_part_of(surface: MovingSurface, tree: FirstTree, count: int) -> Ints:
     return label
 
 
-@pytest.mark.parametrize(("length", "is_laid"), [(0.9, False), (1.1, True)])
-def test_a_joint_is_laid_where_its_bones_are_nearly_long_enough(length: float, is_laid: bool) -> None:
+@pytest.mark.parametrize(("length", "is_laid"), [(0.22, False), (0.26, True)])
+def test_a_joint_is_laid_where_its_bones_are_nearly_as_long_as_short_ones_may_be(length: float, is_laid: bool) -> None:
     surface, tree = tube()
     rest = tree.rest.copy()
     rest[1, 2] = END - length
@@ -48,6 +48,14 @@ def test_a_joint_is_laid_where_its_bones_are_nearly_straight_enough(cosine: floa
     bone = np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
     rest = tree.rest.copy()
     rest[1] = rest[2] - 3.0 * bone
+    assert (2 in limbs(surface, tree._replace(rest=rest))) is is_laid
+
+
+@pytest.mark.parametrize(("cosine", "is_laid"), [(0.52, False), (0.6, True)])
+def test_short_bones_must_be_straighter(cosine: float, is_laid: bool) -> None:
+    surface, tree = tube()
+    rest = tree.rest.copy()
+    rest[1] = rest[2] - 0.8 * np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
     assert (2 in limbs(surface, tree._replace(rest=rest))) is is_laid
 
 

@@ -101,12 +101,12 @@ def test_a_limb_has_an_axis_only_where_its_bones_are_long_and_straight() -> None
     assert limb_axis(tree, tree.rest, 2, np.array([0.0, 0.0, END + 0.5]), chosen) is None, "half a radius"
 
 
-def test_joints_of_short_parts_are_not_laid() -> None:
+def test_joints_of_parts_without_length_are_not_laid() -> None:
     surface, found = three_parts(FRAMES)
     tree = in_tree_order(found, 3)
     meshes = Frames(turning()[:FRAMES])
     costs = hinge_costs(
-        surface.V, surface.F, surface.area, tree._replace(radius=10.0 * tree.radius), {0: Target.of(*meshes(0), surface.size)}
+        surface.V, surface.F, surface.area, tree._replace(radius=40.0 * tree.radius), {0: Target.of(*meshes(0), surface.size)}
     )
     assert len(costs.joint) == 0
     assert costs.square.shape == (1, 0, 2, len(HingePlacesSettings().places))
@@ -126,13 +126,77 @@ def test_a_joint_stays_where_the_least_cost_is_at_the_end_of_the_places() -> Non
     np.testing.assert_array_equal(beyond[2], 0.0)
 
 
-def test_joints_do_not_go_farther_than_half_of_their_shorter_bone() -> None:
+def test_joints_do_not_go_farther_than_half_of_the_bone_on_that_side() -> None:
     tree, costs = costs_of(0.0)
     rest = tree.rest.copy()
     rest[1, 2] = rest[2, 2] - 1.5 * tree.radius[2]
     short = tree._replace(rest=rest)
     assert not shift_of(short, least_at(costs, -0.8, 0.5)).any()
     assert shift_of(short, least_at(costs, -0.7, 0.5)).any()
+    assert shift_of(short, least_at(costs, 0.8, 0.5)).any(), "the bone beyond is longer"
+
+
+def forked(lateral: float, behind: float = 2.0) -> tuple[FirstTree, HingeCosts]:
+    """The middle part as the root, its place 1.2 radii before the last joint; its other joint so far aside and behind."""
+    tree, costs = costs_of(0.0)
+    radius = tree.radius[2]
+    other, root = tree.rest[2] + radius * np.array([[lateral, 0.0, -behind], [0.0, 0.0, -1.2]])
+    forked = tree._replace(parents=np.array([-1, 0, 0]), rest=np.array([root, other, tree.rest[2]]))
+    return forked, costs
+
+
+@pytest.mark.parametrize(
+    ("lateral", "behind", "way", "goes"),
+    [
+        (0.0, 2.0, -0.9, True),
+        (0.0, 2.0, -1.1, False),
+        (4.0, 2.0, -0.7, False),
+        (4.0, 2.0, -0.5, True),
+        (0.0, -2.0, -0.7, False),
+    ],
+    ids=["half-way to a joint behind", "farther", "none behind: half-way to the root", "nearer", "the other is beyond"],
+)
+def test_the_root_has_no_joint_so_that_the_next_joint_behind_it_bounds_the_way(
+    lateral: float, behind: float, way: float, goes: bool
+) -> None:
+    tree, costs = forked(lateral, behind)
+    assert shift_of(tree, least_at(costs, way, 0.5)).any() == goes
+
+
+@pytest.mark.parametrize(
+    ("length", "gain", "moves"), [(1.0, 0.1, False), (1.0, 0.15, True), (0.25, 0.5, False), (1.4, 0.1, True)]
+)
+def test_joints_of_short_bones_move_only_where_far_less_is_left(length: float, gain: float, moves: bool) -> None:
+    tree, costs = costs_of(0.0)
+    rest = tree.rest.copy()
+    rest[1, 2] = rest[2, 2] - length * tree.radius[2]
+    assert shift_of(tree._replace(rest=rest), least_at(costs, 0.5, gain)).any() == moves
+
+
+def test_joints_of_short_bones_do_not_move_where_these_are_bent() -> None:
+    tree, costs = costs_of(0.0)
+    bent, straight = (
+        costs._replace(end=tree.rest[1:] + tree.radius[2] * np.array([np.sqrt(1.0 - c * c), 0.0, c])) for c in (0.6, 0.8)
+    )
+    assert not shift_of(tree, least_at(bent, 0.5, 0.5)).any()
+    assert shift_of(tree, least_at(straight, -0.5, 0.5)).any()
+
+
+def test_joints_of_a_trunk_that_the_frames_divide_need_the_gain_of_short_bones() -> None:
+    tree, costs = costs_of(0.0)
+    divided = tree._replace(shown=(1,))
+    assert divided.in_divided_trunk.tolist() == [False, True, True]
+    assert not shift_of(divided, least_at(costs, 0.5, 0.1)).any()
+    assert shift_of(divided, least_at(costs, 0.5, 0.15)).any()
+
+
+def test_joints_of_short_bones_have_no_offset() -> None:
+    tree, costs = costs_of(0.0)
+    rest = tree.rest.copy()
+    rest[1, 2] = rest[2, 2] - tree.radius[2]
+    at = least_at(costs, 0.5, 0.5)
+    assert shift_of(tree._replace(rest=rest), at).any()
+    assert np.isnan(hinge_offsets(tree, at, rest, ALL)[2])
 
 
 def test_a_bend_in_one_of_two_takes_moves_the_joint() -> None:
