@@ -14,7 +14,7 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_other_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, symmetry
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pruned_without
@@ -60,7 +60,8 @@ def agreed_tree(
     """Chooses the cut whose tree is used, and drops its parts with a joint that no other of at least two cuts has.
 
     The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
-    before are those of other cuts, if none drifts more (`RISE`), and if no other part is weak then.
+    before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
+    mirror images become one part.
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -124,7 +125,7 @@ def _without_one(
     best: _Without | None = None
     for side in sorted(side for side in sides if (tree.parents == side).sum() + (side > 0) > 1):
         left = pruned_without(body, joints.left, int(tree.order[side]), ALONE, leaves, pairs, settings.pruning)
-        if len(left.dropped) > len(joints.left.dropped) + 1:
+        if len(left.dropped) > len(joints.left.dropped) + 1 or _in_limbs(left, pairs) < _in_limbs(joints.left, pairs) - 1:
             continue
         fewer = tree_of_parts(body, left, joints.used, joints.part, confidence, settings)
         if (~_shared_joints(fewer, others, body.size)).sum() >= (~shared).sum():
@@ -133,6 +134,11 @@ def _without_one(
         if rise <= (best.rise if best else RISE):
             best = _Without(fewer, rise)
     return best.joints if best else None
+
+
+def _in_limbs(left: Pruned, pairs: LimbPairs) -> int:
+    """How many parts are of limbs that have a mirror image; two fewer where two of them become one part."""
+    return int(in_mirrored_limbs(RootedParts.of(left.parts.label, left.part_tree), pairs).sum())
 
 
 def _shared_joints(joints: TreeJoints, others: Sequence[Floats], size: float) -> Flags:
@@ -158,7 +164,7 @@ def _of_cut(tree: FirstTree, joints: TreeJoints) -> FirstTree:
     """The joints that are left as a tree of the same cut."""
     left = in_tree_order(joints, len(tree.parents))
     number = {int(joint): part for part, joint in enumerate(tree.place) if joint >= 0}
-    gone = tuple(Dropped(number[d.part], d.reason) for d in left.graph.dropped)
+    gone = tuple(Dropped(number[d.part], d.reason) for d in left.graph.dropped if d.part in number)
     return left._replace(
         place=np.where(tree.place < 0, -1, left.place[tree.place]),
         graph=tree.graph._replace(dropped=(*tree.graph.dropped, *gone)),

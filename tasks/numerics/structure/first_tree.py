@@ -6,11 +6,10 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.cut_joints import cut_tree
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartTree
-from kinetree.tasks.numerics.structure.pruning import Dropped
+from kinetree.tasks.numerics.structure.pruning import NO_PART, Dropped
 from kinetree.tasks.numerics.structure.rotation_centres import drift
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, both_residuals
 

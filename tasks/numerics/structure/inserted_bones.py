@@ -9,13 +9,11 @@ from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.blended_bone import MovingSkin
 from kinetree.tasks.numerics.structure.hidden_bones import Border, HiddenBone, HiddenBonesSettings, hidden_bone
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.rotation_centres import Borders, Joints
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.spanning_tree import RootedTree
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints, both_residuals
-
-NO_PART = -1
-"""`Pruned.origin` of a hidden bone: it was no part before."""
 
 
 def inserted_bones(

@@ -56,6 +56,12 @@ def mean_rotation(turns: Floats) -> Floats:
     return nearest_rotation(turns.mean(axis=0))
 
 
+def principal_axis(turns: Floats) -> Floats:
+    """(xyz,) unit vector about which rotations (frame, 3, 3) turn most, against their mean."""
+    w = Rotation.from_matrix(turns @ mean_rotation(turns).T).as_rotvec()
+    return np.asarray(np.linalg.eigh(w.T @ w)[1][:, -1])
+
+
 def swing(V: Floats, area: Floats, centre: Floats, turns: Floats, above: bool, N: Floats | None = None) -> float:
     """Root mean square displacement, over frames and a part's surface, by turning about a joint against the mean pose.
 

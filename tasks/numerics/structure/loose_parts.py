@@ -19,8 +19,8 @@ from kinetree.tasks.numerics.structure.hidden_bones import (
     half_way,
     widest_blend_drift,
 )
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints, both_residuals

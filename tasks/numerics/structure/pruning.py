@@ -10,6 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
+from kinetree.tasks.numerics.structure.alike_limbs import alike_limbs
 from kinetree.tasks.numerics.structure.end_effectors import from_border
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, joint_partners
@@ -22,6 +23,9 @@ from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE = "flesh", "still", "sliding", "unevident", "unpaired", "alone"
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
 flesh that the mirror image of its limb lacks, or that no other cut has."""
+
+NO_PART = -1
+"""`Pruned.origin` of a part that the cut does not have: a hidden bone, or the second of two limbs that were one part."""
 
 
 class PruningSettings(NamedTuple):
@@ -79,7 +83,7 @@ class Pruned(NamedTuple):
     parts     : numbered without gaps
     part_tree : of these parts
     before    : the tree of all parts, before any was dropped
-    origin    : (part,) number of each part left, before any was dropped
+    origin    : (part,) number of each part left, before any was dropped; `NO_PART` for one that the cut does not have
     dropped   : in the order in which parts were dropped
     """
 
@@ -99,7 +103,7 @@ def pruned(
     settings: PruningSettings,
 ) -> Pruned:
     """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows, and those that
-    the mirror image of their limb lacks.
+    the mirror image of their limb lacks. Limbs that are one part are cut apart in the end where vertices were aligned.
 
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
@@ -116,7 +120,8 @@ def pruned(
             break
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, pairs, chosen)
-    return _pruned_by_partners(body, state, leaves, pairs, chosen)
+    state = _pruned_by_partners(body, state, leaves, pairs, chosen)
+    return state if parts.confidence is None else _with_limbs_apart(body, state, pairs)
 
 
 def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
@@ -174,6 +179,24 @@ def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: 
     fewer = parts.without(gone, reassigned(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring))
     dropped = (*state.dropped, Dropped(int(state.origin[gone]), reason))
     return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
+
+
+def _with_limbs_apart(body: MovingSurface, state: Pruned, pairs: LimbPairs) -> Pruned:
+    """The same with two limbs of one part as two parts that move alike; as it is where one of them meets the other alone."""
+    found = alike_limbs(body, state.parts, state.part_tree, pairs)
+    if found is None:
+        return state
+    part, other = found
+    count = state.parts.R.shape[1]
+    label, same = state.parts.label.copy(), [*range(count), part]
+    label[other] = count
+    confidence = None if state.parts.confidence is None else state.parts.confidence[:, same]
+    R, t, residual = (np.ascontiguousarray(a[:, same]) for a in (state.parts.R, state.parts.t, state.parts.residual))
+    parts = MovingParts(label, R, t, residual, confidence)
+    tree = part_tree(body, parts)
+    if any({part, count} == {*pair} for pair in tree.borders.pair[tree.tree.border[1:]].tolist()):
+        return state
+    return state._replace(parts=parts, part_tree=tree, origin=np.append(state.origin, NO_PART))
 
 
 def _weak_parts(

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Ints
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.tree_joints import KinematicTreeSettings, TreeJoints, without_part
 
 

@@ -131,6 +131,14 @@ def test_how_much_more_joints_may_drift_without_it(rise: float, stays: bool, mon
     assert (left(tree, [joints_at(*HEIGHTS)] * 2) is tree) == stays
 
 
+@pytest.mark.parametrize(("fewer", "stays"), [(1, False), (2, True)])
+def test_it_stays_if_two_limbs_become_one_without_it(fewer: int, stays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mirrored limbs have 8 parts with the ring, and so many fewer without it."""
+    monkeypatch.setattr(numerics, "_in_limbs", lambda left, _: 8 - fewer * (len(left.origin) == 4))
+    found = left(ringed(0.15), [joints_at(*HEIGHTS)] * 2)
+    assert len(heights(found)) == (4 if stays else 3)
+
+
 def test_of_two_cuts_neither_is_in_the_majority() -> None:
     tree = ringed(0.15)
     assert left(tree, [joints_at(*HEIGHTS)]) is tree

@@ -6,9 +6,10 @@ from shipped import TREE
 from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.structure.hidden_bones import HiddenBonesSettings
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 

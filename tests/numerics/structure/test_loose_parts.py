@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from articulated import Known, and_at_rest, chain, cut_by_height, surface, swings
 
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART
 from kinetree.tasks.numerics.structure.loose_parts import LoosePartsSettings, tightened
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 
 

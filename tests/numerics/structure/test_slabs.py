@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from articulated import ALL_STAY, Known, and_at_rest, chain, cut_by_height, surface, swings
 
-from kinetree.tasks.numerics.structure.inserted_bones import NO_PART, inserted_bones
+from kinetree.tasks.numerics.structure.inserted_bones import inserted_bones
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import NO_PART
 from kinetree.tasks.numerics.structure.slabs import SlabsSettings, bones_without_slabs
 from kinetree.tasks.numerics.structure.tree_joints import TreeJoints
 

@@ -1,0 +1,144 @@
+"""Two limbs that turn as one part about one line are cut apart by their shape."""
+
+import numpy as np
+import pytest
+from limbs import rotation
+from shapes import y_pipe
+from shipped import TREE
+
+from kinetree.tasks.numerics.arrays import Ints
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
+from kinetree.tasks.numerics.geometry.surface import Surface, surface_areas
+from kinetree.tasks.numerics.structure.alike_limbs import AlikeLimbsSettings, alike_limbs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.pruning import NO_PART, Pruned, pruned
+
+V, F, _ = y_pipe()
+"""A trunk along x from the fork at 0, and two legs at 60° on either side of −x."""
+FRAMES = 16
+HIP = 2.0
+"""Height of the line about which the legs turn; the crotch is at −5."""
+LINE = (0.0, 1.0, 0.0)
+LEGS = np.array([np.argmax(V[:, 1]), np.argmin(V[:, 1])])
+HEAD, SIDE = int(np.argmax(V[:, 0])), int(np.argmin(np.linalg.norm(V - [16.0, 0.0, 4.0], axis=1)))
+KNEES = np.where(V[:, 0] < -9.0, np.where(V[:, 1] > 0.0, 2, 3), 0)
+"""(vertex,) shanks as parts 2 and 3."""
+
+
+def seen(
+    axis: tuple[float, float, float] = LINE, hip: float = HIP, border: float = HIP, beyond: Ints | None = None
+) -> tuple[MovingSurface, MovingParts]:
+    """The pipe, whose legs swing as part 1 about a line through (hip, 0, 0) against the trunk; shanks and others go along."""
+    label = (V[:, 0] < border).astype(np.int64)
+    if beyond is not None:
+        label = np.where(beyond > 0, beyond, label)
+    count, at = int(label.max()) + 1, np.array([hip, 0.0, 0.0])
+    R, t = np.tile(np.eye(3), (FRAMES, count, 1, 1)), np.zeros((FRAMES, count, 3))
+    for f, angle in enumerate(np.radians(20.0) * np.sin(np.arange(FRAMES))):
+        R[f, 1:] = rotation(axis, angle)
+        for part in range(2, count):
+            R[f, part] = R[f, 1] @ rotation((0.0, 0.0, 1.0), np.radians(15.0) * np.cos(f + part))
+        t[f, 1:] = at - R[f, 1] @ at
+        for part in range(2, count):
+            own = V[label == part]
+            knee = own[own[:, 0] > own[:, 0].max() - 1.0].mean(axis=0)
+            t[f, part] = R[f, 1] @ knee + t[f, 1] - R[f, part] @ knee
+    x = np.array([np.einsum("vxy,vy->vx", R[f, label], V) + t[f, label] for f in range(FRAMES)])
+    still = np.full((FRAMES, count), 0.01)
+    return MovingSurface(V, F, x, surface_areas(V, F)), MovingParts(label, R, t, still, np.ones((FRAMES, count)))
+
+
+def of_legs(tips: Ints = LEGS) -> LimbPairs:
+    return LimbPairs(tips[None], geodesic_distance(Surface.of(V, F), tips)[None])
+
+
+def found(
+    body: MovingSurface, parts: MovingParts, pairs: LimbPairs | None = None, settings: AlikeLimbsSettings | None = None
+) -> tuple[int, Ints] | None:
+    return alike_limbs(body, parts, part_tree(body, parts), of_legs() if pairs is None else pairs, settings)
+
+
+def test_legs_that_swing_as_one_are_two() -> None:
+    one = found(*seen())
+    assert one is not None
+    part, other = one
+    assert part == 1
+    own, second = V[:, 0] < HIP, np.isin(np.arange(len(V)), other)
+    np.testing.assert_array_equal(second[own & (np.abs(V[:, 1]) > 1e-6)], V[own & (np.abs(V[:, 1]) > 1e-6), 1] < 0.0)
+    assert not second[~own].any()
+
+
+def test_knees_are_no_neighbours_but_on_the_way() -> None:
+    one = found(*seen(beyond=KNEES))
+    assert one is not None
+    assert one[0] == 1
+
+
+def test_a_part_with_two_more_neighbours_is_no_pair_of_limbs() -> None:
+    tail = np.where((V[:, 2] > 3.0) & (V[:, 0] < -2.0) & (np.abs(V[:, 1]) < 4.0), 4, KNEES)
+    assert (tail == 4).sum() > 4
+    assert found(*seen(beyond=tail)) is None
+
+
+@pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)], ids=["twisted", "bent aside"])
+def test_limbs_that_turn_about_another_line_are_a_trunk_that_bends(axis: tuple[float, float, float]) -> None:
+    assert found(*seen(axis)) is None
+
+
+@pytest.mark.parametrize(("degrees", "is_one"), [(30.0, True), (40.0, False)])
+def test_how_far_the_line_may_lean(degrees: float, is_one: bool) -> None:
+    """Cosine 0.87 and 0.77."""
+    lean = np.radians(degrees)
+    assert (found(*seen((np.sin(lean), np.cos(lean), 0.0))) is not None) == is_one
+
+
+def test_a_joint_high_above_the_crotch_is_of_a_spine() -> None:
+    assert found(*seen(hip=8.0)) is None
+    assert found(*seen(hip=8.0), settings=AlikeLimbsSettings(near=9.0)) is not None
+
+
+@pytest.mark.parametrize(("limb", "is_one"), [(0.35, True), (0.37, False)])
+def test_how_much_of_the_part_each_limb_must_have(limb: float, is_one: bool) -> None:
+    """With the trunk up to 20 each has 0.36 of it."""
+    assert (found(*seen(border=20.0), settings=AlikeLimbsSettings(near=9.0, limb=limb)) is not None) == is_one
+
+
+def test_ends_that_no_path_joins_are_none() -> None:
+    pairs = of_legs()
+    distance = pairs.distance.copy()
+    distance[0, 0, LEGS[1]] = distance[0, 1, LEGS[0]] = np.inf
+    assert found(*seen(), LimbPairs(pairs.tip, distance)) is None
+
+
+def test_a_body_of_one_part_has_none() -> None:
+    body, _ = seen()
+    whole = MovingParts(np.zeros(len(V), np.int64), np.tile(np.eye(3), (FRAMES, 1, 1, 1)), *np.zeros((2, FRAMES, 1, 3))[:1],
+                        np.zeros((FRAMES, 1)), np.ones((FRAMES, 1)))  # fmt: skip
+    assert found(body, whole) is None
+
+
+def test_legs_apart_hang_on_the_trunk_and_the_cut_has_one_of_them() -> None:
+    left = pruned_parts()
+    tree = left.part_tree.tree
+    place = np.argsort(tree.order)
+    on = {int(tree.order[tree.parents[place[part]]]) if tree.parents[place[part]] >= 0 else None for part in (1, 2)}
+    assert on in ({0}, {0, None}), "of one of them the trunk may hang"
+    assert left.origin.tolist() == [0, 1, NO_PART]
+    np.testing.assert_array_equal(left.parts.R[:, 2], left.parts.R[:, 1])
+    rows = [np.flatnonzero((left.part_tree.borders.pair == [0, part]).all(axis=1))[0] for part in (1, 2)]
+    low, high = np.sort(left.part_tree.joints.rest[rows, 1])
+    assert low < -0.7
+    assert high > 0.7
+
+
+def test_where_every_vertex_was_followed_limbs_stay_one_part() -> None:
+    assert len(pruned_parts(is_given=True).origin) == 2
+
+
+def pruned_parts(is_given: bool = False) -> Pruned:
+    """The pipe in two parts, pruned."""
+    body, parts = seen()
+    leaves = np.array([*LEGS, HEAD, SIDE])
+    assert {*LEGS.tolist()} in [set(tip) for tip in limb_pairs(V, F, leaves).tip.tolist()]
+    return pruned(body, parts._replace(confidence=None) if is_given else parts, leaves, settings=TREE.pruning)
