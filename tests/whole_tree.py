@@ -29,6 +29,7 @@ def whole_tree(
     surface: Callable[[int], Target] | None = None,
     has_second_ends: bool = False,
     has_necks: bool = False,
+    has_mirrored_joints: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """The body, and how it came about; joints at ends are looked for where the frames' surfaces are given."""
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
@@ -39,8 +40,9 @@ def whole_tree(
     joints = [(cut.with_bones if first.has_bones else cut.bare) for cut in cuts]
     carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]
     return kinematic_tree(
-        body, first, leaves, confidence, further=carried, has_second_ends=has_second_ends, has_necks=has_necks
-    )
+        body, first, leaves, confidence, further=carried, has_second_ends=has_second_ends, has_necks=has_necks,
+        has_mirrored_joints=has_mirrored_joints,
+    )  # fmt: skip
 
 
 def joints_at_ends(

@@ -18,6 +18,7 @@ Kind = Literal[
     "asymmetric",
     "small",
     "shape",
+    "mirror",
     "close",
     "short",
     "still",
@@ -45,6 +46,7 @@ class Finding(Params):
     unpaired    : joints found on one side alone
     small       : joints that turn little
     shape       : joints that the body's shape alone shows, so that no turn was measured there
+    mirror      : joints that the mirror image of their limb alone shows, so that no turn was measured there
     close       : joints very near the one that they hang on.
     """
     severity: Literal["grave", "fault", "note"]

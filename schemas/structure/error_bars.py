@@ -5,8 +5,9 @@ from typing import Annotated, Literal
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import FRAME, JOINT
 
-EvidenceKind = Literal["motion", "shape"]
-"""How a joint is known: its parts turn against each other; or by the body's shape alone, so that no turn was measured there."""
+EvidenceKind = Literal["motion", "shape", "mirror"]
+"""How a joint is known: its parts turn against each other; or by the body's shape alone; or
+by the mirror image of its limb alone. No turn was measured at the last two."""
 
 
 class ErrorBars(Artifact):

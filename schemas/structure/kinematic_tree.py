@@ -56,15 +56,18 @@ class AgreedTreeParams(JointParams):
     """Whether joints that an alignment smears, as balls of feet and spines, are looked for on the frames' surfaces."""
 
 
-class NeckParams(Params):
+class ShapeParams(Params):
     """Which joints shape alone gives."""
 
     necks: bool = True
     """Whether a tube between the last part of a limb and what carries it has a joint at both ends though one alone turns;
     not where connectivity is fixed, since motion shows both there."""
+    mirrored_joints: bool = True
+    """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
+    fixed."""
 
 
-class KinematicTreeParams(NeckParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
+class KinematicTreeParams(ShapeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
     """What counts as a joint, and where joints are looked for and placed."""
 
 
@@ -122,6 +125,8 @@ class KinematicTree(ArticulatedBody):
     neck_joints: tuple[int, ...] = ()
     """Joints that the shape alone shows, at the other end of a tube from one that turns. They turn by nothing, since
     motion shows no turn of theirs."""
+    mirrored_joints: tuple[int, ...] = ()
+    """Joints that their mirror images alone show, at the same distance from the end of the limb. They turn by nothing."""
 
     @property
     def length_variation(self) -> Floats:

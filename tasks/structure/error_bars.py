@@ -72,8 +72,8 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
     radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
-    shape_alone = np.isin(np.arange(len(skeleton.names)), tree.neck_joints)
-    tube = np.where(shape_alone, np.array(tree.border_radius), np.nan)
+    is_still = np.isin(np.arange(len(skeleton.names)), (*tree.neck_joints, *tree.mirrored_joints))
+    tube = np.where(is_still, np.array(tree.border_radius), np.nan)
     confidence = np.array(skeleton.confidence)
     below = np.zeros_like(degrees)
     np.maximum.at(below, parents[parents >= 0], degrees[parents >= 0])
@@ -85,5 +85,9 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
 
 def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[EvidenceKind | None, ...]:
     """How each joint is known; None for root and leaves."""
-    necks = frozenset(kinematic_tree.neck_joints)
-    return tuple(None if kind != "joint" else "shape" if j in necks else "motion" for j, kind in enumerate(skeleton.kinds))
+    known: list[EvidenceKind | None] = ["motion" if kind == "joint" else None for kind in skeleton.kinds]
+    for j in kinematic_tree.neck_joints:
+        known[j] = "shape"
+    for j in kinematic_tree.mirrored_joints:
+        known[j] = "mirror"
+    return tuple(known)

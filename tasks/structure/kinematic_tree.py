@@ -11,7 +11,7 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, NeckParams
+from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, ShapeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.arrays import Floats
@@ -32,7 +32,7 @@ def kinematic_tree(
     laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
-    params: NeckParams,
+    params: ShapeParams,
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
     frames, body, agreed = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
@@ -47,6 +47,7 @@ def kinematic_tree(
         ],
         laid=joined(laid_parts),
         has_necks=params.necks and not body.is_given,
+        has_mirrored_joints=params.mirrored_joints and not body.is_given,
     )
     return KinematicTree(
         frames=frames,

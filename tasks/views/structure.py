@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from kinetree.tasks.numerics.structure.anatomical_names import Named
 
 
+STILL = {"shape": "by the shape alone", "mirror": "by the other side alone"}
+"""In words how joints are known at which no turn was measured."""
 NAMED_ONE_BY_ONE = 5
 """Joints to rename that are not called as it was set, of each kind."""
 
@@ -103,8 +105,8 @@ def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
         off = f"±{two_digits(bars.expected[joint])}{unit} (90 %: {two_digits(bars.bound[joint])})"
         if np.isfinite(bars.surface_offset[joint]):
             off += f", surface offset {two_digits(bars.surface_offset[joint])}{unit}"
-    by_shape = bars is not None and bars.evidence[joint] == "shape"
-    turn = "by the shape alone, no turn measured" if by_shape else f"turns {skeleton.degrees[joint]:.0f}°"
+    still = None if bars is None else STILL.get(bars.evidence[joint] or "")
+    turn = f"turns {skeleton.degrees[joint]:.0f}°" if still is None else f"{still}, no turn measured"
     return f"{length}, {turn}, {off}, {support}"
 
 
@@ -136,7 +138,7 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
         expected, bound, drift, spread, residual, offset = (two_digits(getattr(bars, name)[j]) for name in lengths)
         evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
         evidence += "" if np.isnan(bars.surface_offset[j]) else f", surface offset {offset}"
-        evidence = "by the shape alone" if bars.evidence[j] == "shape" else evidence
+        evidence = STILL.get(bars.evidence[j] or "", evidence)
         support = f"seen in {bars.support[j]} frames"
         lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {support}")
     return tuple(lines)

@@ -95,15 +95,19 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
     assert "(90 %: 120)" in beside(large)[0]
 
 
-def test_a_joint_that_the_shape_alone_shows_says_so_wherever_its_evidence_stands() -> None:
+@pytest.mark.parametrize(
+    ("field", "kind", "words"),
+    [("neck_joints", "shape", "by the shape alone"), ("mirrored_joints", "mirror", "by the other side alone")],
+)
+def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(field: str, kind: str, words: str) -> None:
     body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
-    bars = error_bars(body, tree.model_copy(update={"neck_joints": (3,)}))
-    assert bars.evidence == (None, "motion", None, "shape", "motion")
-    assert [("by the shape alone" in line, "drift" in line) for line in views.text(bars)] == [
-        (False, True),
-        (True, False),
-        (False, True),
-    ]
-    words = views.text(body, lambda cls: bars if cls is ErrorBars else None)
-    assert [j for j, line in enumerate(words) if "by the shape alone, no turn measured" in line] == [3]
+    tree = tree.model_copy(update={"border_radius": np.full(5, 2.0)})
+    bars = error_bars(body, tree.model_copy(update={field: (3,)}))
+    assert bars.evidence == (None, "motion", None, kind, "motion")
+    assert [(words in line, "drift" in line) for line in views.text(bars)] == [(False, True), (True, False), (False, True)]
+    lines = views.text(body, lambda cls: bars if cls is ErrorBars else None)
+    assert [j for j, line in enumerate(lines) if f"{words}, no turn measured" in line] == [3]
+    moving = error_bars(body, tree)
+    assert bars.expected[3] == pytest.approx(0.4 * 2.0), "it goes by the radius alone"
+    assert bars.expected[1] == moving.expected[1] != bars.expected[3]
     assert unknown_error_bars(body).evidence == (None,) * 5

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
@@ -13,9 +13,11 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_names import joint_names
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.necked_tree import PosedTree, necked_tree
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
+from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Dropped
@@ -23,6 +25,7 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.shared_joints import shared_joints
 from kinetree.tasks.numerics.structure.skinning import heaviest
+from kinetree.tasks.numerics.structure.still_joints import PosedTree, with_still_joints
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 
 RIGID_WEIGHT = 0.75
@@ -83,6 +86,7 @@ class Derivation(NamedTuple):
     border_radius  : (joint,) of the border at the joint, mesh unit; NaN for the root and ends of bones
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
+    mirrored_joints : joints that their mirror images alone show, see `mirrored_joints`
     """
 
     part: Ints
@@ -102,6 +106,7 @@ class Derivation(NamedTuple):
     border_radius: Floats
     end_joints: tuple[int, ...] = ()
     neck_joints: tuple[int, ...] = ()
+    mirrored_joints: tuple[int, ...] = ()
 
 
 def kinematic_tree(
@@ -114,6 +119,7 @@ def kinematic_tree(
     laid: LaidParts | None = None,
     has_second_ends: bool = False,
     has_necks: bool = False,
+    has_mirrored_joints: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """Places the joints of a tree and poses it in every frame; and how that came about.
 
@@ -125,6 +131,7 @@ def kinematic_tree(
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether bones are looked for that the shape alone shows, see `necks`
+    has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
     """
     V = body.V
     if first.shown:
@@ -135,12 +142,26 @@ def kinematic_tree(
     if has_necks:
         hanging = necks(V, body.F, first.label, first.parents, tree.motion.rest, first.radius)
         if chosen := [neck for neck in hanging if neck.part not in first.shown]:
-            tree = necked_tree(tree, chosen)
+            tree = with_still_joints(tree, chosen)
+    if has_mirrored_joints:
+        tree = _with_mirrored_joints(body, tree, leaves)
     if has_second_ends:
         leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
     ends = end_effectors(V, body.F, tree.label, tree.parents, leaves)
     made, order = _assembled(V, tree, ends, score_spans(len(body.x), body.takes))
     return made, _derivation(first, tree, made, order)
+
+
+def _with_mirrored_joints(body: MovingSurface, tree: PosedTree, leaves: Ints) -> PosedTree:
+    """The tree with the joints that mirror images of limbs have, one after the other from the trunk outwards."""
+    pairs = limb_pairs(body.V, body.F, leaves)
+    for _ in range(len(tree.parents)):
+        parts = RootedParts(tree.label, tree.parents, tree.radius)
+        found = mirrored_joints(body.V, body.F, parts, tree.motion.rest, pairs)
+        if not found:
+            break
+        tree = with_still_joints(tree, found, are_mirrored=True)
+    return tree
 
 
 def _posed(
@@ -174,6 +195,7 @@ def _posed(
         place=first.place,
         carrier=np.arange(parts),
         is_neck=np.zeros(parts, np.bool_),
+        is_mirrored=np.zeros(parts, np.bool_),
     )
 
 
@@ -241,6 +263,12 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
         hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
-        end_joints=tuple(sorted(joint[np.flatnonzero(np.isin(tree.carrier, first.shown) & ~tree.is_neck)].tolist())),
-        neck_joints=tuple(sorted(joint[np.flatnonzero(tree.is_neck)].tolist())),
+        end_joints=_joints(joint, np.isin(tree.carrier, first.shown) & ~tree.is_neck & ~tree.is_mirrored),
+        neck_joints=_joints(joint, tree.is_neck),
+        mirrored_joints=_joints(joint, tree.is_mirrored),
     )
+
+
+def _joints(joint: Ints, are_these: Flags) -> tuple[int, ...]:
+    """Those of parts, ascending; both (part,)."""
+    return tuple(sorted(joint[np.flatnonzero(are_these)].tolist()))

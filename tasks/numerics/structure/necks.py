@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import edge_lengths
+from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 
 class NecksSettings(NamedTuple):
@@ -39,23 +40,6 @@ class NecksSettings(NamedTuple):
     """Distance between rings, in radii of the border."""
 
 
-class Neck(NamedTuple):
-    """A tube at whose one end lies the joint of a part, and at whose other end none lies.
-
-    part   : that hangs on it, in the tree's order
-    above  : whether the end without a joint is that towards the part above
-    centre : (xyz,) of that end in the reference, mesh unit
-    radius : of the tube, mesh unit
-    share  : (vertex,) how much each vertex follows the tube, 0 to 1
-    """
-
-    part: int
-    above: bool
-    centre: Floats
-    radius: float
-    share: Floats
-
-
 class _Rings(NamedTuple):
     """Rings about a border: level (ring,) signed distance from it, girth (ring,) mesh unit, centre (ring, xyz)."""
 
@@ -66,7 +50,7 @@ class _Rings(NamedTuple):
 
 def necks(
     V: Floats, F: Ints, label: Ints, parents: Ints, rest: Floats, border: Floats, settings: NecksSettings | None = None
-) -> Iterator[Neck]:
+) -> Iterator[StillJoint]:
     """The necks on which the last parts of limbs hang, by part; none where the surface has a hole, which looks like a tube.
 
     V, F    : (vertex, xyz) reference, mesh unit · (face, corner)
@@ -93,7 +77,7 @@ def necks(
 
 def _neck(
     V: Floats, F: Ints, beyond: Floats, part: int, joint: Floats, others: Floats, border: float, chosen: NecksSettings
-) -> Neck | None:
+) -> StillJoint | None:
     """The neck of a part; None where there is none, or a joint at both of its ends."""
     rings = _rings(V, F, beyond, border, chosen)
     ends = _ends(rings, border, chosen)
@@ -108,7 +92,7 @@ def _neck(
         return None
     low, high = rings.level[ends]
     share = np.clip(0.5 + np.minimum(beyond - low, high - beyond) / radius, 0.0, 1.0)
-    return Neck(part, free == 0, centre[free], radius, np.where(np.isfinite(beyond), share, 0.0))
+    return StillJoint(part, free == 0, centre[free], radius, np.where(np.isfinite(beyond), share, 0.0))
 
 
 def _rings(V: Floats, F: Ints, beyond: Floats, border: float, chosen: NecksSettings) -> _Rings:

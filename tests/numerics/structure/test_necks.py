@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from bottles import BOTTOM, TOP, bottle
 
-from kinetree.tasks.numerics.structure.necks import Neck, necks
+from kinetree.tasks.numerics.structure.necks import necks
+from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 
 def necks_of(
     trunk: float = 3.0, head: float = 1.8, joint: float = BOTTOM, others: tuple[float, ...] = (), scale: float = 1.0
-) -> list[Neck]:
+) -> list[StillJoint]:
     """Of a body with these radii and a neck of radius 1; the head has its joint at one height, other parts theirs elsewhere."""
     V, F = bottle(trunk, head)
     label = (V[:, 2] > joint).astype(np.int64)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from bottles import BOTTOM, TOP, bottle
 from scipy.spatial.transform import Rotation
+from shapes import y_pipe
 from shipped import TREE
 from whole_tree import whole_tree
 
@@ -13,9 +14,9 @@ from kinetree.tasks.numerics.geometry.surface import Surface
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
-from kinetree.tasks.numerics.structure.necked_tree import PosedTree, necked_tree
 from kinetree.tasks.numerics.structure.necks import necks
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.still_joints import PosedTree, StillJoint, with_still_joints
 from kinetree.tasks.numerics.structure.tree_joints import Cut
 
 
@@ -48,7 +49,7 @@ def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedT
     return PosedTree(
         np.array(parents), Motion(rest, R, np.zeros((2, 3))), label, np.eye(len(k))[label], np.tile(known, (2, 1)),
         known, k, known,
-        np.where(k > 0, 1.0, 0.0), known, known, known, k, k, k, np.zeros(len(k), np.bool_),
+        np.where(k > 0, 1.0, 0.0), known, known, known, k, k, k, *np.zeros((2, len(k)), np.bool_),
     )  # fmt: skip
 
 
@@ -56,9 +57,10 @@ def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedT
 def test_a_neck_moves_as_the_tube_did_and_what_is_known_stays_with_its_joint(joint: float, new: int, moved_by: int) -> None:
     V, F = bottle(3.0, 1.8)
     before = posed([-1, 0], [0.0, joint], (V[:, 2] > joint).astype(np.int64))
-    after = necked_tree(before, list(necks(V, F, before.label, before.parents, before.motion.rest, before.radius)))
+    after = with_still_joints(before, list(necks(V, F, before.label, before.parents, before.motion.rest, before.radius)))
     old = 3 - new
     assert (after.parents.tolist(), np.flatnonzero(after.is_neck).tolist()) == ([-1, 0, 1], [new])
+    assert not after.is_mirrored.any()
     np.testing.assert_allclose(after.motion.rest[old], before.motion.rest[1])
     np.testing.assert_array_equal(after.motion.R[:, 1], before.motion.R[:, moved_by])
     np.testing.assert_array_equal(after.motion.R[:, [0, 2]], before.motion.R)
@@ -83,7 +85,7 @@ def test_two_necks_on_one_body_each_get_their_skin() -> None:
     before = posed([-1, 0, 0], [0.0, TOP, TOP], label)
     before.motion.rest[2] += aside
     hanging = list(necks(both, faces, label, before.parents, before.motion.rest, before.radius))
-    after = necked_tree(before, hanging)
+    after = with_still_joints(before, hanging)
     assert after.parents.tolist() == [-1, 0, 1, 0, 3]
     assert after.place.tolist() == [0, 2, 4]
     assert after.carrier.tolist() == [0, 0, 1, 0, 2]
@@ -155,3 +157,61 @@ def test_joints_that_surfaces_show_are_told_beside_a_neck(has_necks: bool) -> No
     made, derivation = kinematic_tree(body, tree, tips, np.full(x.shape[:2], 0.99), has_necks=has_necks)
     assert len(derivation.neck_joints) == has_necks
     assert made.rest[list(derivation.end_joints), 2] == pytest.approx([low], abs=0.1)
+
+
+def test_necks_stay_necks_when_mirrored_joints_follow() -> None:
+    V, F = bottle(3.0, 1.8)
+    before = posed([-1, 0], [0.0, TOP], (V[:, 2] > TOP).astype(np.int64))
+    neck = list(necks(V, F, before.label, before.parents, before.motion.rest, before.radius))
+    once = with_still_joints(before, neck)
+    toe = StillJoint(2, False, np.array([0.0, 0.0, 9.0]), 0.5, (V[:, 2] < 9.0).astype(np.float64))
+    both = with_still_joints(once, [toe], are_mirrored=True)
+    assert both.parents.tolist() == [-1, 0, 1, 2]
+    assert np.flatnonzero(both.is_neck).tolist() == np.flatnonzero(once.is_neck).tolist()
+    assert np.flatnonzero(both.is_mirrored).tolist() == [3]
+    np.testing.assert_allclose(both.motion.rest[3], toe.centre)
+    np.testing.assert_array_equal(both.motion.R[:, 3], once.motion.R[:, 2])
+    np.testing.assert_allclose(both.W.sum(axis=1), 1.0)
+
+
+def test_a_leg_gets_the_ankle_that_the_other_one_has_and_the_derivation_says_so() -> None:
+    cut, surface, leaves = legs()
+    trust = np.ones(surface.x.shape[:2])
+    (plain, _), (body, derivation) = (
+        whole_tree(surface, cut, leaves, trust, settings=TREE, has_mirrored_joints=has) for has in (False, True)
+    )
+    assert len(body.names) == len(plain.names) + 1
+    (joint,) = derivation.mirrored_joints
+    assert derivation.neck_joints == derivation.end_joints == ()
+    assert body.kinds[joint] == "joint"
+    assert body.degrees[joint] == pytest.approx(0.0, abs=1e-3)
+    ankle = next(j for j, kind in enumerate(body.kinds) if kind == "joint" and np.linalg.norm(body.rest[j] - ANKLE) < 2.0)
+    assert ankle != joint
+    np.testing.assert_allclose(body.rest[joint], ANKLE * [1.0, -1.0, 1.0], atol=1.5)
+    assert np.isnan(derivation.spread[joint])
+    np.testing.assert_allclose(body.weight.sum(axis=1), 1.0)
+
+
+PIPE, FACES, _ = y_pipe()
+ALONG = np.array([-0.5, np.sqrt(0.75), 0.0])
+"""Of the first leg; the other one has −y."""
+ANKLE = 18.0 * ALONG
+
+
+def legs() -> tuple[Cut, MovingSurface, np.ndarray]:
+    """A pipe of three arms: both legs swing about hips at 6 from the fork, the foot of one about its ankle too."""
+    first = PIPE @ ALONG
+    other = PIPE @ (ALONG * [1.0, -1.0, 1.0])
+    label = np.where(first > 18.0, 2, np.where(first > 6.0, 1, np.where(other > 6.0, 3, 0)))
+    R, t = np.tile(np.eye(3), (24, 4, 1, 1)), np.zeros((24, 4, 3))
+    for f in range(24):
+        swing = [Rotation.from_rotvec([0.0, 0.0, 0.4 * np.sin(f + k)]).as_matrix() for k in range(3)]
+        R[f, 1], R[f, 3], R[f, 2] = swing[0], swing[1], swing[0] @ swing[2]
+        hips = 6.0 * ALONG, 6.0 * ALONG * [1.0, -1.0, 1.0]
+        t[f, 1], t[f, 3] = hips[0] - R[f, 1] @ hips[0], hips[1] - R[f, 3] @ hips[1]
+        t[f, 2] = R[f, 1] @ ANKLE + t[f, 1] - R[f, 2] @ ANKLE
+    x = np.einsum("tvxy,vy->tvx", R[:, label], PIPE) + t[:, label]
+    surface = MovingSurface(PIPE, FACES, x, Surface.of(PIPE, FACES).area)
+    side = int(np.argmin(np.linalg.norm(PIPE - [16.0, 0.0, 4.0], axis=1)))
+    leaves = np.array([first.argmax(), other.argmax(), PIPE[:, 0].argmax(), side])
+    return Cut(PIPE, label, R, t, np.zeros((24, 4))), surface, leaves

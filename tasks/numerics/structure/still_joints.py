@@ -1,4 +1,4 @@
-"""The posed tree with a bone in every neck that the shape alone shows (ours, see `necks`)."""
+"""The posed tree with joints that turn by nothing, since no motion shows them (ours, see `necks` and `mirrored_joints`)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
@@ -7,9 +7,25 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
-from kinetree.tasks.numerics.structure.necks import Neck
 
-A = TypeVar("A", Floats, Ints)
+A = TypeVar("A", Floats, Ints, Flags)
+
+
+class StillJoint(NamedTuple):
+    """A joint that parts another in two pieces which move alike, at the end of the nearer piece, or of a tube before it.
+
+    part   : in the tree's order; its joint stays at the one end of the piece
+    above  : whether the joint is at the end towards the part above
+    centre : (xyz,) of the joint in the reference, mesh unit
+    radius : of the ring there, mesh unit
+    share  : (vertex,) how much each vertex follows the piece between both joints, 0 to 1
+    """
+
+    part: int
+    above: bool
+    centre: Floats
+    radius: float
+    share: Floats
 
 
 class PosedTree(NamedTuple):
@@ -29,8 +45,9 @@ class PosedTree(NamedTuple):
     spread     : (part,) see `JointConsensus`, mesh unit
     agreeing   : (part,) cuts that have each
     place      : (first part,) part, −1 where it was dropped
-    carrier    : (part,) part of the first tree whose motion it has: itself but for a neck
-    is_neck    : (part,) whether the shape alone shows its joint
+    carrier    : (part,) part of the first tree whose motion it has: itself but for the piece before a joint that is added
+    is_neck     : (part,) whether the shape alone shows its joint
+    is_mirrored : (part,) whether its mirror image alone shows its joint
     """
 
     parents: Ints
@@ -49,28 +66,30 @@ class PosedTree(NamedTuple):
     place: Ints
     carrier: Ints
     is_neck: Flags
+    is_mirrored: Flags
 
 
-def necked_tree(tree: PosedTree, necks: Sequence[Neck]) -> PosedTree:
-    """The tree with every neck right before the part that hangs on it.
+def with_still_joints(tree: PosedTree, joints: Sequence[StillJoint], are_mirrored: bool = False) -> PosedTree:
+    """The tree with one joint more in every part given, and the piece between both joints right before what is beyond it.
 
-    A neck moves as the tube did, with one of the parts at its ends. So the new joint turns by nothing, and the other joint and
-    the skin stay as they were. Only the shape says where the new joint is: it has no drift, spread or offset. Frames show it
-    as they show the other joint.
+    That piece moves as it did. So the new joint turns by nothing, and the other joint and the skin stay as they were. No motion
+    says where the new joint is: it has no drift, spread or offset. Frames show it as they show the other joint.
 
-    necks : one at least, by part
+    joints       : one at least, by part, at most one in a part
+    are_mirrored : whether their mirror images show them, and not their own shape
     """
-    below = np.array([neck.part for neck in necks])
+    below = np.array([one.part for one in joints])
     above = tree.parents[below]
     place = np.arange(len(tree.parents)) + np.searchsorted(below, np.arange(len(tree.parents)), side="right")
     own = place[below] - 1
-    is_above = np.array([neck.above for neck in necks])
+    is_above = np.array([one.above for one in joints])
     new, moved_by = np.where(is_above, own, own + 1), np.where(is_above, above, below)
     parents = np.insert(np.where(tree.parents < 0, -1, place[tree.parents]), below, 0)
     parents[own], parents[own + 1] = parents[own + 1], own
-    label, W = _skinned(tree, necks, place, moved_by)
+    label, W = _skinned(tree, joints, place, moved_by)
+    yes, no = np.ones(len(below), np.bool_), np.zeros(len(below), np.bool_)
     motion = tree.motion._replace(
-        rest=_with(tree.motion.rest, below, new, np.stack([neck.centre for neck in necks])),
+        rest=_with(tree.motion.rest, below, new, np.stack([one.centre for one in joints])),
         R=np.insert(tree.motion.R, below, tree.motion.R[:, moved_by], axis=1),
     )
     return PosedTree(
@@ -82,30 +101,31 @@ def necked_tree(tree: PosedTree, necks: Sequence[Neck]) -> PosedTree:
         drift=_with(tree.drift, below, new, np.zeros(len(below))),
         support=np.insert(tree.support, below, tree.support[below]),
         residual=_with(tree.residual, below, new, np.zeros(len(below))),
-        radius=_with(tree.radius, below, new, np.array([neck.radius for neck in necks])),
+        radius=_with(tree.radius, below, new, np.array([one.radius for one in joints])),
         offset=_with(tree.offset, below, new, np.full(len(below), np.nan)),
         hinge=_with(tree.hinge, below, new, np.full(len(below), np.nan)),
         spread=_with(tree.spread, below, new, np.full(len(below), np.nan)),
         agreeing=_with(tree.agreeing, below, new, np.ones(len(below), np.int64)),
         place=np.where(tree.place < 0, -1, place[tree.place]),
         carrier=np.insert(tree.carrier, below, tree.carrier[moved_by]),
-        is_neck=np.isin(np.arange(len(parents)), new),
+        is_neck=_with(tree.is_neck, below, new, no if are_mirrored else yes),
+        is_mirrored=_with(tree.is_mirrored, below, new, yes if are_mirrored else no),
     )
 
 
 def _with(known: A, below: Ints, new: Ints, value: A) -> A:
-    """What is known of joints, with a row for every neck: that of its new joint is `value`."""
+    """What is known of joints, with a row for every new one: that is `value`."""
     rows = np.insert(known, below, known[below], axis=0)
     rows[new] = value
     return rows
 
 
-def _skinned(tree: PosedTree, necks: Sequence[Neck], place: Ints, moved_by: Ints) -> tuple[Ints, Floats]:
-    """(vertex,) part · (vertex, part) skinning weights: of its tube a neck takes the skin of the part that moved it."""
-    label, W = place[tree.label], np.insert(tree.W, [neck.part for neck in necks], 0.0, axis=1)
-    for neck, part in zip(necks, moved_by, strict=True):
-        own, old = place[neck.part] - 1, place[part]
-        W[:, own] = neck.share * W[:, old]
-        W[:, old] *= 1.0 - neck.share
-        label[(neck.share > 0.5) & (tree.label == part)] = own
+def _skinned(tree: PosedTree, joints: Sequence[StillJoint], place: Ints, moved_by: Ints) -> tuple[Ints, Floats]:
+    """(vertex,) part · (vertex, part) skinning weights: the piece between both joints takes its skin of what moved it."""
+    label, W = place[tree.label], np.insert(tree.W, [one.part for one in joints], 0.0, axis=1)
+    for one, part in zip(joints, moved_by, strict=True):
+        own, old = place[one.part] - 1, place[part]
+        W[:, own] = one.share * W[:, old]
+        W[:, old] *= 1.0 - one.share
+        label[(one.share > 0.5) & (tree.label == part)] = own
     return label, W

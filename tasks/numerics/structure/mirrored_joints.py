@@ -1,0 +1,82 @@
+"""Joints that the mirror image of a limb has: where one foot has a ball, the other has one at the same distance (ours).
+
+A toe that hardly turns, or that few vertices show, is found in one foot and not in the other. Limbs that are mirror images have
+their joints equally far from their ends, so that the one tells where the other lies. No motion shows it, so it does not turn.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.end_cuts import EndCut, ring_at
+from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.still_joints import StillJoint
+
+
+class MirroredJointsSettings(NamedTuple):
+    """Which joints are added. Not varied."""
+
+    alike: float = 1.6
+    """Radius of the ring in that of the other limb's border, at most, and the inverse at least."""
+    apart: float = 1.0
+    """Distance of the ring from the limb's own last joint, in its radii, at least."""
+    least_vertices: int = 4
+    """Vertices on either side of the ring, at least."""
+
+
+def mirrored_joints(
+    V: Floats, F: Ints, parts: RootedParts, rest: Floats, pairs: LimbPairs, settings: MirroredJointsSettings | None = None
+) -> list[StillJoint]:
+    """Joints within the last parts of limbs that the limb's mirror image has, the innermost of each part, by part.
+
+    A limb without any joint has none: it may hang on the trunk anywhere.
+
+    V, F  : (vertex, xyz) reference, mesh unit · (face, corner)
+    rest  : (part, xyz) joints in the reference, mesh unit
+    pairs : ends of limbs that are mirror images
+    """
+    chosen, found = settings or MirroredJointsSettings(), dict[int, StillJoint]()
+    edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
+    edge = np.concatenate([edge, edge[:, ::-1]])
+    for (tips, away), limbs in zip(zip(*pairs, strict=True), mirrored_limbs(F, parts, pairs), strict=False):
+        for side, (own, other) in enumerate(((limbs.one, limbs.other), (limbs.other, limbs.one))):
+            last = int(parts.place[tips[side]])
+            if len(own.part) and own.part[0] == last and last not in found:
+                for joint in _beyond(own, other, limbs.row[:, 1 - side]):
+                    level, radius = float(other.level[joint]), float(parts.radius[other.part[joint]])
+                    cut = _ring(V, edge, parts, last, away[side], level)
+                    if cut is not None and _is_alike(cut, radius, rest[last], chosen):
+                        found[last] = StillJoint(last, False, cut.centre, cut.radius, _nearer(cut, away[side], level))
+                        break
+    return [found[part] for part in sorted(found)]
+
+
+def _beyond(own: Limb, other: Limb, paired: Ints) -> Iterator[int]:
+    """Joints of the other limb without a partner, nearer to its end than any joint of a limb is to its own, innermost first."""
+    for joint in range(len(other.part) - 1, -1, -1):
+        if joint not in paired and np.isfinite(other.level[joint]) and other.level[joint] < own.level.min():
+            yield joint
+
+
+def _ring(V: Floats, edge: Ints, parts: RootedParts, part: int, away: Floats, level: float) -> EndCut | None:
+    """The ring across a part at a distance from the limb's end; away (vertex,) from that end, mesh unit."""
+    inside = edge[(parts.place[edge] == part).all(axis=1) & np.isfinite(away[edge]).all(axis=1)]
+    own = np.flatnonzero((parts.place == part) & np.isfinite(away))
+    return ring_at(V, (part, int(parts.parents[part])), own, -away, inside, -level)
+
+
+def _is_alike(cut: EndCut, radius: float, joint: Floats, chosen: MirroredJointsSettings) -> bool:
+    """Whether a ring is as wide as the other limb's, apart from the joint that is there, and has vertices on either side."""
+    is_as_wide = cut.radius / chosen.alike <= radius <= cut.radius * chosen.alike
+    is_apart = np.linalg.norm(cut.centre - joint) >= chosen.apart * cut.radius
+    sides = int(cut.far.sum()), int((~cut.far).sum())
+    return bool(is_as_wide and is_apart and min(sides) >= chosen.least_vertices)
+
+
+def _nearer(cut: EndCut, away: Floats, level: float) -> Floats:
+    """(vertex,) how much each vertex follows the piece before a ring."""
+    beyond = np.where(np.isfinite(away), level - away, -np.inf)
+    return 1.0 - cut._replace(beyond=beyond).share

@@ -1,0 +1,125 @@
+"""A joint at the end of a limb that its mirror image has is added at the same distance from the end."""
+
+import numpy as np
+import pytest
+from shapes import y_pipe
+
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
+from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.mirrored_joints import MirroredJointsSettings, mirrored_joints
+from kinetree.tasks.numerics.structure.still_joints import StillJoint
+
+V, F, _ = y_pipe()
+"""A trunk along x from the fork at 0, and two legs of radius 4 at 60° on either side of −x, which end 28 from the fork."""
+TIPS = np.array([np.argmax(V[:, 1]), np.argmin(V[:, 1])])
+AWAY = geodesic_distance(Surface.of(V, F), TIPS)
+RADIUS = 3.6
+"""Of the borders across a leg, about."""
+
+
+def parts(one: tuple[float, ...], other: tuple[float, ...]) -> tuple[RootedParts, Floats]:
+    """The pipe cut across both legs at these distances from their ends, outermost first; and its joints."""
+    label, rest, parents = np.zeros(len(V), np.int64), [V[V[:, 0] > 6.0].mean(axis=0)], [-1]
+    for away, levels in zip(AWAY, (one, other), strict=True):
+        above = 0
+        for level in sorted(levels, reverse=True):
+            label[away < level] = len(parents)
+            rest.append(V[np.abs(away - level) < 1.0].mean(axis=0))
+            parents.append(above)
+            above = len(parents) - 1
+    radius = np.where(np.arange(len(parents)) > 0, RADIUS, 0.0)
+    return RootedParts(label, np.array(parents), radius), np.array(rest)
+
+
+def found(
+    one: tuple[float, ...],
+    other: tuple[float, ...],
+    settings: MirroredJointsSettings | None = None,
+    pairs: LimbPairs | None = None,
+) -> list[StillJoint]:
+    of, rest = parts(one, other)
+    return mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]) if pairs is None else pairs, settings)
+
+
+def level(joint: StillJoint, side: int) -> float:
+    """Mean distance from the end of a leg of the vertices nearest to the ring."""
+    return float(AWAY[side][np.abs(joint.share - 0.5) < 0.2].mean())
+
+
+def last_part(one: tuple[float, ...], other: tuple[float, ...], side: int) -> int:
+    return int(parts(one, other)[0].place[TIPS[side]])
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_leg_has_the_joint_that_the_other_has(side: int) -> None:
+    both: tuple[tuple[float, ...], ...] = ((20.0,), (8.0, 20.0))
+    cuts = both if side == 0 else both[::-1]
+    (joint,) = found(*cuts)
+    assert (joint.part, joint.above) == (last_part(*cuts, side), False)
+    assert level(joint, side) == pytest.approx(8.0, abs=0.7)
+    there = V[np.abs(AWAY[side] - 8.0) < 0.7].mean(axis=0)
+    np.testing.assert_allclose(joint.centre, there, atol=0.5)
+    assert joint.radius == pytest.approx(RADIUS, rel=0.15)
+
+
+def test_skin_blends_over_a_radius_and_all_that_is_nearer_follows_the_nearer_piece() -> None:
+    (joint,) = found((20.0,), (8.0, 20.0))
+    away = AWAY[0]
+    assert (joint.share[away > 8.0 + 0.6 * joint.radius] == 1.0).all()
+    assert (joint.share[away < 8.0 - 0.6 * joint.radius] == 0.0).all()
+    assert (joint.share[away > 9.5] > 0.5).all()
+    assert (joint.share[away < 6.5] < 0.5).all()
+
+
+def test_the_innermost_of_two_comes_first() -> None:
+    (joint,) = found((24.0,), (5.0, 12.0, 24.0))
+    assert level(joint, 0) == pytest.approx(12.0, abs=0.7)
+
+
+def test_joints_with_partners_and_joints_above_the_last_one_are_not_added() -> None:
+    assert found((8.0, 20.0), (8.0, 20.0)) == []
+    assert found((5.0, 24.0), (5.0, 14.0, 24.0)) == []
+
+
+def test_a_limb_without_any_joint_has_none() -> None:
+    assert found((), (8.0, 20.0)) == []
+
+
+def test_bodies_without_pairs_or_of_one_part_have_none() -> None:
+    none = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, len(V))))
+    assert found((20.0,), (8.0, 20.0), pairs=none) == []
+    assert found((), ()) == []
+
+
+@pytest.mark.parametrize(("wide", "is_there"), [(1.5, True), (1.7, False), (1 / 1.5, True), (1 / 1.7, False)])
+def test_the_ring_must_be_about_as_wide_as_the_other_limb(wide: float, is_there: bool) -> None:
+    of, rest = parts((20.0,), (8.0, 20.0))
+    (joint,) = found((20.0,), (8.0, 20.0))
+    radius = of.radius.copy()
+    radius[of.place[TIPS[1]]] = wide * joint.radius
+    pairs = LimbPairs(TIPS[None], AWAY[None])
+    assert bool(mirrored_joints(V, F, of._replace(radius=radius), rest, pairs)) == is_there
+
+
+@pytest.mark.parametrize(("apart", "is_there"), [(3.0, True), (3.8, False)])
+def test_the_ring_must_lie_apart_from_the_limbs_own_joint(apart: float, is_there: bool) -> None:
+    """It lies twelve from it, at a radius of 3.5."""
+    assert bool(found((20.0,), (8.0, 20.0), MirroredJointsSettings(apart=apart))) == is_there
+
+
+def test_a_ring_with_few_vertices_beyond_it_is_none() -> None:
+    beyond = int((AWAY[0] < 8.0).sum())
+    assert found((20.0,), (8.0, 20.0), MirroredJointsSettings(least_vertices=beyond - 20))
+    assert not found((20.0,), (8.0, 20.0), MirroredJointsSettings(least_vertices=beyond + 20))
+
+
+def test_places_that_no_path_leads_to_count_nowhere() -> None:
+    away = AWAY.copy()
+    island = V[:, 0] > 26.0
+    away[:, island] = np.inf
+    (joint,) = found((20.0,), (8.0, 20.0), pairs=LimbPairs(TIPS[None], away[None]))
+    assert (joint.share[island] == 1.0).all()
+    assert np.isfinite(joint.centre).all()
