@@ -4,12 +4,17 @@ import numpy as np
 import pytest
 from bottles import BOTTOM, TOP, bottle
 
-from kinetree.tasks.numerics.structure.necks import necks
+from kinetree.tasks.numerics.structure.necks import NecksSettings, necks
 from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 
 def necks_of(
-    trunk: float = 3.0, head: float = 1.8, joint: float = BOTTOM, others: tuple[float, ...] = (), scale: float = 1.0
+    trunk: float = 3.0,
+    head: float = 1.8,
+    joint: float = BOTTOM,
+    others: tuple[float, ...] = (),
+    scale: float = 1.0,
+    settings: NecksSettings | None = None,
 ) -> list[StillJoint]:
     """Of a body with these radii and a neck of radius 1; the head has its joint at one height, other parts theirs elsewhere."""
     V, F = bottle(trunk, head)
@@ -17,7 +22,7 @@ def necks_of(
     heights = np.array([0.0, joint, *others])
     rest = np.stack([0.0 * heights, 0.0 * heights, heights], axis=1)
     parents = np.array([-1, *[0] * (len(heights) - 1)])
-    return list(necks(scale * V, F, label, parents, scale * rest, scale * np.where(parents < 0, 0.0, 1.0)))
+    return list(necks(scale * V, F, label, parents, scale * rest, scale * np.where(parents < 0, 0.0, 1.0), settings))
 
 
 @pytest.mark.parametrize(("joint", "free"), [(BOTTOM, TOP), (TOP, BOTTOM)])
@@ -50,8 +55,21 @@ def test_a_tube_with_a_joint_at_both_ends_has_no_other() -> None:
     assert necks_of(others=(TOP,)) == []
 
 
-def test_a_joint_that_is_at_neither_end_makes_no_neck() -> None:
-    assert necks_of(joint=BOTTOM - 1.4) == []
+@pytest.mark.parametrize(("joint", "is_neck"), [(BOTTOM - 1.4, False), (TOP + 1.0, True), (TOP + 1.5, False)])
+def test_a_joint_that_is_at_neither_end_makes_no_neck(joint: float, is_neck: bool) -> None:
+    assert bool(necks_of(joint=joint)) == is_neck
+
+
+def test_a_joint_amid_the_tube_is_that_of_the_nearer_end() -> None:
+    for joint, free in ((BOTTOM + 0.75, TOP), (TOP - 0.75, BOTTOM)):
+        (neck,) = necks_of(joint=joint)
+        np.testing.assert_allclose(neck.centre, [0.0, 0.0, free], atol=0.4)
+
+
+@pytest.mark.parametrize(("apart", "is_neck"), [(0.8, True), (2.2, False)])
+def test_the_other_end_must_lie_apart_from_the_joint(apart: float, is_neck: bool) -> None:
+    """The ends lie 1.9 radii apart."""
+    assert bool(necks_of(settings=NecksSettings(apart=apart))) == is_neck
 
 
 def test_a_hole_in_a_plain_tube_is_no_neck() -> None:
