@@ -149,6 +149,19 @@ def test_no_task_of_kinetree_reaches_the_table_of_all_tasks():
         assert "kinetree.tasks" not in code_parts(task.module, task.name), task.name
 
 
+def test_no_task_before_the_structure_depends_on_its_code():
+    """Not even by a statement of a module that hands a common type on, which might change what all others reach."""
+    shelves = ("kinetree.tasks.input.", "kinetree.tasks.topology.", "kinetree.tasks.registration.")
+    tasks = [task for task in METHODS["mesoscopic"].tasks if task.module.startswith(shelves)]
+    assert len(tasks) > 20
+    for task in tasks:
+        of_structure = [part for part in code_parts(task.module, task.name) if part.startswith(STRUCTURE)]
+        assert not of_structure, task.name
+
+
+STRUCTURE = "kinetree.tasks.numerics.structure."
+
+
 def test_code_without_source_is_refused_by_name():
     with pytest.raises(ModuleNotFoundError, match=r"no source for module 'kinetree\.tasks\.nothing'"):
         code_digest("kinetree.tasks.nothing", "nothing")

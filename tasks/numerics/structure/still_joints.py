@@ -1,14 +1,14 @@
 """The posed tree with joints that turn by nothing, since no motion shows them (ours, see `necks` and `mirrored_joints`)."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 
-A = TypeVar("A", Floats, Ints, Flags)
+A = TypeVar("A", bound=np.ndarray[Any, Any])
 
 
 class StillJoint(NamedTuple):
