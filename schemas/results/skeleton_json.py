@@ -70,13 +70,14 @@ class Joint(_FileObject):
     """root: no parent; joint: turns against its parent; leaf: the end of a bone, turns with its parent; assumed: the body has
     it, but it was not found, mostly since it never turned: it lies where symmetry or proportions have it; confidence 0."""
     range: Annotated[float, Field(ge=0)]
-    """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves, and for joints that the
-    shape alone shows."""
+    """Range of its turning against its parent over the sequence, degrees; 0 for root and leaves, and for joints that no
+    motion shows, but where they were fitted to the surface of frames in which they were uncertain."""
     rest: Rest
     """Where it is in the reference pose, and how its axes lie."""
     evidence: EvidenceKind | None = None
-    """motion: its parts turn against each other; shape: the body's shape alone shows it, and no turn was measured there.
-    null for root and leaves, for assumed joints, and where the method does not know."""
+    """motion: its parts turn against each other; shape: the body's shape alone shows it; mirror: the mirror image of its limb
+    alone shows it; no turn was measured at these. null for root and leaves, for assumed joints, and where the method does
+    not know."""
     error: JointError | None = None
     """How far off it is expected to be; null for root and leaves, for assumed joints, and where the method does not know."""
 

@@ -46,7 +46,7 @@ class Finding(Params):
     unpaired    : joints found on one side alone
     small       : joints that turn little
     shape       : joints that the body's shape alone shows, so that no turn was measured there
-    mirror      : joints that the mirror image of their limb alone shows, so that no turn was measured there
+    mirror      : joints that the mirror image of their limb alone shows, and no motion
     close       : joints very near the one that they hang on.
     """
     severity: Literal["grave", "fault", "note"]

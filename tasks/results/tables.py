@@ -27,12 +27,13 @@ def tables(
     named: dict[str, bytes] = {}
     counts: list[int] = []
     bars = bars_of_takes(error_bars, skeleton)
+    still = {name for name, known in zip(joint_names.anatomy, error_bars.evidence, strict=False) if known == "mirror"}
     for take, body in of_takes(renamed(skeleton, joint_names)).items():
         found = motion_derivatives(body, params.window, params.degree)
         counts += [] if found is None else [found.samples]
         written, more = dict(all_tables(body, found, bars.get(take))), {}
         written["turns"] = turn_table(body)
-        if (angles := anatomical_table(body, joint_names, up_direction.up)) is not None:
+        if (angles := anatomical_table(body, joint_names, up_direction.up, still)) is not None:
             written["joint_angles"] = angles
         if (gait := gait_files(body, joint_names, up_direction.up)) is not None:
             written["gait"], more["gait.json"] = gait

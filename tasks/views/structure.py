@@ -106,7 +106,8 @@ def _measures(skeleton: Skeleton, joint: int, bars: ErrorBars | None) -> str:
         if np.isfinite(bars.surface_offset[joint]):
             off += f", surface offset {two_digits(bars.surface_offset[joint])}{unit}"
     still = None if bars is None else STILL.get(bars.evidence[joint] or "")
-    turn = f"turns {skeleton.degrees[joint]:.0f}°" if still is None else f"{still}, no turn measured"
+    turn = f"turns {skeleton.degrees[joint]:.0f}°" if still is None or skeleton.degrees[joint] >= 0.5 else "no turn measured"
+    turn = turn if still is None else f"{still}, {turn}"
     return f"{length}, {turn}, {off}, {support}"
 
 

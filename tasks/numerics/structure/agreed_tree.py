@@ -137,7 +137,7 @@ def _without_one(
 
 
 def _in_limbs(left: Pruned, pairs: LimbPairs) -> int:
-    """How many parts are of limbs that have a mirror image; two fewer where two of them become one part."""
+    """How many parts are of limbs that have a mirror image; two fewer where two of them on one part become one."""
     return int(in_mirrored_limbs(RootedParts.of(left.parts.label, left.part_tree), pairs).sum())
 
 

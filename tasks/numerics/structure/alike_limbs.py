@@ -2,9 +2,10 @@
 
 In a bow both thighs turn against the trunk as one, about one line through both hips, and the skin between them goes along, so
 that no motion tells them apart. The shape does: the shortest path over the surface between the ends of two legs passes the
-crotch half-way, and what lies nearer to an end than that is leg.
+crotch half-way, and what lies nearer to an end than that is of a leg alone. The part is cut where both ends are equally far.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurfa
 class AlikeLimbsSettings(NamedTuple):
     """When a part is two limbs.
 
-    Of 58 bodies (wave, dance, ballet, wolf, people 0 to 19, 60 to 69 and 86 to 99, humans, four-legged and random trees) three
+    Of 73 bodies (wave, dance, ballet, wolf, people 0 to 19, 60 to 69 and 86 to 99, humans, four-legged and random trees) three
     have such a part, and no other part between two mirrored limbs has a quarter of its surface on each and one other neighbour.
     """
 
@@ -35,22 +36,29 @@ class AlikeLimbsSettings(NamedTuple):
 
 
 def alike_limbs(
-    body: MovingSurface, parts: MovingParts, found: PartTree, pairs: LimbPairs, settings: AlikeLimbsSettings | None = None
-) -> tuple[int, Ints] | None:
-    """The first part that is two limbs of a pair, and its vertices that are of the second one; None where no part is.
+    body: MovingSurface,
+    parts: MovingParts,
+    found: PartTree,
+    leaves: Ints,
+    pairs: LimbPairs,
+    settings: AlikeLimbsSettings | None = None,
+) -> Iterator[tuple[int, Ints]]:
+    """The parts that are two limbs of a pair and have no third end, each with its vertices that are of the second one.
 
-    found : the tree of the parts
-    pairs : ends of limbs that are mirror images
+    found  : the tree of the parts
+    leaves : (leaf,) vertices at the ends of limbs
+    pairs  : those that are mirror images
     """
     chosen = settings or AlikeLimbsSettings()
     for tips, away in zip(*pairs, strict=True):
-        half = float(away[0][tips[1]]) / 2.0
+        half = float(away[0][tips[1]] + away[1][tips[0]]) / 4.0
         if np.isfinite(half) and half > 0.0:
             for part, beside in _between(parts, found, tips):
-                on_limb = (parts.label == part) & (away < half)
-                if _are_limbs(body, parts, found, (part, beside), on_limb, away > half - chosen.band * body.size, chosen):
-                    return part, np.flatnonzero((parts.label == part) & (away[1] < away[0]))
-    return None
+                own = parts.label == part
+                is_third = own[np.setdiff1d(leaves, tips)].any()
+                is_high = away > half - chosen.band * body.size
+                if not is_third and _are_limbs(body, parts, found, (part, beside), own & (away < half), is_high, chosen):
+                    yield part, np.flatnonzero(own & (away[1] < away[0]))
 
 
 def _between(parts: MovingParts, found: PartTree, tips: Ints) -> list[tuple[int, int]]:
@@ -85,9 +93,9 @@ def _are_limbs(
     on_limb, is_high : (2, vertex) which of the part's vertices are of each limb · which lie near the crotch or beyond
     """
     part, beside = pair
-    share = on_limb @ body.area / body.area[parts.label == part].sum()
+    share = on_limb @ body.area / max(float(body.area[parts.label == part].sum()), np.finfo(float).tiny)
     tops = on_limb & is_high
-    if share.min() < chosen.limb or not tops.any(axis=1).all():
+    if share.min() < chosen.limb or not (tops @ body.area > 0.0).all():
         return False
     middle = np.array([np.average(body.V[top], axis=0, weights=body.area[top]) for top in tops])
     radius = np.mean([np.median(np.linalg.norm(body.V[top] - c, axis=1)) for top, c in zip(tops, middle, strict=True)])

@@ -48,8 +48,8 @@ class HingePlacesSettings(NamedTuple):
     generated humans, quadrupeds and random trees of seeds 0 to 4 and 60 to 64: of 18 joints that come nearer to a true one 17
     have 0.152 and more; at 0.144 and below some move away."""
     share: float = 0.5
-    """Way of a joint, share of the bone on that side, at most: so joints cannot pass each other, also where both move. No
-    joint of long bones goes farther than 0.2."""
+    """Way of a joint, share of the bone on that side, at most: so joints of one limb cannot pass each other, also where both
+    move. No joint of long bones goes farther than 0.2."""
     least_frames: int = 8
     """Frames of a take that is judged by itself, at least. Not varied."""
     margin: float = 0.8

@@ -157,7 +157,7 @@ def _with_mirrored_joints(body: MovingSurface, tree: PosedTree, leaves: Ints) ->
     pairs = limb_pairs(body.V, body.F, leaves)
     for _ in range(len(tree.parents)):
         parts = RootedParts(tree.label, tree.parents, tree.radius)
-        found = mirrored_joints(body.V, body.F, parts, tree.motion.rest, pairs)
+        found = mirrored_joints(body.V, body.F, parts, tree.motion.rest, pairs, tree.is_neck | tree.is_mirrored)
         if not found:
             break
         tree = with_still_joints(tree, found, are_mirrored=True)

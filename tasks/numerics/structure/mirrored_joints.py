@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, ring_at
 from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
@@ -28,37 +29,65 @@ class MirroredJointsSettings(NamedTuple):
 
 
 def mirrored_joints(
-    V: Floats, F: Ints, parts: RootedParts, rest: Floats, pairs: LimbPairs, settings: MirroredJointsSettings | None = None
+    V: Floats,
+    F: Ints,
+    parts: RootedParts,
+    rest: Floats,
+    pairs: LimbPairs,
+    is_still: Flags | None = None,
+    settings: MirroredJointsSettings | None = None,
 ) -> list[StillJoint]:
     """Joints within the last parts of limbs that the limb's mirror image has, the innermost of each part, by part.
 
     A limb without any joint has none: it may hang on the trunk anywhere.
 
-    V, F  : (vertex, xyz) reference, mesh unit · (face, corner)
-    rest  : (part, xyz) joints in the reference, mesh unit
-    pairs : ends of limbs that are mirror images
+    V, F     : (vertex, xyz) reference, mesh unit · (face, corner)
+    rest     : (part, xyz) joints in the reference, mesh unit
+    pairs    : ends of limbs that are mirror images
+    is_still : (part,) joints that no motion shows, which say nothing of others; None has none
     """
     chosen, found = settings or MirroredJointsSettings(), dict[int, StillJoint]()
+    still = np.zeros(len(rest), np.bool_) if is_still is None else is_still
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     edge = np.concatenate([edge, edge[:, ::-1]])
     for (tips, away), limbs in zip(zip(*pairs, strict=True), mirrored_limbs(F, parts, pairs), strict=False):
         for side, (own, other) in enumerate(((limbs.one, limbs.other), (limbs.other, limbs.one))):
             last = int(parts.place[tips[side]])
-            if len(own.part) and own.part[0] == last and last not in found:
-                for joint in _beyond(own, other, limbs.row[:, 1 - side]):
-                    level, radius = float(other.level[joint]), float(parts.radius[other.part[joint]])
+            is_end = len(own.part) > 0 and own.part[0] == last and not (parts.parents == last).any()
+            if is_end and last not in found:
+                for joint in _farther_out(own, other, limbs.row[:, 1 - side]):
+                    part = int(other.part[joint])
+                    level, radius = _level(V, edge, parts, part, rest[part], away[1 - side]), float(parts.radius[part])
                     cut = _ring(V, edge, parts, last, away[side], level)
+                    if still[part] or level >= own.level.min():
+                        continue
                     if cut is not None and _is_alike(cut, radius, rest[last], chosen):
                         found[last] = StillJoint(last, False, cut.centre, cut.radius, _nearer(cut, away[side], level))
                         break
     return [found[part] for part in sorted(found)]
 
 
-def _beyond(own: Limb, other: Limb, paired: Ints) -> Iterator[int]:
+def _farther_out(own: Limb, other: Limb, paired: Ints) -> Iterator[int]:
     """Joints of the other limb without a partner, nearer to its end than any joint of a limb is to its own, innermost first."""
     for joint in range(len(other.part) - 1, -1, -1):
         if joint not in paired and np.isfinite(other.level[joint]) and other.level[joint] < own.level.min():
             yield joint
+
+
+def _level(V: Floats, edge: Ints, parts: RootedParts, part: int, joint: Floats, away: Floats) -> float:
+    """How far a joint lies from the end of its limb: its border, and how far the joint was moved along the limb since.
+
+    edge : (edge, 2) both ways
+    away : (vertex,) from that end, mesh unit
+    """
+    inside = beyond(parts.parents)[part] > 0
+    inner, outer = edge[~inside[parts.place[edge[:, 0]]] & inside[parts.place[edge[:, 1]]]].T
+    reached = np.isfinite(away[inner]) & np.isfinite(away[outer])
+    a, b = V[inner[reached]], V[outer[reached]]
+    inwards = (a - b).mean(axis=0)
+    inwards /= max(float(np.linalg.norm(inwards)), np.finfo(float).tiny)
+    border = (a + b).mean(axis=0) / 2.0
+    return float((away[inner[reached]] + away[outer[reached]]).mean() / 2.0 + (joint - border) @ inwards)
 
 
 def _ring(V: Floats, edge: Ints, parts: RootedParts, part: int, away: Floats, level: float) -> EndCut | None:

@@ -12,6 +12,8 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
+from kinetree.tasks.numerics.structure.part_tree import PartTreeSettings, relative_rotation
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 
 
@@ -68,8 +70,9 @@ _Groups = list[tuple[tuple[int, ...], Floats]]
 
 
 class _Judge(NamedTuple):
-    """What says whether joints are one: those of all parts but the root, the spans of frames, the noise, the limits."""
+    """What says whether joints are one: (frame, part, 3, 3) motions, the joints of all parts but the root, frames, limits."""
 
+    R: Floats
     joints: list[_Joint]
     spans: Ints
     noise: float
@@ -78,6 +81,11 @@ class _Judge(NamedTuple):
     def drifts(self, joints: Sequence[_Joint], places: Sequence[Floats]) -> Floats:
         """(joint, span) drift of each joint at a place (xyz,) of its own, mesh unit."""
         return np.array([joint.drift_at(c, self.spans, self.noise) for joint, c in zip(joints, places, strict=True)])
+
+    def move_alike(self, some: Sequence[int], others: Sequence[int]) -> bool:
+        """Whether some part hardly turns against one of the others, so that any place on one line explains both."""
+        still = PartTreeSettings().still
+        return any(widest_turning_range(relative_rotation(self.R, a, b), self.spans) < still for a in some for b in others)
 
 
 def shared_joints(
@@ -96,7 +104,7 @@ def shared_joints(
     takes : positions of the frames of each take, each of which may show that joints are two; None takes all as one
     """
     chosen, moved, is_shared = settings or SharedJointsSettings(), rest, np.zeros(len(rest), np.bool_)
-    judge = _Judge(_joints(tree, rest), score_spans(len(tree.R), takes), chosen.noise * size, chosen)
+    judge = _Judge(tree.R, _joints(tree, rest), score_spans(len(tree.R), takes), chosen.noise * size, chosen)
     for above in np.unique(tree.parents[1:]).tolist():
         groups: _Groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
         while (merged := _nearest_merged(groups, judge)) is not None:
@@ -124,7 +132,8 @@ def _nearest_merged(groups: _Groups, judge: _Judge) -> _Groups | None:
     for (a, b), distance in sorted(apart.items(), key=lambda entry: entry[1]):
         members = groups[a][0] + groups[b][0]
         of = [judge.joints[k - 1] for k in members]
-        if distance >= chosen.near * min(joint.radius for joint in of):
+        is_near = distance < chosen.near * min(joint.radius for joint in of)
+        if not is_near or judge.move_alike(groups[a][0], groups[b][0]):
             continue
         here = judge.drifts(of, [joint.place for joint in of])
         place = _common_place(of, here[:, 0].tolist(), chosen.spread)

@@ -129,7 +129,8 @@ def tree_joints(
     label = _filled(body.V, np.array(cut.label, dtype=np.int64))
     used, label, R, t, residual = _used(label, cut.R, cut.t, cut.residual)
     seen = None if confidence is None else confident_share(label, body.area, confidence, len(body.x), R.shape[1])
-    left = pruned(body, MovingParts(label, R, t, residual, seen), leaves, evidence, settings=settings.pruning)
+    parts = MovingParts(label, R, t, residual, seen)
+    left = pruned(body, parts, leaves, evidence, settings=settings.pruning, confidence=confidence)
     return tree_of_parts(body, left, used, used[label], confidence, settings)
 
 

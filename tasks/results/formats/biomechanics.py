@@ -1,7 +1,7 @@
 """Tables for the study of movement: anatomical angles, turns about bones, steps (ours)."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -40,10 +40,12 @@ def turn_table(skeleton: Skeleton) -> Table:
     return series(skeleton, list(columns), np.column_stack([np.empty((len(turn), 0)), *columns.values()]))
 
 
-def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | None:
+def anatomical_table(skeleton: Skeleton, names: JointNames, up: str, still: Collection[str] = ()) -> Table | None:
     """A row a frame with signed angles of hips, knees, ankles, shoulders and elbows; None where the front is not certain.
 
     Column rotation_seen of a joint is 1 in frames that show its internal rotation or pronation, 0 where it is between those.
+
+    still : anatomical names of joints at which no turn was measured, which have no angles
     """
     if names.topology != "human" or names.front_confidence < CERTAIN_FRONT:
         return None
@@ -52,9 +54,11 @@ def anatomical_table(skeleton: Skeleton, names: JointNames, up: str) -> Table | 
     takes = take_spans(s.frames)
     angles = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes)
     name_of = dict(zip(names.anatomy, s.names, strict=True))
-    titles = [f"{name_of[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in angles.degrees)]
-    titles += [f"{name_of[joint]}.rotation_seen" for joint in angles.rotation_seen]
-    columns = [*angles.degrees.values(), *angles.rotation_seen.values()]
+    degrees = {name: a for name, a in angles.degrees.items() if name.partition(".")[0] not in still}
+    seen = {joint: a for joint, a in angles.rotation_seen.items() if joint not in still}
+    titles = [f"{name_of[joint]}.{angle}" for joint, _, angle in (name.partition(".") for name in degrees)]
+    titles += [f"{name_of[joint]}.rotation_seen" for joint in seen]
+    columns = [*degrees.values(), *seen.values()]
     return series(s, titles, np.column_stack([np.empty((len(s.frames), 0)), *columns]))
 
 

@@ -39,9 +39,9 @@ def tables(skeleton: Skeleton, found: Derivatives | None, bars: ErrorBars | None
     motion      a row a frame and joint: frame, seconds, joint, position x y z, velocity vx vy vz, acceleration ax ay az,
                 rotation qx qy qz qw against the parent as in skeleton.json, confidence
     joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths; whether
-                its motion or the body's shape alone shows it; its expected error, a bound that nine of ten joints keep, and
-                drift, spread over so many cuts of which so many have the joint, residual, surface offset, frames seen; no
-                such columns where no error is known
+                its motion, the body's shape alone or the other side alone shows it; its expected error, a bound that nine of
+                ten joints keep, and drift, spread over so many cuts of which so many have the joint, residual, surface
+                offset, frames seen; no such columns where no error is known
     positions   a row a frame: frame, seconds, then x, y, z of every joint
     confidence  a row a frame: frame, seconds, then every joint's confidence, 0 to 1
     errors      a row a frame: frame, seconds, then every joint's expected error; only where errors are known

@@ -1,18 +1,23 @@
 """Two limbs that turn as one part about one line are cut apart by their shape."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from limbs import rotation
 from shapes import y_pipe
 from shipped import TREE
+from whole_tree import whole_tree
 
-from kinetree.tasks.numerics.arrays import Ints
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface, surface_areas
+from kinetree.tasks.numerics.structure import pruning
 from kinetree.tasks.numerics.structure.alike_limbs import AlikeLimbsSettings, alike_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import NO_PART, Pruned, pruned
+from kinetree.tasks.numerics.structure.tree_joints import Cut
 
 V, F, _ = y_pipe()
 """A trunk along x from the fork at 0, and two legs at 60° on either side of −x."""
@@ -22,6 +27,7 @@ HIP = 2.0
 LINE = (0.0, 1.0, 0.0)
 LEGS = np.array([np.argmax(V[:, 1]), np.argmin(V[:, 1])])
 HEAD, SIDE = int(np.argmax(V[:, 0])), int(np.argmin(np.linalg.norm(V - [16.0, 0.0, 4.0], axis=1)))
+LEAVES = np.array([*LEGS, HEAD, SIDE])
 KNEES = np.where(V[:, 0] < -9.0, np.where(V[:, 1] > 0.0, 2, 3), 0)
 """(vertex,) shanks as parts 2 and 3."""
 
@@ -54,9 +60,14 @@ def of_legs(tips: Ints = LEGS) -> LimbPairs:
 
 
 def found(
-    body: MovingSurface, parts: MovingParts, pairs: LimbPairs | None = None, settings: AlikeLimbsSettings | None = None
+    body: MovingSurface,
+    parts: MovingParts,
+    pairs: LimbPairs | None = None,
+    settings: AlikeLimbsSettings | None = None,
+    leaves: Ints = LEGS,
 ) -> tuple[int, Ints] | None:
-    return alike_limbs(body, parts, part_tree(body, parts), of_legs() if pairs is None else pairs, settings)
+    both = of_legs() if pairs is None else pairs
+    return next(alike_limbs(body, parts, part_tree(body, parts), leaves, both, settings), None)
 
 
 def test_legs_that_swing_as_one_are_two() -> None:
@@ -104,6 +115,26 @@ def test_how_much_of_the_part_each_limb_must_have(limb: float, is_one: bool) -> 
     assert (found(*seen(border=20.0), settings=AlikeLimbsSettings(near=9.0, limb=limb)) is not None) == is_one
 
 
+def test_a_part_with_a_third_end_is_no_pair_of_limbs() -> None:
+    """As a chest with both arms and the head."""
+    third = int(np.argmin(np.linalg.norm(V - [-2.0, 0.0, 4.0], axis=1)))
+    assert found(*seen(), leaves=np.array([*LEGS, HEAD])) is not None
+    assert found(*seen(), leaves=np.array([*LEGS, HEAD, third])) is None
+
+
+@pytest.mark.parametrize(
+    ("limb", "near", "is_one"), [(0.47, 9.0, True), (0.49, 9.0, False), (0.3, 0.9, False), (0.3, 1.3, True)]
+)
+def test_limits_of_share_and_distance(limb: float, near: float, is_one: bool) -> None:
+    """Each leg has 0.48 of the part; the joint lies 1.1 radii from the line between them."""
+    assert (found(*seen(), settings=AlikeLimbsSettings(limb=limb, near=near)) is not None) == is_one
+
+
+def test_a_part_without_area_is_none() -> None:
+    body, parts = seen()
+    assert found(body._replace(area=np.where(parts.label == 1, 0.0, body.area)), parts) is None
+
+
 def test_ends_that_no_path_joins_are_none() -> None:
     pairs = of_legs()
     distance = pairs.distance.copy()
@@ -136,9 +167,45 @@ def test_where_every_vertex_was_followed_limbs_stay_one_part() -> None:
     assert len(pruned_parts(is_given=True).origin) == 2
 
 
-def pruned_parts(is_given: bool = False) -> Pruned:
-    """The pipe in two parts, pruned."""
+def test_each_leg_is_as_certain_as_its_own_surface() -> None:
+    hidden = np.ones((FRAMES, len(V)))
+    hidden[::2, (V[:, 0] < HIP) & (V[:, 1] < 0.0)] = 0.0
+    seen_share = pruned_parts(hidden).parts.confidence
+    assert seen_share is not None
+    assert seen_share[:, 1].min() > 0.9
+    assert seen_share[::2, 2].max() < 0.1
+    assert seen_share[1::2, 2].min() > 0.9
+
+
+def test_hips_of_legs_that_swing_as_one_stay_two() -> None:
+    """Any place on the line of both explains both."""
     body, parts = seen()
-    leaves = np.array([*LEGS, HEAD, SIDE])
-    assert {*LEGS.tolist()} in [set(tip) for tip in limb_pairs(V, F, leaves).tip.tolist()]
-    return pruned(body, parts._replace(confidence=None) if is_given else parts, leaves, settings=TREE.pruning)
+    cut = Cut(V, parts.label, parts.R, parts.t, parts.residual)
+    tree, _ = whole_tree(body, cut, LEAVES, np.ones((FRAMES, len(V))), settings=TREE)
+    hips = [j for j, kind in enumerate(tree.kinds) if kind == "joint"]
+    assert len(hips) == 2
+    assert np.linalg.norm(tree.rest[hips[0]] - tree.rest[hips[1]]) > 1.4
+
+
+def test_a_candidate_that_cannot_be_cut_hides_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[int] = []
+    cut_apart = pruning._cut_apart
+
+    def second(*of: Any) -> Pruned | None:
+        calls.append(1)
+        return None if len(calls) == 1 else cut_apart(*of)
+
+    monkeypatch.setattr(pruning, "_cut_apart", second)
+    monkeypatch.setattr(pruning, "alike_limbs", lambda *of: [c for c in alike_limbs(*of) for _ in range(2)])
+    assert len(pruned_parts().origin) == 3
+    assert len(calls) == 2
+
+
+def pruned_parts(trust: Floats | None = None, is_given: bool = False) -> Pruned:
+    """The pipe in two parts, pruned; trust (frame, vertex) 0 to 1."""
+    body, parts = seen()
+    assert {*LEGS.tolist()} in [set(tip) for tip in limb_pairs(V, F, LEAVES).tip.tolist()]
+    confidence = np.ones((FRAMES, len(V))) if trust is None else trust
+    if is_given:
+        return pruned(body, parts._replace(confidence=None), LEAVES, settings=TREE.pruning)
+    return pruned(body, parts, LEAVES, settings=TREE.pruning, confidence=confidence)

@@ -41,7 +41,7 @@ def found(
     pairs: LimbPairs | None = None,
 ) -> list[StillJoint]:
     of, rest = parts(one, other)
-    return mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]) if pairs is None else pairs, settings)
+    return mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]) if pairs is None else pairs, settings=settings)
 
 
 def level(joint: StillJoint, side: int) -> float:
@@ -74,6 +74,32 @@ def test_skin_blends_over_a_radius_and_all_that_is_nearer_follows_the_nearer_pie
     assert (joint.share[away < 6.5] < 0.5).all()
 
 
+@pytest.mark.parametrize("moved", [-2.0, 3.0])
+def test_a_joint_that_was_moved_along_its_limb_is_mirrored_where_it_is(moved: float) -> None:
+    of, rest = parts((20.0,), (8.0, 20.0))
+    inwards = -V[TIPS[1]] / np.linalg.norm(V[TIPS[1]])
+    rest[of.place[TIPS[1]]] += moved * inwards
+    (joint,) = mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]))
+    assert level(joint, 0) == pytest.approx(8.0 + moved, abs=0.8)
+
+
+def test_a_joint_that_no_motion_shows_is_not_mirrored() -> None:
+    of, rest = parts((20.0,), (8.0, 20.0))
+    still = np.arange(len(rest)) == of.place[TIPS[1]]
+    assert mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]), still) == []
+    assert mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]), ~still)
+
+
+def test_a_part_that_carries_another_is_not_divided() -> None:
+    """As a hand with a thumb, which may hang on either piece."""
+    of, rest = parts((20.0,), (8.0, 20.0))
+    last = int(of.place[TIPS[0]])
+    thumb = (np.abs(AWAY[0] - 14.0) < 2.0) & (V[:, 2] > 3.0)
+    with_thumb = RootedParts(np.where(thumb, len(rest), of.place), np.append(of.parents, last), np.append(of.radius, 1.0))
+    there = np.concatenate([rest, V[thumb].mean(axis=0)[None]])
+    assert mirrored_joints(V, F, with_thumb, there, LimbPairs(TIPS[None], AWAY[None])) == []
+
+
 def test_the_innermost_of_two_comes_first() -> None:
     (joint,) = found((24.0,), (5.0, 12.0, 24.0))
     assert level(joint, 0) == pytest.approx(12.0, abs=0.7)
@@ -104,7 +130,7 @@ def test_the_ring_must_be_about_as_wide_as_the_other_limb(wide: float, is_there:
     assert bool(mirrored_joints(V, F, of._replace(radius=radius), rest, pairs)) == is_there
 
 
-@pytest.mark.parametrize(("apart", "is_there"), [(3.0, True), (3.8, False)])
+@pytest.mark.parametrize(("apart", "is_there"), [(3.0, True), (3.8, False), (0.0, True)])
 def test_the_ring_must_lie_apart_from_the_limbs_own_joint(apart: float, is_there: bool) -> None:
     """It lies twelve from it, at a radius of 3.5."""
     assert bool(found((20.0,), (8.0, 20.0), MirroredJointsSettings(apart=apart))) == is_there
