@@ -84,7 +84,7 @@ def _provenance(record: Record) -> dict[str, Any]:
         "params": record.params,
         "inputs": inputs,
         "key": record.key,
-        "code": sorted(record.code),
+        "code": sorted(module for module in record.code if module),
         "versions": record.versions,
     }
 

@@ -59,7 +59,9 @@ def _code(now: Mapping[str, str], then: Mapping[str, str]) -> tuple[Reason, ...]
     for module in sorted({*now, *then}):
         a, b = _definitions(then.get(module, "")), _definitions(now.get(module, ""))
         names = sorted(name for name in {*a, *b} if a.get(name) != b.get(name))
-        if names:
+        if names and not module:
+            reasons.append(Reason("code", "the order of imports"))
+        elif names:
             more = f" and {len(names) - 3} more" if len(names) > 3 else ""
             reasons.append(Reason("code", f"{module}:{', '.join(names[:3])}{more}"))
     return tuple(reasons)

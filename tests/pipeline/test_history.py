@@ -58,6 +58,11 @@ def test_much_changed_code_of_one_module_is_told_in_short():
     assert [str(r) for r in differences(Work({}, now, []), recorded(before))] == ["code: a.b:f, g, h and 2 more"]
 
 
+def test_the_order_of_imports_has_words_and_no_module():
+    before, now = {"": "(statements):000001", "a.b": "f:000001"}, {"": "(statements):000002", "a.b": "f:000001"}
+    assert [str(r) for r in differences(Work({}, now, []), recorded(before))] == ["code: the order of imports"]
+
+
 def test_code_that_a_record_tells_by_whole_modules_is_told_in_one_reason():
     found = differences(Work({}, {"a.b": "f:000001"}, []), recorded({"a.b": "0" * 40, "a.c": "1" * 40}))
     assert [str(r) for r in found] == ["code: the earlier run identified it by whole modules"]
