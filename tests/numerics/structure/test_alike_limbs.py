@@ -12,7 +12,7 @@ from whole_tree import whole_tree
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface, surface_areas
-from kinetree.tasks.numerics.structure import pruning
+from kinetree.tasks.numerics.structure import agreed_tree, pruning
 from kinetree.tasks.numerics.structure.alike_limbs import AlikeLimbsSettings, alike_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
@@ -209,3 +209,9 @@ def pruned_parts(trust: Floats | None = None, is_given: bool = False) -> Pruned:
     if is_given:
         return pruned(body, parts._replace(confidence=None), LEAVES, settings=TREE.pruning)
     return pruned(body, parts, LEAVES, settings=TREE.pruning, confidence=confidence)
+
+
+def test_two_limbs_of_one_part_count_as_no_part_of_a_limb() -> None:
+    pairs = limb_pairs(V, F, LEAVES)
+    apart, whole = pruned_parts(), pruned_parts(is_given=True)
+    assert (agreed_tree._in_limbs(apart, pairs), agreed_tree._in_limbs(whole, pairs)) == (2, 0)

@@ -1,11 +1,15 @@
 """Border and joint go together to where the frames' surfaces bend the limb, if halves of the frames agree on the place."""
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 from smeared import END, Frames, three_parts, turning
 
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure import hinge_places
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
 from kinetree.tasks.numerics.structure.hinge_places import (
@@ -243,3 +247,29 @@ def test_one_noisy_frame_repeated_moves_no_joint() -> None:
     always = HingePlacesSettings(gain=0.0)
     assert hinge_shifts(tree, costs, rest, np.ones((24, 3)), (), always).any(), "noise alone would move one"
     np.testing.assert_array_equal(hinge_shifts(tree, costs, rest, np.ones((24, 3))), 0.0)
+
+
+def room(parents: list[int], heights: list[float], joint: int, aside: float = 0.0) -> tuple[float, float]:
+    """Of a joint among others at these heights; the bone beyond it ends two above, and the last part lies so far aside."""
+    rest = np.stack([np.zeros(len(heights)), np.zeros(len(heights)), np.array(heights)], axis=1)
+    rest[-1, 0] = aside
+    tree = cast(FirstTree, SimpleNamespace(parents=np.array(parents)))
+    up = np.array([0.0, 0.0, 1.0])
+    above, below = hinge_places._room(tree, rest, joint, rest[joint] + 2.0 * up, up, HingePlacesSettings())
+    return round(float(above), 6), round(float(below), 6)
+
+
+@pytest.mark.parametrize(
+    ("parents", "heights", "joint", "aside", "above"),
+    [
+        ([-1, 0, 0, 0], [4.0, 5.0, 2.0, 1.0], 1, 0.0, 3.0),
+        ([-1, 0, 0, 0], [4.0, 5.0, 7.0, 6.0], 1, 0.0, 1.0),
+        ([-1, 0, 0, 0], [4.0, 5.0, 7.0, 4.0], 1, 3.0, 1.0),
+        ([-1, 0, 1, 0], [0.0, 2.0, 5.0, 4.0], 2, 0.0, 3.0),
+    ],
+    ids=["the nearest behind", "none behind: the root's place", "one far aside", "not on the root: the joint above"],
+)
+def test_room_beside_the_root_goes_to_the_nearest_joint_behind(
+    parents: list[int], heights: list[float], joint: int, aside: float, above: float
+) -> None:
+    assert room(parents, heights, joint, aside) == (above, 2.0)

@@ -15,12 +15,14 @@ def necks_of(
     others: tuple[float, ...] = (),
     scale: float = 1.0,
     settings: NecksSettings | None = None,
+    place: float | None = None,
 ) -> list[StillJoint]:
-    """Of a body with these radii and a neck of radius 1; the head has its joint at one height, other parts theirs elsewhere."""
+    """Of a body with these radii and a neck of radius 1; the head begins at one height, with its joint there or at a place."""
     V, F = bottle(trunk, head)
     label = (V[:, 2] > joint).astype(np.int64)
     heights = np.array([0.0, joint, *others])
     rest = np.stack([0.0 * heights, 0.0 * heights, heights], axis=1)
+    rest[1, 2] = joint if place is None else place
     parents = np.array([-1, *[0] * (len(heights) - 1)])
     return list(necks(scale * V, F, label, parents, scale * rest, scale * np.where(parents < 0, 0.0, 1.0), settings))
 
@@ -55,9 +57,11 @@ def test_a_tube_with_a_joint_at_both_ends_has_no_other() -> None:
     assert necks_of(others=(TOP,)) == []
 
 
-@pytest.mark.parametrize(("joint", "is_neck"), [(BOTTOM - 1.4, False), (TOP + 1.0, True), (TOP + 1.5, False)])
-def test_a_joint_that_is_at_neither_end_makes_no_neck(joint: float, is_neck: bool) -> None:
-    assert bool(necks_of(joint=joint)) == is_neck
+@pytest.mark.parametrize(
+    ("place", "is_neck"), [(BOTTOM - 1.2, True), (BOTTOM - 1.45, False), (TOP + 1.2, True), (TOP + 1.45, False)]
+)
+def test_a_joint_that_is_at_neither_end_makes_no_neck(place: float, is_neck: bool) -> None:
+    assert bool(necks_of(joint=BOTTOM, place=place)) == is_neck
 
 
 def test_a_joint_amid_the_tube_is_that_of_the_nearer_end() -> None:
