@@ -6,8 +6,8 @@ from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import FRAME, JOINT
 
 EvidenceKind = Literal["motion", "shape", "mirror"]
-"""How a joint is known: its parts turn against each other; or by the body's shape alone; or
-by the mirror image of its limb alone. The last two turn only in frames in which uncertain parts were fitted to the surface."""
+"""How a joint is known: its parts turn against each other; by the body's shape alone; or by the mirror image of its limb alone.
+The last two turn only in frames in which uncertain parts were fitted to the surface."""
 
 
 class ErrorBars(Artifact):
