@@ -41,7 +41,7 @@ class HingePlacesSettings(NamedTuple):
     """Length of the bones on both sides of a joint from which on it may move if more is gained (`short_gain`). Joints that gain
     on the bodies named there have 0.43 and more. Not varied."""
     short_straight: float = 0.7
-    """Cosine of the angle between such bones, at least. Joints that gain have 0.73 and more; one with 0.74 moved away."""
+    """Cosine of the angle between such bones, at least. Joints that gain have 0.73 and more. Not varied."""
     short_gain: float = 0.15
     """How much less the best place leaves than the joint where bones are short or bent, or where the frames divide the trunk,
     share of that, at least. Chosen with `short_straight` on people 0 to 19 and 60 to 69, wave, dance, ballet, wolf and
