@@ -13,8 +13,6 @@ MOST_COMPARED = 96
 """Frames whose rotations are compared each with each, about; for time."""
 FEW_FRAMES = 16
 """Frames of all takes below which no rotation is left out."""
-ROUNDING = 1e-4
-"""Range of turning, degrees, up to which it is none: rounding alone makes up to 1e-5 of it."""
 OUT_OF_ROUND = 0.1
 """Share of a roll's displacement along the normals, from which on the surface shows the roll in full. Not recorded."""
 
@@ -32,8 +30,7 @@ def turning_range(turns: Floats, frames: int | None = None) -> float:
     rank = min(3, 1 + len(every) // 8) if (frames or len(turns)) >= FEW_FRAMES else 1
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     third = np.sort(angle, axis=1)[:, -rank]
-    widest = float(np.degrees(np.sort(third)[-rank]))
-    return widest if widest > ROUNDING else 0.0
+    return float(np.degrees(np.sort(third)[-rank]))
 
 
 def widest_turning_range(turns: Floats, spans: Ints) -> float:
