@@ -45,8 +45,8 @@ class HingePlacesSettings(NamedTuple):
     short_gain: float = 0.15
     """How much less the best place leaves than the joint where bones are short or bent, or where the frames divide the trunk,
     share of that, at least. Chosen with `short_straight` on people 0 to 19 and 60 to 69, wave, dance, ballet, wolf and
-    generated humans, quadrupeds and random trees of seeds 0 to 4 and 60 to 64, on which it moves 17 joints, all but one nearer
-    to a true one. Of those below, one with 0.142 would come nearer, others with 0.08 to 0.144 would move away."""
+    generated humans, quadrupeds and random trees of seeds 0 to 4 and 60 to 64, on which it moves 17 joints: three spines more
+    are found, no joint is lost. Of those below, one with 0.142 would come nearer, others with 0.08 to 0.144 would move away."""
     share: float = 0.5
     """Way of a joint, share of the bone on that side, at most: so joints of one limb cannot pass each other, also where both
     move. No joint of long bones goes farther than 0.2."""

@@ -233,7 +233,7 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
         positions=np.concatenate([X, tips], axis=1)[:, order],
         rotation=motion.R[:, part[order]],
         confidence=tree.confidence[:, part[order]],
-        degrees=np.where(is_end, 0.0, degrees[part])[order],
+        degrees=np.where(is_end | (tree.is_neck | tree.is_mirrored)[part], 0.0, degrees[part])[order],
         drift=np.where(is_end, 0.0, tree.drift[part])[order],
         support=tree.support[part[order]],
         label=np.where(W[np.arange(len(V)), label] >= RIGID_WEIGHT, place[label], -1),

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, ring_at
 from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
@@ -48,8 +49,7 @@ def mirrored_joints(
     """
     chosen, found = settings or MirroredJointsSettings(), dict[int, StillJoint]()
     still = np.zeros(len(rest), np.bool_) if is_still is None else is_still
-    edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    edge = np.concatenate([edge, edge[:, ::-1]])
+    edge = ring_edges(*rings(F, len(V)))
     for (tips, away), limbs in zip(zip(*pairs, strict=True), mirrored_limbs(F, parts, pairs), strict=False):
         for side, (own, other) in enumerate(((limbs.one, limbs.other), (limbs.other, limbs.one))):
             last = int(parts.place[tips[side]])
@@ -57,11 +57,11 @@ def mirrored_joints(
             if is_end and last not in found:
                 for joint in _farther_out(own, other, limbs.row[:, 1 - side]):
                     part = int(other.part[joint])
-                    level, radius = _level(V, edge, parts, part, rest[part], away[1 - side]), float(parts.radius[part])
-                    cut = _ring(V, edge, parts, last, away[side], level)
+                    level = _level(V, edge, parts, part, rest[part], away[1 - side])
                     if still[part] or level >= own.level.min():
                         continue
-                    if cut is not None and _is_alike(cut, radius, rest[last], chosen):
+                    cut = _ring(V, edge, parts, last, away[side], level)
+                    if cut is not None and _is_alike(cut, float(parts.radius[part]), rest[last], chosen):
                         found[last] = StillJoint(last, False, cut.centre, cut.radius, _nearer(cut, away[side], level))
                         break
     return [found[part] for part in sorted(found)]

@@ -12,9 +12,9 @@ A = TypeVar("A", bound=np.ndarray[Any, Any])
 
 
 class StillJoint(NamedTuple):
-    """A joint that parts another in two pieces which move alike, at the end of the nearer piece, or of a tube before it.
+    """A joint to be added at one end of a piece of a part, or of a tube before it; the part's own joint is at the other end.
 
-    part   : in the tree's order; its joint stays at the one end of the piece
+    part   : in the tree's order
     above  : whether the joint is at the end towards the part above
     centre : (xyz,) of the joint in the reference, mesh unit
     radius : of the ring there, mesh unit
