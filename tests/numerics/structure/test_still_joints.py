@@ -174,6 +174,25 @@ def test_necks_stay_necks_when_mirrored_joints_follow() -> None:
     np.testing.assert_allclose(both.W.sum(axis=1), 1.0)
 
 
+def test_a_leg_gets_ankle_and_toes_one_after_the_other() -> None:
+    """The other leg has one joint more beyond its ankle."""
+    cut, surface, leaves = legs()
+    toes = PIPE @ ALONG > 24.5
+    R, t = (np.concatenate([a, a[:, 2:3]], axis=1) for a in (cut.R, cut.t))
+    joint = 24.5 * ALONG
+    for f in range(len(R)):
+        R[f, 4] = R[f, 2] @ Rotation.from_rotvec([0.0, 0.0, 0.5 * np.sin(2.0 * f)]).as_matrix()
+        t[f, 4] = R[f, 2] @ joint + t[f, 2] - R[f, 4] @ joint
+    label = np.where(toes, 4, cut.label)
+    x = np.einsum("tvxy,vy->tvx", R[:, label], PIPE) + t[:, label]
+    body, derivation = whole_tree(
+        surface._replace(x=x), Cut(PIPE, label, R, t, np.zeros((24, 5))), leaves, np.ones(x.shape[:2]), settings=TREE,
+        has_mirrored_joints=True,
+    )  # fmt: skip
+    found = sorted(body.rest[list(derivation.mirrored_joints)] @ (ALONG * [1.0, -1.0, 1.0]))
+    np.testing.assert_allclose(found, [18.0, 24.5], atol=1.5)
+
+
 def test_a_leg_gets_the_ankle_that_the_other_one_has_and_the_derivation_says_so() -> None:
     cut, surface, leaves = legs()
     trust = np.ones(surface.x.shape[:2])
