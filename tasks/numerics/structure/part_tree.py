@@ -1,6 +1,6 @@
 """One tree of all parts by the joints between them, and how clear each joint is (2014, Sec. 6.3)."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +72,7 @@ class MovingParts(NamedTuple):
     R, t     : (frame, part, 3, 3), (frame, part, xyz) from the reference
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit
     confidence : (frame, part) 0 to 1; None where every vertex was followed
+    joined     : pairs of parts between which there is a joint, whatever their motions say
     """
 
     label: Ints
@@ -79,13 +80,15 @@ class MovingParts(NamedTuple):
     t: Floats
     residual: Floats
     confidence: Floats | None = None
+    joined: frozenset[frozenset[int]] = frozenset()
 
     def without(self, gone: int, label: Ints) -> "MovingParts":
         """The other parts; `label` (vertex,) gives the vertices of the part that is gone to others."""
         others = np.arange(self.R.shape[1]) != gone
         confidence = None if self.confidence is None else self.confidence[:, others]
         R, t, residual = (np.ascontiguousarray(a[:, others]) for a in (self.R, self.t, self.residual))
-        return MovingParts(label - (label > gone), R, t, residual, confidence)
+        joined = frozenset(frozenset(part - (part > gone) for part in pair) for pair in self.joined if gone not in pair)
+        return MovingParts(label - (label > gone), R, t, residual, confidence, joined)
 
 
 class PartTree(NamedTuple):
@@ -103,6 +106,20 @@ class PartTree(NamedTuple):
     tree: RootedTree
     degrees: Floats
     ratio: Floats
+
+
+def joined(body: MovingSurface, parts: MovingParts, pairs: Collection[Collection[int]]) -> MovingParts:
+    """The same parts, joined where they are to have a joint and the least tree has none.
+
+    pairs : parts that are to have a joint
+    """
+    free = parts._replace(joined=frozenset())
+    return free._replace(joined=frozenset(map(frozenset, pairs)) - joints_of(part_tree(body, free)))
+
+
+def joints_of(found: PartTree) -> frozenset[frozenset[int]]:
+    """The pairs of parts between which a tree has a joint."""
+    return frozenset(map(frozenset, found.borders.pair[found.tree.border[1:]].tolist()))
 
 
 def part_tree(body: MovingSurface, parts: MovingParts, settings: PartTreeSettings | None = None) -> PartTree:
@@ -157,7 +174,7 @@ def relative_rotation(R: Floats, above: int, part: int) -> Floats:
 def _border_cost(body: MovingSurface, parts: MovingParts, met: Borders, centres: Joints, chosen: PartTreeSettings) -> Floats:
     """(border,) how bad a joint it would make, mesh unit: by drift, distance from the border, bad blending, a short border.
 
-    A border that does not turn costs more than any that does.
+    A border that does not turn costs more than any that does; one at which parts are joined costs nothing.
     """
     longest = np.zeros(parts.R.shape[1])
     np.maximum.at(longest, met.pair.ravel(), np.repeat(met.length, 2))
@@ -169,7 +186,9 @@ def _border_cost(body: MovingSurface, parts: MovingParts, met: Borders, centres:
     spans = score_spans(len(body.x), body.takes)
     turns = [widest_turning_range(relative_rotation(parts.R, a, b), spans) for a, b in met.pair]
     cost: Floats = error * (1.0 + chosen.shortness * shortness)
-    return np.where(np.array(turns) < chosen.still, cost + 2.0 * cost.max(initial=0.0), cost)
+    cost = np.where(np.array(turns) < chosen.still, cost + 2.0 * cost.max(initial=0.0), cost)
+    are_joined = np.array([frozenset(pair) in parts.joined for pair in met.pair.tolist()], np.bool_)
+    return np.where(are_joined, 0.0, cost)
 
 
 def branch_borders(met: Borders, tree: RootedTree) -> Borders:

@@ -10,9 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
-from kinetree.tasks.numerics.structure.alike_limbs import alike_limbs
 from kinetree.tasks.numerics.structure.end_effectors import from_border
-from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence, least_evident_joint
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, joint_partners
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
@@ -102,14 +100,12 @@ def pruned(
     evidence: FrameEvidence | None = None,
     *,
     settings: PruningSettings,
-    confidence: Floats | None = None,
 ) -> Pruned:
     """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows, and those that
-    the mirror image of their limb lacks. Limbs that are one part are cut apart in the end where vertices were aligned.
+    the mirror image of their limb lacks.
 
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
-    confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     """
     chosen = _by_takes(body, settings)
     start, ring = rings(body.F, len(body.V))
@@ -123,8 +119,7 @@ def pruned(
             break
         left = _without(body, state, gone, UNEVIDENT, start, ring)
         state = _pruned_by_motion(body, left, leaves, pairs, chosen)
-    state = _pruned_by_partners(body, state, leaves, pairs, chosen)
-    return state if confidence is None else _with_limbs_apart(body, state, leaves, pairs, confidence)
+    return _pruned_by_partners(body, state, leaves, pairs, chosen)
 
 
 def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
@@ -184,32 +179,6 @@ def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: 
     return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
 
 
-def _with_limbs_apart(body: MovingSurface, state: Pruned, leaves: Ints, pairs: LimbPairs, confidence: Floats) -> Pruned:
-    """The same with two limbs of one part as two parts that move alike."""
-    while True:
-        for part, other in alike_limbs(body, state.parts, state.part_tree, leaves, pairs):
-            apart = _cut_apart(body, state, part, other, confidence)
-            if apart is not None:
-                state = apart
-                break
-        else:
-            return state
-
-
-def _cut_apart(body: MovingSurface, state: Pruned, part: int, other: Ints, confidence: Floats) -> Pruned | None:
-    """The same with some vertices of a part as a part of their own; None where one of both meets the other alone."""
-    count = state.parts.R.shape[1]
-    label, same = state.parts.label.copy(), [*range(count), part]
-    label[other] = count
-    R, t, residual = (np.ascontiguousarray(a[:, same]) for a in (state.parts.R, state.parts.t, state.parts.residual))
-    share = confident_share(label, body.area, confidence, len(body.x), count + 1)
-    parts = MovingParts(label, R, t, residual, share)
-    tree = part_tree(body, parts)
-    if any({part, count} == {*pair} for pair in tree.borders.pair[tree.tree.border[1:]].tolist()):
-        return None
-    return state._replace(parts=parts, part_tree=tree, origin=np.append(state.origin, NO_PART))
-
-
 def _weak_parts(
     body: MovingSurface, parts: MovingParts, found: PartTree, leaves: Ints, pairs: LimbPairs, chosen: PruningSettings
 ) -> dict[int, str]:
@@ -221,6 +190,8 @@ def _weak_parts(
     scores = [(_flesh_score(parts.R, found, k, reach[k], chosen), int(part), FLESH) for k, part in enumerate(tree.order)]
     for k in range(1, len(mass)):
         part, above = int(tree.order[k]), int(tree.order[tree.parents[k]])
+        if {part, above} in parts.joined:
+            continue
         smaller = min((part, above), key=lambda p: (mass[p], p))
         last = not (tree.parents == k).any()
         scores.append((found.degrees[k] / max(chosen.degrees, 1e-9), smaller, STILL))

@@ -1,7 +1,5 @@
 """Two limbs that turn as one part about one line are cut apart by their shape."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from limbs import rotation
@@ -12,12 +10,13 @@ from whole_tree import whole_tree
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface, surface_areas
-from kinetree.tasks.numerics.structure import agreed_tree, pruning
+from kinetree.tasks.numerics.structure import agreed_tree, limbs_apart
 from kinetree.tasks.numerics.structure.alike_limbs import AlikeLimbsSettings, alike_limbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import NO_PART, Pruned, pruned
-from kinetree.tasks.numerics.structure.tree_joints import Cut
+from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 V, F, _ = y_pipe()
 """A trunk along x from the fork at 0, and two legs at 60° on either side of −x."""
@@ -164,7 +163,10 @@ def test_legs_apart_hang_on_the_trunk_and_the_cut_has_one_of_them() -> None:
 
 
 def test_where_every_vertex_was_followed_limbs_stay_one_part() -> None:
-    assert len(pruned_parts(is_given=True).origin) == 2
+    body, parts = seen()
+    cut = Cut(V, parts.label, parts.R, parts.t, parts.residual)
+    assert tree_joints(body, cut, LEAVES, settings=TREE).R.shape[1] == 2
+    assert tree_joints(body, cut, LEAVES, np.ones((FRAMES, len(V))), settings=TREE).R.shape[1] == 3
 
 
 def test_each_leg_is_as_certain_as_its_own_surface() -> None:
@@ -188,17 +190,12 @@ def test_hips_of_legs_that_swing_as_one_stay_two() -> None:
 
 
 def test_a_candidate_that_cannot_be_cut_hides_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[int] = []
-    cut_apart = pruning._cut_apart
-
-    def second(*of: Any) -> Pruned | None:
-        calls.append(1)
-        return None if len(calls) == 1 else cut_apart(*of)
-
-    monkeypatch.setattr(pruning, "_cut_apart", second)
-    monkeypatch.setattr(pruning, "alike_limbs", lambda *of: [c for c in alike_limbs(*of) for _ in range(2)])
-    assert len(pruned_parts().origin) == 3
-    assert len(calls) == 2
+    """A spine whose both sides a candidate wrongly names would hang on the other."""
+    upper = np.flatnonzero(V[:, 0] > 12.0)
+    monkeypatch.setattr(limbs_apart, "alike_limbs", lambda *of: [(0, upper), *alike_limbs(*of)])
+    left = pruned_parts()
+    assert len(left.origin) == 3
+    assert set(left.parts.label[upper]) == {0}
 
 
 def pruned_parts(trust: Floats | None = None, is_given: bool = False) -> Pruned:
@@ -208,7 +205,8 @@ def pruned_parts(trust: Floats | None = None, is_given: bool = False) -> Pruned:
     confidence = np.ones((FRAMES, len(V))) if trust is None else trust
     if is_given:
         return pruned(body, parts._replace(confidence=None), LEAVES, settings=TREE.pruning)
-    return pruned(body, parts, LEAVES, settings=TREE.pruning, confidence=confidence)
+    left = pruned(body, parts, LEAVES, settings=TREE.pruning)
+    return limbs_apart.with_limbs_apart(body, left, LEAVES, confidence, PAIRED)
 
 
 def test_two_limbs_of_one_part_count_as_no_part_of_a_limb() -> None:
