@@ -56,8 +56,8 @@ def moving(body: Known) -> MovingSurface:
 class Frames:
     """Frames that show the true body in other triangles, with noise of their own."""
 
-    def __init__(self, turn: Floats, noise: float = 0.0, scale: float = 1.0) -> None:
-        self.true, self.noise, self.scale = chain((0.0, END), turn, around=27, along=83), noise, scale
+    def __init__(self, turn: Floats, noise: float = 0.0, scale: float = 1.0, heights: tuple[float, ...] = (0.0, END)) -> None:
+        self.true, self.noise, self.scale = chain(heights, turn, around=27, along=83), noise, scale
 
     def __call__(self, frame: int) -> tuple[Floats, Ints]:
         x = self.true.x[frame]

@@ -10,18 +10,21 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 
 LIMBS = -3.2
-"""Height below which the tube is two limbs; the joint that is not found is at 0, the other one at `END`."""
+"""Height below which the tube is two limbs; the joint that is found is at `END`, one that is not at 0, or others."""
 MIRRORED = (2, 3)
 
 
-def trunk(turn: Floats, root: int = 0, place: float = 1.5) -> tuple[MovingSurface, FirstTree]:
+def trunk(
+    turn: Floats, root: int = 0, place: float = 1.5, hidden: tuple[float, ...] = (0.0,)
+) -> tuple[MovingSurface, FirstTree]:
     """The tube aligned as it is, and its tree: the trunk is part 0, the one above 1, limbs are 2 and 3.
 
-    turn : (frame, part, 3, 3) of the three true parts
+    turn : (frame, part, 3, 3) of the true parts
     root : 0; with 1 the part above is part 0 and the root, the trunk part 1
     place : height of the trunk's joint where it is the root
+    hidden : heights of the joints that are not found
     """
-    body = chain((0.0, END), turn, along=60)
+    body = chain((*hidden, END), turn, along=60)
     z, right = body.V[:, 2], body.V[:, 0] > 0.0
     label = np.where(z > END, 1, np.where(z >= LIMBS, 0, np.where(right, 2, 3)))
     label = np.array([root, 1 - root, 2, 3])[label]

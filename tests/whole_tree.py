@@ -8,8 +8,8 @@ import numpy as np
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.cut_joints import cut_trees
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
-from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRings, Fits, end_rings, lay_rings
-from kinetree.tasks.numerics.structure.extended_tree import extended_tree
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, lay_rings
+from kinetree.tasks.numerics.structure.extended_tree import with_end_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
@@ -34,8 +34,8 @@ def whole_tree(
     """The body, and how it came about; joints at ends are looked for where the frames' surfaces are given."""
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
     if surface is not None and confidence is not None:
-        ends = joints_at_ends(body, first, confidence, surface)
-        first = extended_tree(body, first, ends, confidence, NOISE * body.size) if ends else first
+        fits = fits_of_rings(body, first, confidence, surface)
+        first = with_end_joints(body, first, leaves, fits, cache(surface), confidence, NOISE * body.size)
     cuts = [cut_trees(body, other, leaves, confidence, settings) for other in further]
     joints = [(cut.with_bones if first.has_bones else cut.bare) for cut in cuts]
     carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]
@@ -54,11 +54,38 @@ def joints_at_ends(
     mirrored: tuple[int, ...] = (),
 ) -> list[EndJoint]:
     """The joints at ends, judged in runs of frames as tasks judge them."""
-    count = len(body.x)
-    frames = EndFrames.of(tree, body.area, np.arange(count), confidence, cache(surface))
-    rings, runs = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(len(tree.parents)), mirrored)), []
-    for run in judged_runs(count, body.takes, settings):
+    rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(len(tree.parents)), mirrored))
+    fits, frames = _fits(body, tree, rings, confidence, surface, settings), _frames(body, tree, confidence, surface)
+    return end_joints(frames, rings, fits, body.takes, mirrored, settings)
+
+
+def fits_of_rings(
+    body: MovingSurface,
+    tree: FirstTree,
+    confidence: np.ndarray,
+    surface: Callable[[int], Target],
+    mirrored: tuple[int, ...] = (),
+) -> list[Fits]:
+    """How the parts of all rings lie in the judged frames."""
+    rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(len(tree.parents)), mirrored))
+    return _fits(body, tree, rings, confidence, surface, None)
+
+
+def _fits(
+    body: MovingSurface,
+    tree: FirstTree,
+    rings: Sequence[EndRing],
+    confidence: np.ndarray,
+    surface: Callable[[int], Target],
+    settings: EndJointsSettings | None,
+) -> list[Fits]:
+    frames, runs = _frames(body, tree, confidence, surface), []
+    for run in judged_runs(len(body.x), body.takes, settings):
         fits: list[Fits] = [{} for _ in rings]
         lay_rings(frames, run, rings, fits)
         runs.append(EndRings.of(run, fits))
-    return end_joints(frames, rings, EndRings.joined(runs).fits, body.takes, mirrored, settings)
+    return EndRings.joined(runs).fits
+
+
+def _frames(body: MovingSurface, tree: FirstTree, confidence: np.ndarray, surface: Callable[[int], Target]) -> EndFrames:
+    return EndFrames.of(tree, body.area, np.arange(len(body.x)), confidence, cache(surface))

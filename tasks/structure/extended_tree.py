@@ -16,13 +16,9 @@ from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeP
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import end_rings as rings_numerics
 from kinetree.tasks.numerics.structure import extended_tree as numerics
-from kinetree.tasks.numerics.structure import first_tree as tree_numerics
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, end_joints
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
-from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.tree_joints import NOISE
-from kinetree.tasks.structure.arguments.aligned_body import AlignedBody, aligned_body
+from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import fields_of, restored
 from kinetree.tasks.structure.arguments.surfaces import prepared
 
@@ -41,12 +37,18 @@ def extended_tree(
     params: ExtendedTreeParams,
 ) -> ExtendedTree:
     """Adds the joints that the frames' surfaces alone show, and says on which frames parts are laid (ours)."""
-    frames, tree, ends = agreed_tree.frames, restored(agreed_tree), list[EndJoint]()
+    frames, tree = agreed_tree.frames, restored(agreed_tree)
     if end_rings:
         body = aligned_body(reference, alignment, leaves)
-        ends = _ends(body, agreed_tree, tree, end_rings, mesh)
-    if ends:
-        tree = numerics.extended_tree(body.surface, tree, ends, np.asarray(body.trust, np.float64), NOISE * body.surface.size)
+        tree = numerics.with_end_joints(
+            body.surface,
+            tree,
+            body.tips,
+            _fits(end_rings),
+            lru_cache(maxsize=READY)(prepared(mesh, frames, body.surface.size)),
+            np.asarray(body.trust, np.float64),
+            NOISE * body.surface.size,
+        )
     laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
     return ExtendedTree(
         frames=frames,
@@ -58,21 +60,8 @@ def extended_tree(
     )
 
 
-def _ends(
-    body: AlignedBody,
-    agreed_tree: AgreedTree,
-    tree: tree_numerics.FirstTree,
-    end_rings: tuple[EndRings, ...],
-    mesh: Mapping[int, Mesh],
-) -> list[EndJoint]:
-    """The joints at ends, by what the judged frames show."""
-    names, (V, F, _, area, takes) = rings_numerics.EndRings._fields, body.surface
+def _fits(end_rings: tuple[EndRings, ...]) -> list[rings_numerics.Fits]:
+    """By ring, how its part lies in all judged frames."""
+    names = rings_numerics.EndRings._fields
     runs = [rings_numerics.EndRings(*(np.array(getattr(run, name)) for name in names)) for run in end_rings]
-    surface = lru_cache(maxsize=READY)(prepared(mesh, agreed_tree.frames, body.surface.size))
-    confidence = np.asarray(body.trust, np.float64)
-    frames = rings_numerics.EndFrames.of(tree, area, np.arange(len(confidence)), confidence, surface)
-    pairs = limb_pairs(V, F, body.tips)
-    inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
-    rings = rings_numerics.end_rings(V, F, area, tree, inside)
-    mirrored = [part for part in np.unique(tree.label[pairs.tip]).tolist() if inside[part]]
-    return end_joints(frames, rings, rings_numerics.EndRings.joined(runs).fits, takes, mirrored)
+    return rings_numerics.EndRings.joined(runs).fits

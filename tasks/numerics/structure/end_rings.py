@@ -1,6 +1,6 @@
 """Last parts of limbs, and the trunk, on the frames' surfaces, with a hinge at rings across them (ours, see `end_joints`)."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, sampled_piece
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
-from kinetree.tasks.numerics.structure.trunk_cuts import trunk_cuts
+from kinetree.tasks.numerics.structure.trunk_cuts import TrunkCutsSettings, trunk_cuts
 
 Fits = dict[int, HingedFit]
 """By frame, how a ring's part lies."""
@@ -122,6 +122,14 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
     N = smoothed_normals(V, F)
     of = (V, F, area, tree.label, tree.parents, tree.rest)
     return [_ring(V, N, tree, cut) for cut in (*end_cuts(*of), *trunk_cuts(*of, mirrored))]
+
+
+def rings_again(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, parts: Collection[int]) -> list[EndRing]:
+    """Rings across some parts of the trunk that lie closer together; arguments as in `end_rings`."""
+    N, chosen = smoothed_normals(V, F), TrunkCutsSettings()
+    closer = chosen._replace(levels=chosen.levels_again)
+    cuts = trunk_cuts(V, F, area, tree.label, tree.parents, tree.rest, mirrored, closer)
+    return [_ring(V, N, tree, cut) for cut in cuts if cut.part in parts]
 
 
 def _ring(V: Floats, N: Floats, tree: FirstTree, cut: EndCut) -> EndRing:

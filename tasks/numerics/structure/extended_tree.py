@@ -1,19 +1,72 @@
 """A tree with the joints at ends of limbs and within the trunk that the frames' surfaces show (ours, see `end_joints`)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.structure.end_joints import EndJoint
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, Fits, end_rings, lay_rings, rings_again
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.skinning import skinning
 
 NEAREST = 20
 """One in so many of the root's vertices, those nearest to its place, says on which side of a ring it lies."""
+
+
+def with_end_joints(
+    body: MovingSurface,
+    tree: FirstTree,
+    leaves: Ints,
+    fits: Sequence[Fits],
+    surface: Callable[[int], Target],
+    confidence: Floats,
+    noise: float,
+) -> FirstTree:
+    """The tree with all joints that the frames' surfaces show.
+
+    The trunk is asked again with rings that lie closer together: between those of `end_rings` a joint may be missed, and a part
+    that one joint divides may hold two. Pieces of what is divided then are asked until they show no other joint.
+
+    leaves     : (leaf,) vertices at the ends of limbs
+    fits       : by ring of `end_rings`, how its part lies in the frames of `end_joints.judged_runs`
+    surface    : gives a frame's surface, prepared, by its place among all frames
+    confidence : (frame, vertex) 0 to 1
+    noise      : see `extended_tree`
+    """
+    chosen, mirrored = EndJointsSettings(), _in_mirrored_limbs(body, tree, leaves)
+    rings = end_rings(body.V, body.F, body.area, tree, mirrored)
+    ends = np.unique(tree.label[limb_pairs(body.V, body.F, leaves).tip])
+    found = end_joints(_frames(body, tree, surface, confidence), rings, fits, body.takes, ends[mirrored[ends]].tolist(), chosen)
+    asked, again = np.arange(len(body.V)), chosen._replace(least_apart=chosen.least_apart_again)
+    while len(asked):
+        if found:
+            tree = extended_tree(body, tree, found, confidence, noise)
+            body = tree.with_ends(body)
+        parts = np.unique(tree.label[asked]).tolist()
+        rings = rings_again(body.V, body.F, body.area, tree, _in_mirrored_limbs(body, tree, leaves), parts)
+        frames, laid = _frames(body, tree, surface, confidence), list[Fits]({} for _ in rings)
+        for run in judged_runs(len(body.x), body.takes, again):
+            lay_rings(frames, run, rings, laid)
+        found = end_joints(frames, rings, laid, body.takes, settings=again)
+        asked = np.concatenate([np.zeros(0, np.int64), *(one.cut.own for one in found)])
+    return tree
+
+
+def _frames(body: MovingSurface, tree: FirstTree, surface: Callable[[int], Target], confidence: Floats) -> EndFrames:
+    """All frames."""
+    return EndFrames.of(tree, body.area, np.arange(len(confidence)), confidence, surface)
+
+
+def _in_mirrored_limbs(body: MovingSurface, tree: FirstTree, leaves: Ints) -> Flags:
+    """(part,) whether a part is of a limb that has a mirror image."""
+    return in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), limb_pairs(body.V, body.F, leaves))
 
 
 def extended_tree(
@@ -51,7 +104,7 @@ def extended_tree(
     new = tree._replace(
         parents=parents,
         place=np.where(tree.place < 0, -1, place[tree.place]),
-        shown=tuple(sorted(place[count:].tolist())),
+        shown=tuple(sorted(place[[*tree.shown, *range(count, len(place))]].tolist())),
         label=label,
         W=skinning(body.V, body.F, x, label, R, t, parents, confidence, noise),
         R=R,

@@ -79,6 +79,12 @@ class FirstTree(NamedTuple):
         beyond = np.array(self.shown, np.int64)
         return np.isin(self.label, np.append(beyond, self.parents[beyond]))
 
+    def with_ends(self, body: MovingSurface) -> MovingSurface:
+        """The body with its vertices where the frames have them, beside joints that these alone show."""
+        x = body.x.copy()
+        x[:, self.at_ends] = self.end_x
+        return body._replace(x=x)
+
     @property
     def in_divided_trunk(self) -> Flags:
         """(part,) whether a part's joint is at a piece of the trunk that the frames' surfaces alone show."""

@@ -135,9 +135,7 @@ def kinematic_tree(
     """
     V = body.V
     if first.shown:
-        x = body.x.copy()
-        x[:, first.at_ends] = first.end_x
-        body = body._replace(x=x)
+        body = first.with_ends(body)
     tree = _posed(body, first, confidence, further, laid)
     if has_necks:
         hanging = necks(V, body.F, first.label, first.parents, tree.motion.rest, first.radius)

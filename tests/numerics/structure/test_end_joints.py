@@ -1,6 +1,8 @@
 """A joint near the end of a limb that the alignment does not show is found on the frames; none where nothing turns."""
 
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from smeared import END, Frames, aligned, found_in, turning
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, judged_runs
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, _without_both_sides, judged_runs
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
@@ -186,3 +188,28 @@ def test_frames_are_judged_in_runs_of_a_few_that_follow_each_other_within_a_take
     assert {len(run) for run in long} == {4}
     assert all((np.diff(run) == 1).all() for run in long)
     assert judged_runs(1, None) == []
+
+
+@pytest.mark.parametrize(
+    ("rings", "kept"),
+    [
+        ([(0, 3, 0.24), (3, 0, 0.23)], [0]),
+        ([(3, 0, 0.23), (0, 3, 0.24)], [1]),
+        ([(0, 3, 0.24), (3, 5, 0.23)], [0, 1]),
+        ([(0, 3, 0.24), (3, 0, 0.24)], [0, 1]),
+        ([], []),
+    ],
+    ids=["the first is better", "the second", "at two joints", "alike", "none"],
+)
+def test_of_rings_on_both_sides_of_a_joint_the_better_one_is_a_joint(
+    rings: list[tuple[int, int, float]], kept: list[int]
+) -> None:
+    """Of the trunk; one across the last part of a limb has no other side."""
+    evident: list[Any] = [(across(part, above, (7,)), score) for part, above, score in rings]
+    end: Any = (across(3, 0, ()), 0.01)
+    assert _without_both_sides([*evident, end]) == [*(evident[k] for k in kept), end]
+
+
+def across(part: int, above: int, hung: tuple[int, ...]) -> SimpleNamespace:
+    """A ring of which no more is known."""
+    return SimpleNamespace(ring=SimpleNamespace(cut=SimpleNamespace(part=part, above=above, hung=hung)))

@@ -1,16 +1,20 @@
 """Joints that the frames show within the last parts of limbs become parts of the tree."""
 
+from functools import cache
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from articulated import Known
+from articulated import Known, swings
 from scipy.spatial.transform import Rotation
 from shipped import TREE
 from smeared import END, Frames, aligned, found_in, moving, turning
 from trunk import LIMBS, MIRRORED, trunk
-from whole_tree import joints_at_ends, whole_tree
+from whole_tree import fits_of_rings, joints_at_ends, whole_tree
 
+from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
-from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
+from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends, with_end_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -209,3 +213,59 @@ def test_a_trunk_that_does_not_bend_stays_one() -> None:
     body, tree = trunk(turn)
     shown = Frames(turn, 0.02).prepared(body.size)
     assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, mirrored=MIRRORED) == []
+
+
+def test_a_trunk_that_bends_at_two_places_is_three() -> None:
+    """Each of its pieces is asked again once it is divided."""
+    body, after = of_bent_trunk((-1.6, 1.1))
+    assert len(after.shown) == 2
+    new = list(after.shown)
+    np.testing.assert_allclose(np.sort(after.rest[new, 2]), [-1.6, 1.1], atol=0.6)
+    z = [body.V[after.label == part, 2].mean() for part in range(len(after.parents))]
+    upwards = np.argsort(z)
+    chain = [part for part in upwards.tolist() if part not in after.place[2:4]]
+    assert {frozenset((k, int(after.parents[k]))) for k in chain if after.parents[k] in chain} == {
+        frozenset(pair) for pair in pairwise(chain)
+    }
+    low = after.parents[after.place[2:4]]
+    assert {*low.tolist()} == {chain[0]}
+    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
+    assert after.end_x.shape == (24, int(after.at_ends.sum()), 3)
+
+
+def test_vertices_between_both_joints_lie_on_the_frames() -> None:
+    hidden = (-1.6, 1.1)
+    body, after = of_bent_trunk(hidden)
+    true = Frames(bending(hidden), heights=(*hidden, END)).true
+    between = (body.V[:, 2] > -0.9) & (body.V[:, 2] < 0.4)
+    want = np.einsum("txy,vy->tvx", true.R[:, 1], body.V[between]) + true.t[:, None, 1]
+    got = after.with_ends(body).x[:, between]
+    assert np.linalg.norm((got - want).mean(axis=1), axis=1).max() < 0.15
+
+
+def test_joint_that_the_first_rings_miss_is_shown_by_closer_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numerics, "end_rings", lambda *of: [])
+    _, after = of_bent_trunk((0.0,), first_rings=False)
+    (new,) = after.shown
+    np.testing.assert_allclose(after.rest[new], 0.0, atol=0.4)
+
+
+def test_pieces_of_a_trunk_that_bends_at_one_place_stay_one() -> None:
+    assert len(of_bent_trunk((0.0,))[1].shown) == 1
+
+
+def bending(hidden: tuple[float, ...]) -> np.ndarray:
+    """(frame, part, 3, 3) every hidden joint swings by itself; the last part too."""
+    turn = swings(24, len(hidden) + 2, 20.0, axes=1, seed=1)
+    turn[:, -1] = turning()[:, 2]
+    return turn
+
+
+def of_bent_trunk(hidden: tuple[float, ...], first_rings: bool = True) -> tuple[MovingSurface, FirstTree]:
+    """The trunk, and its tree with what the frames show."""
+    turn = bending(hidden)
+    body, tree = trunk(turn, hidden=hidden)
+    ones, surface = np.ones(body.x.shape[:2]), cache(Frames(turn, 0.02, heights=(*hidden, END)).prepared(body.size))
+    fits = fits_of_rings(body, tree, ones, surface) if first_rings else []
+    leaves = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
+    return body, with_end_joints(body, tree, leaves, fits, surface, ones, 0.002)
