@@ -21,14 +21,14 @@ class LimbsInTrunkSettings(NamedTuple):
     """When a limb lacks its innermost joint.
 
     Of 103 bodies (people 0 to 19, 60 to 69 and 86 to 114, humans and four-legged 0 to 4 and 60 to 69, random trees 60 to 69,
-    wave, dance, ballet, wolf) ten have a thigh that is one part with the trunk.
+    wave, dance, ballet, wolf) nine have a thigh that is one part with the trunk.
     """
 
     inner: float = 0.7
-    """Distance of the limb's own innermost joint from its end in that of the mirror image's, at most. Those ten have 0.56 to
+    """Distance of the limb's own innermost joint from its end in that of the mirror image's, at most. Those nine have 0.56 to
     0.66; where the other limb has a joint too many, or lies on flesh beside the trunk, it is 0.77 and more."""
     share: float = 0.3
-    """Share of the part's surface that is of the limb, at least. Those have 0.51 to 0.90. Not varied."""
+    """Share of the part's surface that is of the limb, at least. Those have 0.51 to 0.90, others 0.07 to 0.50. Not varied."""
     least_vertices: int = 8
     """Vertices on either side of the cut, at least. Not varied."""
 
