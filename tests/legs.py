@@ -17,8 +17,8 @@ from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurfa
 V, F, _ = y_pipe()
 """The chest along x, legs at 60° on either side of −x."""
 FRAMES = 16
-HIP, KNEE, WAIST = 4.0, 15.0, 8.0
-"""Distances of the joints from the fork."""
+HIP, KNEE, WAIST, FOOT = 4.0, 15.0, 8.0, 21.0
+"""Distances of the joints from the fork; feet move as shanks, and are of their part if nothing else is said."""
 LEGS = {"left": np.array([-0.5, np.sqrt(0.75), 0.0]), "right": np.array([-0.5, -np.sqrt(0.75), 0.0])}
 ALONG = {side: V @ leg for side, leg in LEGS.items()}
 LEFT, RIGHT, HEAD = int(np.argmax(V[:, 1])), int(np.argmin(V[:, 1])), int(np.argmax(V[:, 0]))
@@ -56,6 +56,8 @@ class Legs(NamedTuple):
         own = pieces()
         for name, vertices in own.items():
             label[vertices] = number[name]
+        for side, along in ALONG.items():
+            label = np.where(along > FOOT, number.get(f"{side} foot", label), label)
         label = np.unique(label, return_inverse=True)[1].reshape(-1)
         x[:, own["pelvis"]], motion["pelvis"] = V[own["pelvis"]], np.tile(np.eye(3), (FRAMES, 1, 1))
         motion["chest"], waist = _turns(15.0, 5), np.array([WAIST, 0.0, 0.0])
@@ -68,9 +70,8 @@ class Legs(NamedTuple):
             motion[f"{side} thigh"], motion[f"{side} shank"] = thigh, thigh @ shank
             knee = HIP * leg + (KNEE - HIP) * thigh @ leg
             x[:, own[f"{side} thigh"]] = HIP * leg + (V[own[f"{side} thigh"]] - HIP * leg) @ thigh.transpose(0, 2, 1)
-            x[:, own[f"{side} shank"]] = (V[own[f"{side} shank"]] - KNEE * leg) @ (thigh @ shank).transpose(0, 2, 1) + knee[
-                :, None
-            ]
+            lower = (V[own[f"{side} shank"]] - KNEE * leg) @ (thigh @ shank).transpose(0, 2, 1)
+            x[:, own[f"{side} shank"]] = lower + knee[:, None]
         count, area = int(label.max()) + 1, surface_areas(V, F)
         R, t, weight = np.empty((FRAMES, count, 3, 3)), np.empty((FRAMES, count, 3)), np.asfortranarray(np.ones(x.shape[:2]))
         fit(V, x, weight, area, label, np.ones(count, np.bool_), False, len(V), 1e-6, R, t)

@@ -67,7 +67,7 @@ def limbs_in_trunk(
     limbs = mirrored_limbs(F, RootedParts.of(parts.label, found), pairs, paired)
     for away, (one, other, row) in zip(pairs.distance, limbs, strict=False):
         for side, (own, mirror) in enumerate(((one, other), (other, one))):
-            if _lacks_its_innermost(own, mirror, row[:, 1 - side], chosen):
+            if _lacks_its_innermost(own, mirror, row[:, [side, 1 - side]], chosen):
                 part, below = (int(tree.order[k]) for k in (tree.parents[own.part[-1]], own.part[-1]))
                 inside = parts.label == part
                 limb = inside & (away[side] < mirror.level[-1]) & (away[side] < away[1 - side])
@@ -75,12 +75,13 @@ def limbs_in_trunk(
                     yield LimbInTrunk(part, below, np.flatnonzero(limb))
 
 
-def _lacks_its_innermost(own: Limb, mirror: Limb, paired: Ints, chosen: LimbsInTrunkSettings) -> bool:
-    """Whether the mirror image of a limb has a joint farther inwards than any of its own.
+def _lacks_its_innermost(own: Limb, mirror: Limb, partners: Ints, chosen: LimbsInTrunkSettings) -> bool:
+    """Whether the mirror image of a limb has one joint more, farther inwards than any of its own.
 
-    paired : rows of the mirror image's joints that have a partner
+    partners : (partners, 2) rows of joints of the limb and of its mirror image that are mirror images
     """
-    if not len(own.part) or not len(mirror.part) or len(mirror.part) - 1 in paired:
+    last = len(own.part) - 1
+    if last < 0 or len(mirror.part) < 2 or [last, len(mirror.part) - 2] not in partners.tolist():
         return False
     return bool(np.isfinite(mirror.level[-1]) and own.level[-1] <= chosen.inner * mirror.level[-1])
 

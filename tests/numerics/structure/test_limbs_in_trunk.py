@@ -54,6 +54,13 @@ def test_limb_without_any_joint_is_left_alone() -> None:
     assert found(Legs.of({**PARTS, "left shank": 0})) == []
 
 
+def test_limb_that_lacks_two_joints_is_left_alone() -> None:
+    """Its foot tells nothing of the hip: another limb may be no mirror image."""
+    feet = {"left foot": 5, "right foot": 6}
+    assert found(Legs.of({**PARTS, **feet, "left shank": 0})) == []
+    assert len(found(Legs.of({**PARTS, **feet}))) == 1
+
+
 @pytest.mark.parametrize(("inner", "count"), [(0.55, 0), (0.6, 1)])
 def test_how_far_inwards_its_own_joint_may_lie(inner: float, count: int) -> None:
     """The knee lies at 0.57 of the way to the hip."""
