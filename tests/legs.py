@@ -26,11 +26,11 @@ LEAVES = np.array([LEFT, RIGHT, HEAD, int(np.argmin(np.linalg.norm(V - [16.0, 0.
 NAMES = ("pelvis", "left thigh", "right thigh", "left shank", "right shank", "chest")
 
 
-def pieces() -> dict[str, Ints]:
-    """The vertices of each bone."""
+def pieces(hip: float = HIP) -> dict[str, Ints]:
+    """The vertices of each bone; with the hips at 0 the thighs touch."""
     of = {"chest": np.flatnonzero(V[:, 0] > WAIST)}
     for side, along in ALONG.items():
-        of[f"{side} thigh"] = np.flatnonzero((along > HIP) & (along <= KNEE))
+        of[f"{side} thigh"] = np.flatnonzero((along > hip) & (along <= KNEE))
         of[f"{side} shank"] = np.flatnonzero(along > KNEE)
     return {"pelvis": np.setdiff1d(np.arange(len(V)), np.concatenate(list(of.values()))), **of}
 
@@ -49,11 +49,11 @@ class Legs(NamedTuple):
     motion: dict[str, Floats]
 
     @classmethod
-    def of(cls, part: Mapping[str, int] | None = None, still: Sequence[str] = ()) -> Self:
+    def of(cls, part: Mapping[str, int] | None = None, still: Sequence[str] = (), hip: float = HIP) -> Self:
         """The legs, each bone of the part of its name; bones may be still against what they hang on."""
         number = dict(zip(NAMES, range(len(NAMES)), strict=True)) if part is None else part
         label, x, motion = np.zeros(len(V), np.int64), np.empty((FRAMES, *V.shape)), dict[str, Floats]()
-        own = pieces()
+        own = pieces(hip)
         for name, vertices in own.items():
             label[vertices] = number[name]
         for side, along in ALONG.items():
@@ -68,8 +68,8 @@ class Legs(NamedTuple):
                 for row, (bone, degrees) in enumerate((("thigh", 20.0), ("shank", 30.0)))
             ])  # fmt: skip
             motion[f"{side} thigh"], motion[f"{side} shank"] = thigh, thigh @ shank
-            knee = HIP * leg + (KNEE - HIP) * thigh @ leg
-            x[:, own[f"{side} thigh"]] = HIP * leg + (V[own[f"{side} thigh"]] - HIP * leg) @ thigh.transpose(0, 2, 1)
+            knee = hip * leg + (KNEE - hip) * thigh @ leg
+            x[:, own[f"{side} thigh"]] = hip * leg + (V[own[f"{side} thigh"]] - hip * leg) @ thigh.transpose(0, 2, 1)
             lower = (V[own[f"{side} shank"]] - KNEE * leg) @ (thigh @ shank).transpose(0, 2, 1)
             x[:, own[f"{side} shank"]] = lower + knee[:, None]
         count, area = int(label.max()) + 1, surface_areas(V, F)

@@ -8,7 +8,7 @@ import numpy as np
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.cut_joints import cut_trees
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
-from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, lay_rings
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, Fits, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import with_end_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
@@ -79,12 +79,8 @@ def _fits(
     surface: Callable[[int], Target],
     settings: EndJointsSettings | None,
 ) -> list[Fits]:
-    frames, runs = _frames(body, tree, confidence, surface), []
-    for run in judged_runs(len(body.x), body.takes, settings):
-        fits: list[Fits] = [{} for _ in rings]
-        lay_rings(frames, run, rings, fits)
-        runs.append(EndRings.of(run, fits))
-    return EndRings.joined(runs).fits
+    frames = _frames(body, tree, confidence, surface)
+    return laid_in_runs(frames, judged_runs(len(body.x), body.takes, settings), rings)
 
 
 def _frames(body: MovingSurface, tree: FirstTree, confidence: np.ndarray, surface: Callable[[int], Target]) -> EndFrames:

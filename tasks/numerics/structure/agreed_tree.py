@@ -16,7 +16,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_orde
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, joined, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, Pairs, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pruned_without
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
@@ -100,14 +100,21 @@ def _without_lone_joints(
     """The tree without joints that no other cut has and that it does not need; of two cuts neither is in the majority."""
     if len(others) < 2 or in_other_cuts(tree.motion.carried(tree.rest[1:]), others, body.size).all():
         return tree
-    own = [(part, int(above)) for part, above in enumerate(tree.parents) if above >= 0]
-    parts = joined(body, MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share), own)
+    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share, *_pairs(tree))
     found, count = part_tree(body, parts), len(tree.parents)
     start = Pruned(parts, found, found, np.arange(count), ())
     joints = tree_of_parts(body, start, np.arange(count), tree.label, confidence, settings)
     while (left := _without_one(body, joints, leaves, pairs, confidence, others, settings)) is not None:
         joints = left
     return _of_cut(tree, joints) if joints.left.dropped else tree
+
+
+def _pairs(tree: FirstTree) -> tuple[Pairs, Pairs]:
+    """`MovingParts.joined` and `MovingParts.by_shape` of a tree with limbs that were cut off: all its joints, and theirs."""
+    joints = [(part, above) for part, above in enumerate(tree.parents.tolist()) if above >= 0]
+    is_cut_off = ~np.isin(np.arange(len(tree.parents)), tree.place)
+    by_shape = frozenset(frozenset(pair) for pair in joints if is_cut_off[[*pair]].any())
+    return (frozenset(map(frozenset, joints)), by_shape) if by_shape else (frozenset(), frozenset())
 
 
 def _without_one(

@@ -51,11 +51,10 @@ class EndJointsSettings(NamedTuple):
     least_apart: float = 0.6
     """Distance of a ring across the trunk from the nearest of the part's joints, in radii of the ring, at least: the likeliest
     ring of a part that lies nearer says that the joint that is there is a little off."""
-    least_apart_again: float = 0.75
-    """The same where rings lie closer together, see `extended_tree`: of a part's rings one is then the likeliest wherever a
-    joint lies. Joints that these rings alone show lie at 1.07 to 1.58, rings where nothing turns, within the chests of
-    four-legged 4 and 60, at 0.67 and 0.66: they score up to 0.0595, farther away 0.0465. Chosen on the same bodies and on
-    people 86 to 129, humans, four-legged and random trees 65 to 74."""
+    least_apart_if_closer: float = 0.75
+    """The same of rings that lie closer together, see `extended_tree`. Joints that these alone show lie at 1.07 to 1.58. Where
+    nothing turns, within the chests of four-legged 4 and 60, rings at 0.67 and 0.66 score 0.0595 and 0.0566, those farther
+    away 0.0465 at most. Chosen on the same bodies and on people 86 to 129, humans, four-legged and random trees 65 to 74."""
     goes_on: float = 0.5
     """How much of the turn of the body's joints goes on from frame to frame (`going_on`), below which the frames are too far
     apart for that to be asked of a ring. All frames of recorded bodies and of people 0 to 7 have 0.73 to 0.97, every fourth
@@ -129,7 +128,7 @@ def end_joints(
     chosen, count = settings or EndJointsSettings(), len(frames.tree.R)
     at, pairs = judged_frames(count, takes, chosen.most_frames)
     laid = [_RingFits(ring, fits) for ring, fits in zip(rings, judged, strict=True)]
-    evident = _without_both_sides(_evident(frames, laid, pairs, score_spans(count, takes), mirrored, chosen))
+    evident = _one_beside_each_joint(frames.tree, _evident(frames, laid, pairs, score_spans(count, takes), mirrored, chosen))
     own = [one for one, _ in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
     return [_joint(frames.tree, one, score) for one, score in evident]
@@ -167,16 +166,25 @@ def _evident(
     return evident
 
 
-def _without_both_sides(evident: Sequence[tuple[_RingFits, float]]) -> list[tuple[_RingFits, float]]:
-    """The same with the better one of two rings across the trunk on both sides of a joint that is there.
+def _one_beside_each_joint(tree: FirstTree, evident: Sequence[tuple[_RingFits, float]]) -> list[tuple[_RingFits, float]]:
+    """The same with the best one of those rings across the trunk that have the same joint nearest to them.
 
-    Where such a joint lies amid two true ones, both rings show one; once one of them is a joint, the other goes to its place.
+    Where a joint that is there lies amid two true ones, both rings show one; once one of them is a joint, the other goes to its
+    place.
     """
-    across = {(one.ring.cut.part, one.ring.cut.above): score for one, score in evident if one.ring.cut.hung}
-    lost = {k for k, score in across.items() if score < across.get(k[::-1], score)}
-    return [
-        (one, score) for one, score in evident if not one.ring.cut.hung or (one.ring.cut.part, one.ring.cut.above) not in lost
-    ]
+    best: dict[int, int] = {}
+    for k, (one, score) in enumerate(evident):
+        if one.ring.cut.hung:
+            nearest = _nearest_joint(tree, one.ring.cut)
+            if score > (evident[best[nearest]][1] if nearest in best else -np.inf):
+                best[nearest] = k
+    return [found for k, found in enumerate(evident) if not found[0].ring.cut.hung or k in best.values()]
+
+
+def _nearest_joint(tree: FirstTree, cut: EndCut) -> int:
+    """The joint of a ring's part that lies nearest to the ring, by the part that turns about it."""
+    own = [k for k in (cut.part, *np.flatnonzero(tree.parents == cut.part).tolist()) if tree.parents[k] >= 0]
+    return min(own, key=lambda k: float(np.linalg.norm(tree.rest[k] - cut.centre)))
 
 
 def _rank(ring: EndRing, shown: RingEvidence) -> float:

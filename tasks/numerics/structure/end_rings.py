@@ -124,11 +124,11 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
     return [_ring(V, N, tree, cut) for cut in (*end_cuts(*of), *trunk_cuts(*of, mirrored))]
 
 
-def rings_again(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, parts: Collection[int]) -> list[EndRing]:
+def closer_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, parts: Collection[int]) -> list[EndRing]:
     """Rings across some parts of the trunk that lie closer together; arguments as in `end_rings`."""
     N, chosen = smoothed_normals(V, F), TrunkCutsSettings()
-    closer = chosen._replace(levels=chosen.levels_again)
-    cuts = trunk_cuts(V, F, area, tree.label, tree.parents, tree.rest, mirrored, closer)
+    chosen = chosen._replace(levels=chosen.closer_levels)
+    cuts = trunk_cuts(V, F, area, tree.label, tree.parents, tree.rest, mirrored, chosen)
     return [_ring(V, N, tree, cut) for cut in cuts if cut.part in parts]
 
 
@@ -141,6 +141,17 @@ def _ring(V: Floats, N: Floats, tree: FirstTree, cut: EndCut) -> EndRing:
 def _lower(tree: FirstTree, cut: EndCut) -> int:
     """Of a ring's part and the one above the ring that which hangs on the other."""
     return cut.part if tree.parents[cut.part] == cut.above else cut.above
+
+
+def laid_in_runs(frames: EndFrames, runs: Iterable[Ints], rings: Sequence[EndRing]) -> list[Fits]:
+    """By ring, how its part lies in the frames of some runs, each of which begins afresh."""
+    fits = [Fits() for _ in rings]
+    for run in runs:
+        own = [Fits() for _ in rings]
+        lay_rings(frames, run, rings, own)
+        for known, new in zip(fits, own, strict=True):
+            known.update(new)
+    return fits
 
 
 def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Sequence[Fits]) -> None:

@@ -68,8 +68,8 @@ class FirstTree(NamedTuple):
 
     @property
     def has_bones(self) -> bool:
-        """Whether some of its parts are bones that no cut can find, see `hidden_bones`; or limbs that one part was, see
-        `alike_limbs`, where no cut has hidden bones.
+        """Whether some of its parts are bones that no cut can find, see `hidden_bones`; or limbs that were cut off, see
+        `limbs_apart`, where no cut has hidden bones.
         """
         return bool(len(self.parents) - len(self.shown) > (self.place >= 0).sum())
 

@@ -11,10 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, Limb, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, PartTree
-from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
 
 
 class LimbsInTrunkSettings(NamedTuple):
@@ -53,7 +52,7 @@ def limbs_in_trunk(
     pairs: LimbPairs,
     area: Floats,
     settings: LimbsInTrunkSettings | None = None,
-    paired: float = UnpairedPartsSettings().paired,
+    paired: float = PAIRED,
 ) -> Iterator[LimbInTrunk]:
     """The parts that are of a limb and of what it hangs on.
 
@@ -71,7 +70,7 @@ def limbs_in_trunk(
                 part, below = (int(tree.order[k]) for k in (tree.parents[own.part[-1]], own.part[-1]))
                 inside = parts.label == part
                 limb = inside & (away[side] < mirror.level[-1]) & (away[side] < away[1 - side])
-                if _are_both(inside, limb, area, chosen):
+                if _has_both(inside, limb, area, chosen):
                     yield LimbInTrunk(part, below, np.flatnonzero(limb))
 
 
@@ -86,7 +85,7 @@ def _lacks_its_innermost(own: Limb, mirror: Limb, partners: Ints, chosen: LimbsI
     return bool(np.isfinite(mirror.level[-1]) and own.level[-1] <= chosen.inner * mirror.level[-1])
 
 
-def _are_both(inside: Flags, limb: Flags, area: Floats, chosen: LimbsInTrunkSettings) -> bool:
+def _has_both(inside: Flags, limb: Flags, area: Floats, chosen: LimbsInTrunkSettings) -> bool:
     """Whether a part has enough of the limb, and enough beside it."""
-    sides = int(limb.sum()), int((inside & ~limb).sum())
-    return min(sides) >= chosen.least_vertices and bool(area[limb].sum() >= chosen.share * area[inside].sum())
+    sides, surface = (int(limb.sum()), int((inside & ~limb).sum())), float(area[limb].sum())
+    return min(sides) >= chosen.least_vertices and surface > 0.0 and surface >= chosen.share * float(area[inside].sum())

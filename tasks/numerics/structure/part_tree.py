@@ -1,6 +1,6 @@
 """One tree of all parts by the joints between them, and how clear each joint is (2014, Sec. 6.3)."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -65,6 +65,10 @@ class MovingSurface(NamedTuple):
         return float(np.sqrt(self.area.sum()))
 
 
+Pairs = frozenset[frozenset[int]]
+"""Pairs of parts, by their numbers."""
+
+
 class MovingParts(NamedTuple):
     """Rigid parts, numbered without gaps.
 
@@ -72,7 +76,8 @@ class MovingParts(NamedTuple):
     R, t     : (frame, part, 3, 3), (frame, part, xyz) from the reference
     residual : (frame, part) what a part's motion leaves unexplained, mesh unit
     confidence : (frame, part) 0 to 1; None where every vertex was followed
-    joined     : pairs of parts between which there is a joint, whatever their motions say
+    joined     : pairs of parts at whose border the tree has a joint, if they meet, whatever their motions say
+    by_shape   : those of them of which the shape of the body is evidence enough, however little they turn
     """
 
     label: Ints
@@ -80,15 +85,21 @@ class MovingParts(NamedTuple):
     t: Floats
     residual: Floats
     confidence: Floats | None = None
-    joined: frozenset[frozenset[int]] = frozenset()
+    joined: Pairs = frozenset()
+    by_shape: Pairs = frozenset()
 
     def without(self, gone: int, label: Ints) -> "MovingParts":
         """The other parts; `label` (vertex,) gives the vertices of the part that is gone to others."""
         others = np.arange(self.R.shape[1]) != gone
         confidence = None if self.confidence is None else self.confidence[:, others]
         R, t, residual = (np.ascontiguousarray(a[:, others]) for a in (self.R, self.t, self.residual))
-        joined = frozenset(frozenset(part - (part > gone) for part in pair) for pair in self.joined if gone not in pair)
-        return MovingParts(label - (label > gone), R, t, residual, confidence, joined)
+        pairs = (_renumbered(pairs, gone) for pairs in (self.joined, self.by_shape))
+        return MovingParts(label - (label > gone), R, t, residual, confidence, *pairs)
+
+
+def _renumbered(pairs: Pairs, gone: int) -> Pairs:
+    """Pairs of parts as they are numbered without one."""
+    return frozenset(frozenset(part - (part > gone) for part in pair) for pair in pairs if gone not in pair)
 
 
 class PartTree(NamedTuple):
@@ -108,16 +119,7 @@ class PartTree(NamedTuple):
     ratio: Floats
 
 
-def joined(body: MovingSurface, parts: MovingParts, pairs: Collection[Collection[int]]) -> MovingParts:
-    """The same parts, joined where they are to have a joint and the least tree has none.
-
-    pairs : parts that are to have a joint
-    """
-    free = parts._replace(joined=frozenset())
-    return free._replace(joined=frozenset(map(frozenset, pairs)) - joints_of(part_tree(body, free)))
-
-
-def joints_of(found: PartTree) -> frozenset[frozenset[int]]:
+def joints_of(found: PartTree) -> Pairs:
     """The pairs of parts between which a tree has a joint."""
     return frozenset(map(frozenset, found.borders.pair[found.tree.border[1:]].tolist()))
 

@@ -24,7 +24,7 @@ FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE = "flesh", "still", "sliding",
 flesh that the mirror image of its limb lacks, or that no other cut has."""
 
 NO_PART = -1
-"""`Pruned.origin` of a part that the cut does not have: a hidden bone, or the second of two limbs that were one part."""
+"""`Pruned.origin` of a part that the cut does not have: a hidden bone, or a limb that was cut off another or off the trunk."""
 
 
 class PruningSettings(NamedTuple):
@@ -190,7 +190,7 @@ def _weak_parts(
     scores = [(_flesh_score(parts.R, found, k, reach[k], chosen), int(part), FLESH) for k, part in enumerate(tree.order)]
     for k in range(1, len(mass)):
         part, above = int(tree.order[k]), int(tree.order[tree.parents[k]])
-        if {part, above} in parts.joined:
+        if {part, above} in parts.by_shape:
             continue
         smaller = min((part, above), key=lambda p: (mass[p], p))
         last = not (tree.parents == k).any()

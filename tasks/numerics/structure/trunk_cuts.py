@@ -21,7 +21,7 @@ class TrunkCutsSettings(NamedTuple):
 
     levels: tuple[float, ...] = (0.15, 0.29, 0.43, 0.57, 0.71, 0.85)
     """Distances from the border, shares of the greatest on the part."""
-    levels_again: tuple[float, ...] = (0.08, 0.15, 0.22, 0.29, 0.36, 0.43, 0.5, 0.57, 0.64, 0.71, 0.78, 0.85, 0.92)
+    closer_levels: tuple[float, ...] = (0.08, 0.15, 0.22, 0.29, 0.36, 0.43, 0.5, 0.57, 0.64, 0.71, 0.78, 0.85, 0.92)
     """The same where these rings have shown no joint, or one that divides the part: between rings that lie twice as far apart
     chests of humans 3 and 63 score less than they need."""
     neighbours: int = 3

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from limbs import rotation
 from smeared import END, Frames, aligned, found_in, turning
+from trunk import trunk
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, _without_both_sides, judged_runs
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, _one_beside_each_joint, judged_runs
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
@@ -193,23 +194,25 @@ def test_frames_are_judged_in_runs_of_a_few_that_follow_each_other_within_a_take
 @pytest.mark.parametrize(
     ("rings", "kept"),
     [
-        ([(0, 3, 0.24), (3, 0, 0.23)], [0]),
-        ([(3, 0, 0.23), (0, 3, 0.24)], [1]),
-        ([(0, 3, 0.24), (3, 5, 0.23)], [0, 1]),
-        ([(0, 3, 0.24), (3, 0, 0.24)], [0, 1]),
+        ([(0, 2.2, 0.24), (1, 3.5, 0.23)], [0]),
+        ([(0, 2.2, 0.23), (1, 3.5, 0.24)], [1]),
+        ([(1, 3.5, 0.24), (0, 2.2, 0.24)], [0]),
+        ([(0, -2.5, 0.24), (1, 3.5, 0.23)], [0, 1]),
         ([], []),
     ],
-    ids=["the first is better", "the second", "at two joints", "alike", "none"],
+    ids=["the first is better", "the second", "alike", "at two joints", "none"],
 )
 def test_of_rings_on_both_sides_of_a_joint_the_better_one_is_a_joint(
-    rings: list[tuple[int, int, float]], kept: list[int]
+    rings: list[tuple[int, float, float]], kept: list[int]
 ) -> None:
     """Of the trunk; one across the last part of a limb has no other side."""
-    evident: list[Any] = [(across(part, above, (7,)), score) for part, above, score in rings]
-    end: Any = (across(3, 0, ()), 0.01)
-    assert _without_both_sides([*evident, end]) == [*(evident[k] for k in kept), end]
+    _, tree = trunk(turning())
+    evident: list[Any] = [(at(part, height, (2,)), score) for part, height, score in rings]
+    end: Any = (at(1, 3.2, ()), 0.01)
+    assert _one_beside_each_joint(tree, [*evident, end]) == [*(evident[k] for k in kept), end]
 
 
-def across(part: int, above: int, hung: tuple[int, ...]) -> SimpleNamespace:
-    """A ring of which no more is known."""
-    return SimpleNamespace(ring=SimpleNamespace(cut=SimpleNamespace(part=part, above=above, hung=hung)))
+def at(part: int, height: float, hung: tuple[int, ...]) -> SimpleNamespace:
+    """A ring across a part of the trunk, of which no more is known."""
+    cut = SimpleNamespace(part=part, hung=hung, centre=np.array([0.0, 0.0, height]))
+    return SimpleNamespace(ring=SimpleNamespace(cut=cut))

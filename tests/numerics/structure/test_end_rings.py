@@ -1,9 +1,11 @@
 """Parts with a hinge at rings, and the form in which their places are stored."""
 
 import numpy as np
+import pytest
 from smeared import Frames, aligned, found_in, turning
 
-from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, lay_rings
+from kinetree.tasks.numerics.structure import end_rings as module
+from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, laid_in_runs, lay_rings
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
@@ -44,3 +46,18 @@ def test_what_is_stored_by_frame_is_read_again_by_ring() -> None:
             assert (fit.one, fit.two) == (other[f].one, other[f].two)
             for mine, stored in zip(fit.pose, other[f].pose, strict=True):
                 np.testing.assert_array_equal(mine, stored)
+
+
+def test_every_run_of_frames_begins_afresh(monkeypatch: pytest.MonkeyPatch) -> None:
+    known: list[list[int]] = []
+    body, found = found_in(aligned(turning()))
+    tree = in_tree_order(found, 2)
+    rings = end_rings(body.V, body.F, body.area, tree, np.zeros(len(tree.parents), np.bool_))
+    surface = Frames(turning()).prepared(body.size)
+    frames = EndFrames.of(tree, body.area, np.arange(24), np.ones(body.x.shape[:2]), surface)
+    whole = module._nearest
+    monkeypatch.setattr(module, "_nearest", lambda fits, f: known.append(sorted(fits)) or whole(fits, f))
+    fits = laid_in_runs(frames, [np.array([3, 4]), np.array([5, 6])], rings[:1])
+    assert known == [[], [3], [], [5]]
+    assert sorted(fits[0]) == [3, 4, 5, 6]
+    assert fits[0][5].two == laid([5, 6])[1][0][5].two

@@ -233,14 +233,27 @@ def test_a_trunk_that_bends_at_two_places_is_three() -> None:
     assert after.end_x.shape == (24, int(after.at_ends.sum()), 3)
 
 
-def test_vertices_between_both_joints_lie_on_the_frames() -> None:
+def test_vertices_beside_both_joints_lie_on_the_frames() -> None:
     hidden = (-1.6, 1.1)
     body, after = of_bent_trunk(hidden)
-    true = Frames(bending(hidden), heights=(*hidden, END)).true
-    between = (body.V[:, 2] > -0.9) & (body.V[:, 2] < 0.4)
-    want = np.einsum("txy,vy->tvx", true.R[:, 1], body.V[between]) + true.t[:, None, 1]
-    got = after.with_ends(body).x[:, between]
-    assert np.linalg.norm((got - want).mean(axis=1), axis=1).max() < 0.15
+    true, z, x = Frames(bending(hidden), heights=(*hidden, END)).true, body.V[:, 2], after.with_ends(body).x
+    for part, (low, high) in enumerate(((LIMBS + 0.3, -2.3), (-0.9, 0.4), (1.8, END - 0.7))):
+        own = (z > low) & (z < high)
+        want = np.einsum("txy,vy->tvx", true.R[:, part], body.V[own]) + true.t[:, None, part]
+        assert np.linalg.norm((x[:, own] - want).mean(axis=1), axis=1).max() < 0.15
+
+
+def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, list[int]]] = []
+    whole = numerics.closer_rings
+    monkeypatch.setattr(numerics, "closer_rings", lambda *of: asked.append((len(of[3].parents), sorted(of[5]))) or whole(*of))
+    _, after = of_bent_trunk((-1.6, 1.1))
+    assert [count for count, _ in asked] == [5, 6]
+    assert asked[0][1] == [0, 1, 2, 3, 4]
+    assert set(after.shown) <= set(asked[1][1])
+    tree = after._replace(parents=np.array([-1, 0, 1, 2, 3, 4]))
+    assert numerics._with_neighbours(tree, np.array([2, 3])) == {1, 2, 3, 4}
+    assert numerics._with_neighbours(tree, np.array([0])) == {0, 1}
 
 
 def test_joint_that_the_first_rings_miss_is_shown_by_closer_ones(monkeypatch: pytest.MonkeyPatch) -> None:

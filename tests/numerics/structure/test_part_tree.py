@@ -7,7 +7,7 @@ from articulated import Known, chain, moved, swings, three_arms
 from limbs import rotation, tube
 
 from kinetree.tasks.numerics.structure.joint_rotations import turning_range
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartTree, joints_of, part_tree
 
 
 def of(body: Known, takes: list[slice] | None = None) -> PartTree:
@@ -110,3 +110,23 @@ def test_limbs_that_move_alike_hang_on_the_middle_and_not_on_each_other() -> Non
     found = of(touching(body))
     assert found.tree.order[0] == 0
     assert found.tree.parents.tolist() == [-1, 0, 0, 0]
+
+
+def test_parts_that_are_joined_have_a_joint_whatever_their_motions_say() -> None:
+    """Both arms swing by themselves, so that the border between them drifts most."""
+    body = touching(three_arms())
+    parts = MovingParts(body.label, body.R, body.t, body.residual)
+    surface = MovingSurface(body.V, body.F, body.x, body.area)
+    free, hung = joints_of(part_tree(surface, parts)), frozenset((2, 3))
+    assert hung not in free
+    for asked in (frozenset({hung}), free - {frozenset((0, 3))} | {hung}):
+        assert asked <= joints_of(part_tree(surface, parts._replace(joined=asked)))
+
+
+def test_a_part_that_goes_takes_its_pairs_along_and_the_others_are_numbered_anew() -> None:
+    body = three_arms()
+    pairs = frozenset({frozenset((1, 3)), frozenset((0, 2)), frozenset((0, 1))})
+    left = MovingParts(body.label, body.R, body.t, body.residual, joined=pairs, by_shape=pairs - {frozenset((0, 1))})
+    fewer = left.without(2, np.where(body.label == 2, 0, body.label))
+    assert fewer.joined == {frozenset((1, 2)), frozenset((0, 1))}
+    assert fewer.by_shape == {frozenset((1, 2))}
