@@ -3,9 +3,19 @@
 import numpy as np
 import pytest
 from smeared import Frames, aligned, found_in, turning
+from trunk import MIRRORED, trunk
 
 from kinetree.tasks.numerics.structure import end_rings as module
-from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, EndRings, Fits, end_rings, laid_in_runs, lay_rings
+from kinetree.tasks.numerics.structure.end_rings import (
+    EndFrames,
+    EndRing,
+    EndRings,
+    Fits,
+    closer_rings,
+    end_rings,
+    laid_in_runs,
+    lay_rings,
+)
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
@@ -61,3 +71,14 @@ def test_every_run_of_frames_begins_afresh(monkeypatch: pytest.MonkeyPatch) -> N
     assert known == [[], [3], [], [5]]
     assert sorted(fits[0]) == [3, 4, 5, 6]
     assert fits[0][5].two == laid([5, 6])[1][0][5].two
+
+
+def test_closer_rings_lie_half_as_far_apart_in_the_parts_that_are_asked() -> None:
+    body, tree = trunk(turning(0.0))
+    asked = (body.V, body.F, body.area, tree, np.isin(np.arange(4), MIRRORED))
+    first, closer = (
+        sorted(ring.cut.centre[2] for ring in rings if ring.cut.hung)
+        for rings in (end_rings(*asked), closer_rings(*asked, [0]))
+    )
+    assert np.diff(closer).mean() < 0.6 * np.diff(first).mean()
+    assert closer_rings(*asked, [1, 2, 3]) == []

@@ -245,11 +245,18 @@ def test_vertices_beside_both_joints_lie_on_the_frames() -> None:
 
 def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, list[int]]] = []
-    whole = numerics.closer_rings
+    apart: list[float] = []
+    whole, judged = numerics.closer_rings, numerics.end_joints
     monkeypatch.setattr(numerics, "closer_rings", lambda *of: asked.append((len(of[3].parents), sorted(of[5]))) or whole(*of))
+    monkeypatch.setattr(
+        numerics,
+        "end_joints",
+        lambda *of, **more: apart.append((more or {"settings": of[5]})["settings"].least_apart) or judged(*of, **more),
+    )
     _, after = of_bent_trunk((-1.6, 1.1))
     assert [count for count, _ in asked] == [5, 6]
     assert asked[0][1] == [0, 1, 2, 3, 4]
+    assert apart == [EndJointsSettings().least_apart, *2 * [EndJointsSettings().least_apart_if_closer]]
     assert set(after.shown) <= set(asked[1][1])
     tree = after._replace(parents=np.array([-1, 0, 1, 2, 3, 4]))
     assert numerics._with_neighbours(tree, np.array([2, 3])) == {1, 2, 3, 4}
@@ -278,6 +285,9 @@ def of_bent_trunk(hidden: tuple[float, ...], first_rings: bool = True) -> tuple[
     """The trunk, and its tree with what the frames show."""
     turn = bending(hidden)
     body, tree = trunk(turn, hidden=hidden)
+    smeared, own = body.x.copy(), tree.label == 0
+    smeared[:, own] = np.einsum("txy,vy->tvx", tree.R[:, 0], body.V[own]) + tree.t[:, None, 0]
+    body = body._replace(x=smeared)
     ones, surface = np.ones(body.x.shape[:2]), cache(Frames(turn, 0.02, heights=(*hidden, END)).prepared(body.size))
     fits = fits_of_rings(body, tree, ones, surface) if first_rings else []
     leaves = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
