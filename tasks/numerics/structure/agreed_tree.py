@@ -16,8 +16,9 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_orde
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.mirrored_slices import mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, Pairs, part_tree
-from kinetree.tasks.numerics.structure.pruning import ALONE, Dropped, Pruned, pruned_without
+from kinetree.tasks.numerics.structure.pruning import ALONE, UNPAIRED, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
 RISE = 1.15
@@ -78,7 +79,8 @@ def agreed_tree(
         still = _best(body, [*trees[:which], shown, *trees[which + 1 :]], pairs, settings) == which
         which, tree = (which, shown) if still else (0, tree)
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
-    return AgreedTree(which, _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings))
+    tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
+    return AgreedTree(which, tree if confidence is None else _without_slices(body, tree, pairs, confidence, settings))
 
 
 def _best(body: MovingSurface, trees: Sequence[FirstTree], pairs: LimbPairs, settings: KinematicTreeSettings) -> int:
@@ -100,13 +102,35 @@ def _without_lone_joints(
     """The tree without joints that no other cut has and that it does not need; of two cuts neither is in the majority."""
     if len(others) < 2 or in_other_cuts(tree.motion.carried(tree.rest[1:]), others, body.size).all():
         return tree
-    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share, *_pairs(tree))
-    found, count = part_tree(body, parts), len(tree.parents)
-    start = Pruned(parts, found, found, np.arange(count), ())
-    joints = tree_of_parts(body, start, np.arange(count), tree.label, confidence, settings)
+    joints = _joints(body, tree, _pruned(body, tree), confidence, settings)
     while (left := _without_one(body, joints, leaves, pairs, confidence, others, settings)) is not None:
         joints = left
     return _of_cut(tree, joints) if joints.left.dropped else tree
+
+
+def _without_slices(
+    body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
+) -> FirstTree:
+    """The tree without slices of flesh at the inner ends of both limbs of a pair."""
+    left = _pruned(body, tree)
+    for one in mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired):
+        gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
+        left = shared_out(body, left, gone, np.where(one.is_below, below, above), UNPAIRED)
+    return _of_cut(tree, _joints(body, tree, left, confidence, settings)) if left.dropped else tree
+
+
+def _pruned(body: MovingSurface, tree: FirstTree) -> Pruned:
+    """The parts of a tree, of which none is dropped yet."""
+    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share, *_pairs(tree))
+    found = part_tree(body, parts)
+    return Pruned(parts, found, found, np.arange(len(tree.parents)), ())
+
+
+def _joints(
+    body: MovingSurface, tree: FirstTree, left: Pruned, confidence: Floats | None, settings: KinematicTreeSettings
+) -> TreeJoints:
+    """The joints of the parts of a tree that are left."""
+    return tree_of_parts(body, left, np.arange(len(tree.parents)), tree.label, confidence, settings)
 
 
 def _pairs(tree: FirstTree) -> tuple[Pairs, Pairs]:

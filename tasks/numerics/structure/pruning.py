@@ -127,6 +127,13 @@ def without_flesh(body: MovingSurface, state: Pruned, gone: int) -> Pruned:
     return _without(body, state, gone, FLESH, *rings(body.F, len(body.V)))
 
 
+def shared_out(body: MovingSurface, state: Pruned, gone: int, to: Ints, reason: str) -> Pruned:
+    """The same without a part, by its number among those that are left; to (vertex,) the part that its vertices go to."""
+    fewer = state.parts.without(gone, np.where(state.parts.label == gone, to, state.parts.label))
+    dropped = (*state.dropped, Dropped(int(state.origin[gone]), reason))
+    return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
+
+
 def pruned_without(
     body: MovingSurface, state: Pruned, gone: int, reason: str, leaves: Ints, pairs: LimbPairs, settings: PruningSettings
 ) -> Pruned:

@@ -1,0 +1,125 @@
+"""Flesh between the trunk and both limbs of a pair, which follows both, is no bone on either side."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from legs import ALONG, FRAMES, LEAVES, LEGS, F, V, of_legs
+from limbs import rotation
+from shipped import TREE
+
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.geometry.surface import surface_areas
+from kinetree.tasks.numerics.structure import agreed_tree
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED
+from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
+from kinetree.tasks.numerics.structure.part_motion import fit, residuals
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.pruning import UNPAIRED, Pruned
+from kinetree.tasks.numerics.structure.tree_joints import tree_of_parts
+
+HIP = 8.0
+"""Distance of the joint from the fork; flesh about it is a part from `INNER` to `OUTER`."""
+INNER, OUTER, KNEE = 4.0, 12.0, 20.0
+ONES = np.ones((FRAMES, len(V)))
+
+
+def seen(
+    is_flesh: bool = True, outer: Sequence[float] = (OUTER, OUTER), flesh_of: Sequence[str] = ("left", "right")
+) -> tuple[MovingSurface, FirstTree]:
+    """Legs whose thighs turn about the hips. What lies about a hip is a mixture of both, or a bone that turns half as far."""
+    label, x = np.zeros(len(V), np.int64), np.tile(V, (FRAMES, 1, 1))
+    for k, (side, leg) in enumerate(LEGS.items()):
+        s, end = ALONG[side], outer[k]
+        thigh, half, shank = (_swings(degrees, k, phase) for degrees, phase in ((40.0, 0), (20.0, 0), (30.0, 3)))
+        hip, knee = HIP * leg, KNEE * leg
+        moved = hip + (V - hip) @ thigh.transpose(0, 2, 1)
+        lower = (hip + (knee - hip) @ thigh.transpose(0, 2, 1))[:, None] + (V - knee) @ (thigh @ shank).transpose(0, 2, 1)
+        share = np.clip((s - INNER) / (end - INNER), 0.0, 1.0)[None, :, None]
+        about = (1.0 - share) * V + share * moved if is_flesh else hip + (V - hip) @ half.transpose(0, 2, 1)
+        for number, low, high, there in ((1, INNER, end, about), (3, end, KNEE, moved), (5, KNEE, np.inf, lower)):
+            own = (s > low) & (s <= high)
+            label[own], x[:, own] = number + k if number > 1 or side in flesh_of else 0, there[:, own]
+    label = np.unique(label, return_inverse=True)[1].reshape(-1)
+    count, area, weight = int(label.max()) + 1, surface_areas(V, F), np.asfortranarray(ONES)
+    R, t = np.empty((FRAMES, count, 3, 3)), np.empty((FRAMES, count, 3))
+    fit(V, x, weight, area, label, np.ones(count, np.bool_), False, len(V), 1e-6, R, t)
+    left = np.maximum(residuals(V, x, weight * area, R, t, label), 0.01)
+    body, parts = MovingSurface(V, F, x, area), MovingParts(label, R, t, left, np.ones((FRAMES, count)))
+    found = part_tree(body, parts)
+    start = Pruned(parts, found, found, np.arange(count), ())
+    return body, in_tree_order(tree_of_parts(body, start, np.arange(count), label, ONES, TREE), count)
+
+
+def _swings(degrees: float, side: int, phase: int) -> Floats:
+    """(frame, 3, 3) of one leg."""
+    angle = np.radians(degrees) * np.sin(np.arange(FRAMES) + side + phase)
+    return np.array([rotation((0.3, 0.3, 1.0), a) for a in angle])
+
+
+def found_in(seen_as: tuple[MovingSurface, FirstTree], settings: MirroredSlicesSettings | None = None) -> list[Slice]:
+    return mirrored_slices(*seen_as, of_legs(), ONES, PAIRED, settings)
+
+
+def test_flesh_on_both_sides_is_found() -> None:
+    body, tree = seen()
+    slices = found_in((body, tree))
+    assert len(slices) == 2
+    for one in slices:
+        assert tree.parents[[one.part, one.below]].tolist() == [one.above, one.part]
+        along = np.maximum(ALONG["left"], ALONG["right"])[tree.label == one.part]
+        assert INNER <= along.min() < along.max() <= OUTER
+
+
+ANY_LENGTH = MirroredSlicesSettings(least_length=0.0, alike=np.inf)
+
+
+def test_bones_that_turn_by_themselves_are_none() -> None:
+    assert found_in(seen(is_flesh=False), ANY_LENGTH) == []
+
+
+def test_flesh_on_one_side_is_for_others_to_find() -> None:
+    assert found_in(seen(flesh_of=("left",))) == []
+
+
+@pytest.mark.parametrize(("least", "most", "count"), [(0.5, 2.2, 2), (0.5, 0.9, 0), (1.8, 2.2, 0)])
+def test_how_long_they_may_be(least: float, most: float, count: int) -> None:
+    """These are 1.3 radii long; links from a pelvis to its hips are shorter."""
+    assert len(found_in(seen(), MirroredSlicesSettings(least_length=least, length=most))) == count
+
+
+def test_how_little_of_a_mixture_they_may_be() -> None:
+    assert len(found_in(seen(is_flesh=False), ANY_LENGTH._replace(mixture=np.inf))) == 2
+
+
+@pytest.mark.parametrize(("alike", "count"), [(1.2, 0), (9.0, 2)])
+def test_both_are_as_long(alike: float, count: int) -> None:
+    uneven = seen(outer=(OUTER + 3.0, OUTER))
+    assert len(found_in(uneven, MirroredSlicesSettings(alike=alike, length=9.0))) == count
+
+
+@pytest.mark.parametrize("outer", [0.5, 1.0])
+def test_what_lies_nearer_to_the_outer_joint_goes_to_the_limb(outer: float) -> None:
+    body, tree = seen()
+    for one in found_in((body, tree), MirroredSlicesSettings(outer=outer)):
+        from_inner, from_outer = (np.linalg.norm(V - tree.rest[k], axis=1) for k in (one.part, one.below))
+        np.testing.assert_array_equal(one.is_below, from_outer < outer * from_inner)
+        assert 0.2 * outer - 0.1 <= one.is_below[tree.label == one.part].mean() <= outer - 0.2
+
+
+def test_tree_without_them_has_one_joint_a_side_near_the_hip() -> None:
+    body, tree = seen()
+    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    assert len(left.parents) == len(tree.parents) - 2
+    assert [one.reason for one in left.graph.dropped] == [UNPAIRED, UNPAIRED]
+    assert (left.place < 0).sum() == 2
+    hips = left.rest[np.flatnonzero(left.parents == 0)]
+    for leg in LEGS.values():
+        assert np.linalg.norm(hips - HIP * leg, axis=1).min() < 1.5
+    assert {*left.label[LEAVES].tolist()} <= {*range(len(left.parents))}
+
+
+def test_tree_without_slices_stays_as_it_is() -> None:
+    body, tree = seen(is_flesh=False)
+    assert agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE) is tree
