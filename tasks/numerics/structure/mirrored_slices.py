@@ -18,11 +18,13 @@ from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 class MirroredSlicesSettings(NamedTuple):
     """When the innermost parts of both limbs are slices.
 
-    Chosen on people 0 to 19, 60 to 69 and 86 to 144, of whom seven have innermost parts as short on both sides.
+    Chosen on people 0 to 19, 60 to 69 and 86 to 144, of whom five, all running, have slices beside both shoulders, and on the
+    dance.
     """
 
     length: float = 2.2
-    """Length of both, from joint to joint, in radii of their smaller border, at most. Slices beside shoulders have 1.1 to 2.1."""
+    """Length of both, from joint to joint, in radii of their smaller border, at most. Slices beside shoulders have 1.1 to 2.1.
+    """
     least_length: float = 1.2
     """The same of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
     of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
