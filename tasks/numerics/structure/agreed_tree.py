@@ -18,7 +18,7 @@ from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mir
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_slices import mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, Pairs, part_tree
-from kinetree.tasks.numerics.structure.pruning import ALONE, UNPAIRED, Dropped, Pruned, pruned_without, shared_out
+from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
 RISE = 1.15
@@ -62,7 +62,7 @@ def agreed_tree(
 
     The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
     before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
-    mirror images become one part.
+    mirror images become one part. Where vertices were aligned, slices that all cuts have go too (`mirrored_slices`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -115,7 +115,7 @@ def _without_slices(
     left = _pruned(body, tree)
     for one in mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired):
         gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
-        left = shared_out(body, left, gone, np.where(one.is_below, below, above), UNPAIRED)
+        left = shared_out(body, left, gone, np.where(one.is_below, below, above), FLESH)
     return _of_cut(tree, _joints(body, tree, left, confidence, settings)) if left.dropped else tree
 
 

@@ -16,7 +16,7 @@ from kinetree.tasks.numerics.structure.joint_partners import PAIRED
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
 from kinetree.tasks.numerics.structure.part_motion import fit, residuals
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
-from kinetree.tasks.numerics.structure.pruning import UNPAIRED, Pruned
+from kinetree.tasks.numerics.structure.pruning import FLESH, Pruned
 from kinetree.tasks.numerics.structure.tree_joints import tree_of_parts
 
 HIP = 8.0
@@ -112,7 +112,7 @@ def test_tree_without_them_has_one_joint_a_side_near_the_hip() -> None:
     body, tree = seen()
     left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
     assert len(left.parents) == len(tree.parents) - 2
-    assert [one.reason for one in left.graph.dropped] == [UNPAIRED, UNPAIRED]
+    assert [one.reason for one in left.graph.dropped] == [FLESH, FLESH]
     assert (left.place < 0).sum() == 2
     hips = left.rest[np.flatnonzero(left.parents == 0)]
     for leg in LEGS.values():
