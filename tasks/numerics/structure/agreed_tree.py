@@ -112,11 +112,14 @@ def _without_slices(
     body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
     """The tree without slices of flesh at the inner ends of both limbs of a pair."""
+    slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
+    if not slices:
+        return tree
     left = _pruned(body, tree)
-    for one in mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired):
+    for one in slices:
         gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
         left = shared_out(body, left, gone, np.where(one.is_below, below, above), FLESH)
-    return _of_cut(tree, _joints(body, tree, left, confidence, settings)) if left.dropped else tree
+    return _of_cut(tree, _joints(body, tree, left, confidence, settings))
 
 
 def _pruned(body: MovingSurface, tree: FirstTree) -> Pruned:
