@@ -240,7 +240,7 @@ def test_vertices_beside_both_joints_lie_on_the_frames() -> None:
     for part, (low, high) in enumerate(((LIMBS + 0.3, -2.3), (-0.9, 0.4), (1.8, END - 0.7))):
         own = (z > low) & (z < high)
         want = np.einsum("txy,vy->tvx", true.R[:, part], body.V[own]) + true.t[:, None, part]
-        assert np.linalg.norm((x[:, own] - want).mean(axis=1), axis=1).max() < 0.15
+        assert np.linalg.norm((x[:, own] - want).mean(axis=1), axis=1).max() < 0.08
 
 
 def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:

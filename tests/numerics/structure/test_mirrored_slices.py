@@ -26,7 +26,10 @@ ONES = np.ones((FRAMES, len(V)))
 
 
 def seen(
-    is_flesh: bool = True, outer: Sequence[float] = (OUTER, OUTER), flesh_of: Sequence[str] = ("left", "right")
+    is_flesh: bool = True,
+    outer: Sequence[float] = (OUTER, OUTER),
+    flesh_of: Sequence[str] = ("left", "right"),
+    bone_of: Sequence[str] = (),
 ) -> tuple[MovingSurface, FirstTree]:
     """Legs whose thighs turn about the hips. What lies about a hip is a mixture of both, or a bone that turns half as far."""
     label, x = np.zeros(len(V), np.int64), np.tile(V, (FRAMES, 1, 1))
@@ -37,7 +40,9 @@ def seen(
         moved = hip + (V - hip) @ thigh.transpose(0, 2, 1)
         lower = (hip + (knee - hip) @ thigh.transpose(0, 2, 1))[:, None] + (V - knee) @ (thigh @ shank).transpose(0, 2, 1)
         share = np.clip((s - INNER) / (end - INNER), 0.0, 1.0)[None, :, None]
-        about = (1.0 - share) * V + share * moved if is_flesh else hip + (V - hip) @ half.transpose(0, 2, 1)
+        about = (
+            (1.0 - share) * V + share * moved if is_flesh and side not in bone_of else hip + (V - hip) @ half.transpose(0, 2, 1)
+        )
         for number, low, high, there in ((1, INNER, end, about), (3, end, KNEE, moved), (5, KNEE, np.inf, lower)):
             own = (s > low) & (s <= high)
             label[own], x[:, own] = number + k if number > 1 or side in flesh_of else 0, there[:, own]
@@ -79,8 +84,19 @@ def test_bones_that_turn_by_themselves_are_none() -> None:
     assert found_in(seen(is_flesh=False), ANY_LENGTH) == []
 
 
-def test_flesh_on_one_side_is_for_others_to_find() -> None:
-    assert found_in(seen(flesh_of=("left",))) == []
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_flesh_on_one_side_is_for_others_to_find(side: str) -> None:
+    other = {"left": "right", "right": "left"}[side]
+    assert found_in(seen(flesh_of=(side,))) == []
+    assert found_in(seen(bone_of=(other,)), ANY_LENGTH) == []
+
+
+def test_frames_in_which_vertices_are_not_certain_do_not_count() -> None:
+    body, tree = seen(is_flesh=False)
+    x, trust = body.x.copy(), ONES.copy()
+    x[::2] += np.random.default_rng(0).normal(0.0, 5.0, x[::2].shape)
+    trust[::2] = 0.0
+    assert mirrored_slices(body._replace(x=x), tree, of_legs(), trust, PAIRED, ANY_LENGTH) == []
 
 
 @pytest.mark.parametrize(("least", "most", "count"), [(0.5, 2.2, 2), (0.5, 0.9, 0), (1.8, 2.2, 0)])
@@ -118,6 +134,15 @@ def test_tree_without_them_has_one_joint_a_side_near_the_hip() -> None:
     for leg in LEGS.values():
         assert np.linalg.norm(hips - HIP * leg, axis=1).min() < 1.5
     assert {*left.label[LEAVES].tolist()} <= {*range(len(left.parents))}
+
+
+def test_agreed_tree_has_none_where_vertices_were_aligned() -> None:
+    body, tree = seen()
+    aligned = agreed_tree.agreed_tree(body, [tree], LEAVES, ONES, settings=TREE).tree
+    followed = agreed_tree.agreed_tree(body, [tree], LEAVES, None, settings=TREE).tree
+    assert (len(aligned.parents), len(followed.parents)) == (len(tree.parents) - 2, len(tree.parents))
+    slices = np.isin(tree.label, [one.part for one in found_in((body, tree))])
+    assert (aligned.label[slices] == 0).mean() > 0.6
 
 
 def test_tree_without_slices_stays_as_it_is() -> None:
