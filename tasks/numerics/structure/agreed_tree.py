@@ -17,7 +17,7 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_slices import mirrored_slices
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, Pairs, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 
@@ -124,7 +124,7 @@ def _without_slices(
 
 def _pruned(body: MovingSurface, tree: FirstTree) -> Pruned:
     """The parts of a tree, of which none is dropped yet."""
-    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share, *_pairs(tree))
+    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share, *_kept_joints(tree))
     found = part_tree(body, parts)
     return Pruned(parts, found, found, np.arange(len(tree.parents)), ())
 
@@ -136,7 +136,7 @@ def _joints(
     return tree_of_parts(body, left, np.arange(len(tree.parents)), tree.label, confidence, settings)
 
 
-def _pairs(tree: FirstTree) -> tuple[Pairs, Pairs]:
+def _kept_joints(tree: FirstTree) -> tuple[PartPairs, PartPairs]:
     """`MovingParts.joined` and `MovingParts.by_shape` of a tree with limbs that were cut off: all its joints, and theirs."""
     joints = [(part, above) for part, above in enumerate(tree.parents.tolist()) if above >= 0]
     is_cut_off = ~np.isin(np.arange(len(tree.parents)), tree.place)

@@ -7,7 +7,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.alike_limbs import alike_limbs
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
-from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.limbs_in_trunk import LimbInTrunk, limbs_in_trunk
 from kinetree.tasks.numerics.structure.part_motion import fit, misfit, residuals
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, joints_of, part_tree
@@ -17,14 +17,16 @@ FIT_FLOOR = 1e-10
 """Least scale of squared residuals of a fit, share of the area: that of `EliminationSettings`."""
 
 
-def with_limbs_apart(body: MovingSurface, state: Pruned, leaves: Ints, confidence: Floats, paired: float) -> Pruned:
+def with_limbs_apart(
+    body: MovingSurface, state: Pruned, leaves: Ints, pairs: LimbPairs, confidence: Floats, paired: float
+) -> Pruned:
     """The parts and their tree with two limbs that are one part cut apart, and a limb cut off the trunk with which it is one.
 
     leaves     : (leaf,) vertices at the ends of limbs
+    pairs      : those that are mirror images
     confidence : (frame, vertex) 0 to 1
     paired     : radii, see `joint_partners.PAIRED`
     """
-    pairs = limb_pairs(body.V, body.F, leaves)
     return _with_limbs_off_trunk(body, _with_two_limbs(body, state, leaves, pairs, confidence), pairs, confidence, paired)
 
 

@@ -65,8 +65,8 @@ class MovingSurface(NamedTuple):
         return float(np.sqrt(self.area.sum()))
 
 
-Pairs = frozenset[frozenset[int]]
-"""Pairs of parts, by their numbers."""
+PartPairs = frozenset[frozenset[int]]
+"""PartPairs of parts, by their numbers."""
 
 
 class MovingParts(NamedTuple):
@@ -85,8 +85,8 @@ class MovingParts(NamedTuple):
     t: Floats
     residual: Floats
     confidence: Floats | None = None
-    joined: Pairs = frozenset()
-    by_shape: Pairs = frozenset()
+    joined: PartPairs = frozenset()
+    by_shape: PartPairs = frozenset()
 
     def without(self, gone: int, label: Ints) -> "MovingParts":
         """The other parts; `label` (vertex,) gives the vertices of the part that is gone to others."""
@@ -97,8 +97,8 @@ class MovingParts(NamedTuple):
         return MovingParts(label - (label > gone), R, t, residual, confidence, *pairs)
 
 
-def _renumbered(pairs: Pairs, gone: int) -> Pairs:
-    """Pairs of parts as they are numbered without one."""
+def _renumbered(pairs: PartPairs, gone: int) -> PartPairs:
+    """PartPairs of parts as they are numbered without one."""
     return frozenset(frozenset(part - (part > gone) for part in pair) for pair in pairs if gone not in pair)
 
 
@@ -119,7 +119,7 @@ class PartTree(NamedTuple):
     ratio: Floats
 
 
-def joints_of(found: PartTree) -> Pairs:
+def joints_of(found: PartTree) -> PartPairs:
     """The pairs of parts between which a tree has a joint."""
     return frozenset(map(frozenset, found.borders.pair[found.tree.border[1:]].tolist()))
 

@@ -100,17 +100,19 @@ def pruned(
     evidence: FrameEvidence | None = None,
     *,
     settings: PruningSettings,
+    pairs: LimbPairs | None = None,
 ) -> Pruned:
     """Drops parts, the weakest first, until none is weak or none can be spared; then those that no frame shows, and those that
     the mirror image of their limb lacks.
 
     leaves   : (leaf,) vertices at the ends of limbs
     evidence : the frames' surfaces; None where every vertex was followed
+    pairs    : limbs that are mirror images; None has them found
     """
     chosen = _by_takes(body, settings)
     start, ring = rings(body.F, len(body.V))
     tree = part_tree(body, parts)
-    pairs = limb_pairs(body.V, body.F, leaves)
+    pairs = limb_pairs(body.V, body.F, leaves) if pairs is None else pairs
     state = _pruned_by_motion(body, Pruned(parts, tree, tree, np.arange(parts.R.shape[1]), ()), leaves, pairs, chosen)
     while evidence is not None:
         partner = joint_partners(body.F, RootedParts.of(state.parts.label, state.part_tree), pairs, chosen.unpaired.paired)

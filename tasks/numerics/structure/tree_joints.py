@@ -11,6 +11,7 @@ from kinetree.tasks.numerics.structure.centre_lines import towards_centre_lines
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_consensus import JointMotion
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
+from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import with_limbs_apart
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import Pruned, PruningSettings, pruned, without_flesh
@@ -131,9 +132,10 @@ def tree_joints(
     used, label, R, t, residual = _used(label, cut.R, cut.t, cut.residual)
     seen = None if confidence is None else confident_share(label, body.area, confidence, len(body.x), R.shape[1])
     parts = MovingParts(label, R, t, residual, seen)
-    left = pruned(body, parts, leaves, evidence, settings=settings.pruning)
+    pairs = limb_pairs(body.V, body.F, leaves)
+    left = pruned(body, parts, leaves, evidence, settings=settings.pruning, pairs=pairs)
     if confidence is not None:
-        left = with_limbs_apart(body, left, leaves, confidence, settings.pruning.unpaired.paired)
+        left = with_limbs_apart(body, left, leaves, pairs, confidence, settings.pruning.unpaired.paired)
     return tree_of_parts(body, left, used, used[label], confidence, settings)
 
 

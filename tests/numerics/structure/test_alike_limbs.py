@@ -206,7 +206,7 @@ def pruned_parts(trust: Floats | None = None, is_given: bool = False) -> Pruned:
     if is_given:
         return pruned(body, parts._replace(confidence=None), LEAVES, settings=TREE.pruning)
     left = pruned(body, parts, LEAVES, settings=TREE.pruning)
-    return limbs_apart.with_limbs_apart(body, left, LEAVES, confidence, PAIRED)
+    return limbs_apart.with_limbs_apart(body, left, LEAVES, limb_pairs(V, F, LEAVES), confidence, PAIRED)
 
 
 def test_two_limbs_of_one_part_count_as_no_part_of_a_limb() -> None:

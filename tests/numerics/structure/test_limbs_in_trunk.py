@@ -34,7 +34,7 @@ def cut(legs: Legs, trust: np.ndarray | None = None) -> Pruned:
     tree = part_tree(legs.body, legs.parts)
     state = Pruned(legs.parts, tree, tree, np.arange(legs.parts.R.shape[1]), ())
     confidence = np.ones(legs.body.x.shape[:2]) if trust is None else trust
-    return with_limbs_apart(legs.body, state, LEAVES, confidence, 2.5)
+    return with_limbs_apart(legs.body, state, LEAVES, limb_pairs(V, legs.body.F, LEAVES), confidence, 2.5)
 
 
 def test_thigh_is_found_at_the_level_of_the_other_hip() -> None:
@@ -172,7 +172,7 @@ def test_tree_of_the_cut_knows_which_joint_the_shape_alone_shows() -> None:
     tree = in_tree_order(tree_joints(legs.body, given, LEAVES, ones, settings=TREE), 5)
     assert len(tree.parents) == 6
     new = int(np.setdiff1d(np.arange(6), tree.place)[0])
-    pairs, by_shape = agreed_tree._pairs(tree)
+    pairs, by_shape = agreed_tree._kept_joints(tree)
     assert len(pairs) == 5
     assert by_shape == {pair for pair in pairs if new in pair}
-    assert agreed_tree._pairs(tree._replace(place=np.arange(6))) == (frozenset(), frozenset())
+    assert agreed_tree._kept_joints(tree._replace(place=np.arange(6))) == (frozenset(), frozenset())
