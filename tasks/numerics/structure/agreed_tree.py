@@ -62,7 +62,7 @@ def agreed_tree(
 
     The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
     before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
-    mirror images become one part. Where vertices were aligned, slices that all cuts have go too (`mirrored_slices`).
+    mirror images become one part. Where vertices were aligned, slices beside both limbs of a pair go too (`mirrored_slices`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs

@@ -1,7 +1,7 @@
 """Slices of flesh at the inner ends of both limbs of a pair, which their mirror images do not tell from bones (ours).
 
 An arm that swings far pulls the flesh of chest and shoulder along: it turns by a share of what the arm turns by, on both sides
-alike, and is a part in all cuts. Between two bones flesh is a mixture of both; a bone of its own is none.
+alike, and becomes a part of its own. Between two bones flesh is a mixture of both; a bone of its own is none.
 """
 
 from typing import NamedTuple

@@ -183,9 +183,7 @@ def _pruned_by_partners(body: MovingSurface, state: Pruned, leaves: Ints, pairs:
 def _without(body: MovingSurface, state: Pruned, gone: int, reason: str, start: Ints, ring: Ints) -> Pruned:
     """The same without one part, whose vertices go to the parts around it."""
     parts = state.parts
-    fewer = parts.without(gone, reassigned(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring))
-    dropped = (*state.dropped, Dropped(int(state.origin[gone]), reason))
-    return Pruned(fewer, part_tree(body, fewer), state.before, np.delete(state.origin, gone), dropped)
+    return shared_out(body, state, gone, reassigned(body.V, body.x, parts.label, gone, parts.R, parts.t, start, ring), reason)
 
 
 def _weak_parts(
