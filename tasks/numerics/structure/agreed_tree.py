@@ -16,7 +16,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_orde
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
-from kinetree.tasks.numerics.structure.mirrored_slices import mirrored_slices
+from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
@@ -62,7 +62,7 @@ def agreed_tree(
 
     The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
     before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
-    mirror images become one part. Where vertices were aligned, slices beside both limbs of a pair go too (`mirrored_slices`).
+    mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too (`mirrored_slices`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -111,15 +111,37 @@ def _without_lone_joints(
 def _without_slices(
     body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
-    """The tree without slices of flesh at the inner ends of both limbs of a pair."""
-    slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
+    """The tree without slices of flesh at the inner ends of limbs of a pair, which are shared out so that few joints drift."""
+    chosen = MirroredSlicesSettings()
+    slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired, chosen)
     if not slices:
         return tree
+    tried = [_shared_out(body, tree, slices, [outer] * len(slices), confidence, settings) for outer in chosen.outer]
+    drift = np.array([[_drift_of(joints, one.below) for one in slices] for joints in tried])
+    first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
+    return _of_cut(tree, _shared_out(body, tree, slices, [chosen.outer[k] for k in first], confidence, settings))
+
+
+def _shared_out(
+    body: MovingSurface,
+    tree: FirstTree,
+    slices: Sequence[Slice],
+    outer: Sequence[float],
+    confidence: Floats,
+    settings: KinematicTreeSettings,
+) -> TreeJoints:
+    """The joints of the tree without slices; outer (slice,) see `MirroredSlicesSettings`."""
     left = _pruned(body, tree)
-    for one in slices:
+    for one, least in zip(slices, outer, strict=True):
         gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
-        left = shared_out(body, left, gone, np.where(one.is_below, below, above), FLESH)
-    return _of_cut(tree, _joints(body, tree, left, confidence, settings))
+        left = shared_out(body, left, gone, np.where(one.outwards < least, below, above), FLESH)
+    return _joints(body, tree, left, confidence, settings)
+
+
+def _drift_of(joints: TreeJoints, part: int) -> float:
+    """Drift of the joint of a part, as it was numbered before any was dropped."""
+    place = joints.left.origin[joints.left.part_tree.tree.order] == part
+    return float(joints.drift[place][0])
 
 
 def _pruned(body: MovingSurface, tree: FirstTree) -> Pruned:

@@ -28,9 +28,9 @@ class AlikeLimbsSettings(NamedTuple):
     along: float = 0.8
     """Cosine of the angle between the line about which the part turns and that from one limb to the other, at least. Those have
     0.90 to 1.00; where a trunk twists or bends aside it is none."""
-    near: float = 1.5
-    """Distance of the joint from that line, in radii of the limbs, at most. Those have 0.8 to 1.1; the joint of a spine that
-    bends above a pelvis at rest lies two radii higher."""
+    near: float = 1.75
+    """Distance of the joint from that line, in radii of the limbs, at most. Those have 0.8 to 1.1, both thighs of a body with
+    slim legs, which is not among them, 1.6; the joint of a spine that bends above a pelvis at rest lies two radii higher."""
     band: float = 0.06
     """Length of the limbs below the crotch whose radius counts, share of the root of the area. Not varied."""
 

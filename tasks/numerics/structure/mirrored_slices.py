@@ -1,55 +1,74 @@
-"""Slices of flesh at the inner ends of both limbs of a pair, which their mirror images do not tell from bones (ours).
+"""Slices of flesh at the inner ends of limbs of a pair, which their mirror images do not tell from bones (ours).
 
 An arm that swings far pulls the flesh of chest and shoulder along: it turns by a share of what the arm turns by, on both sides
-alike, and becomes a part of its own. Between two bones flesh is a mixture of both; a bone of its own is none.
+alike, and becomes a part of its own. The arm's joint is then two, one on either side of the true one. Between two bones flesh
+is a mixture of both; a bone of its own is none.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import Limb, MirroredLimbs, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 
 
+class SliceLimits(NamedTuple):
+    """What slices are at most.
+
+    length  : from joint to joint, in radii of their smaller border
+    alike   : length of one in that of the other
+    mixture : how much more a mixture of the motions of both neighbours leaves of the part than one of its own with either
+    """
+
+    length: float
+    alike: float
+    mixture: float
+
+
 class MirroredSlicesSettings(NamedTuple):
-    """When the innermost parts of both limbs are slices.
+    """When the innermost parts of limbs are slices.
 
-    Chosen on people 0 to 19, 60 to 69 and 86 to 144, of whom five, all running, have slices beside both shoulders, and on the
-    dance.
+    Chosen on people 0 to 19, 60 to 69 and 86 to 144, of whom five, all running, have slices beside both shoulders, on the
+    dance, and on a person's body with collar bones in sixteen generated motions, of which seven show slices beside shoulders.
     """
 
-    length: float = 2.2
-    """Length of both, from joint to joint, in radii of their smaller border, at most. Slices beside shoulders have 1.1 to 2.1.
-    """
+    beside: SliceLimits = SliceLimits(2.2, 1.5, 3.6)
+    """Of parts that touch each other, as those about a pelvis do: the two halves of a wolf's have lengths of 2.5 and 2.9, and
+    mixtures of 2.8 and 3.9."""
+    apart: SliceLimits = SliceLimits(3.9, 2.5, 5.2)
+    """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
+    2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
     least_length: float = 1.2
-    """The same of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
+    """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
     of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
-    alike: float = 1.5
-    """Length of one in that of the other, at most. Those have 1.1 to 1.27; a pelvis that one limb hangs on and flesh above the
-    other hip 2.4 and 2.5."""
-    mixture: float = 3.6
-    """How much more a mixture of the motions of both neighbours leaves of the part than one of its own with either, at most.
-    Slices have 2.2 to 3.5."""
-    outer: float = 0.5
-    """Distance from its outer joint, in that from its inner joint, below which a vertex goes to the limb and not to the trunk.
-    Shoulders err least so of 0, 0.3, 0.5 and 1; with all that moves like the arm two are lost."""
+    longer: float = 1.6
+    """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Slices have 2.4
+    and 2.6."""
+    outer: tuple[float, ...] = (0.3, 0.5, 0.7, 1.0, 1.4)
+    """Distances from its outer joint, in that from its inner joint, below which a vertex goes to the limb, else to the trunk;
+    of these the first with which the limb's joint drifts hardly more than with any. Chosen with `looser` on the shoulders of
+    the people who run and of that body: they are 1.2 and 0.8 % off, and 1.7 and 2.5 with 0.5 for all."""
+    looser: float = 1.3
+    """Drift of the limb's joint, in the least, at most. The more of a slice goes to the limb, the farther inwards the joint
+    lies, and the less it drifts until it is where the limb turns; from there on the drift hardly changes."""
 
 
 class Slice(NamedTuple):
     """A part that is a slice.
 
     part, above, below : its place in the tree, and those of its neighbours
-    is_below           : (vertex,) which vertices go to the part below it rather than to that above
+    outwards           : (vertex,) distance of every vertex from its outer joint, in that from its inner joint
     """
 
     part: int
     above: int
     below: int
-    is_below: Flags
+    outwards: Floats
 
 
 def mirrored_slices(
@@ -68,13 +87,44 @@ def mirrored_slices(
     """
     chosen, parts = settings or MirroredSlicesSettings(), RootedParts(tree.label, tree.parents, tree.radius)
     found = dict[int, Slice]()
-    for one, other, _ in mirrored_limbs(body.F, parts, pairs, paired):
-        lengths = [_length(tree, limb) for limb in (one, other)]
-        if chosen.least_length <= max(lengths) <= min(chosen.length, chosen.alike * min(lengths)):
-            both = [_slice(body, tree, limb, chosen) for limb in (one, other)]
-            if all(_mixture(body, tree, each, confidence) <= chosen.mixture for each in both):
-                found |= {each.part: each for each in both}
+    for limbs in mirrored_limbs(body.F, parts, pairs, paired):
+        if not len(limbs.one.part) or not len(limbs.other.part):
+            continue
+        are_beside = _touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
+        limits = chosen.beside if are_beside else chosen.apart
+        slices = [_slice(body, tree, limb) for limb in _short(tree, limbs, limits, are_beside, chosen)]
+        if all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
+            found |= {each.part: each for each in slices}
     return [found[part] for part in sorted(found)]
+
+
+def _short(
+    tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, are_beside: bool, chosen: MirroredSlicesSettings
+) -> Sequence[Limb]:
+    """The limbs whose innermost part is as short as a slice: both, none, or the one with one joint more than the other.
+
+    are_beside : whether the innermost parts touch each other
+    """
+    both = limbs[:2]
+    lengths = [_length(tree, limb) for limb in both]
+    short, long = sorted(lengths)
+    if chosen.least_length <= long <= min(limits.length, limits.alike * short):
+        return both
+    side = int(np.argmin(lengths))
+    is_lone = chosen.least_length <= short <= limits.length and chosen.longer * short <= long < np.inf
+    return [both[side]] if is_lone and not are_beside and _has_one_more(both[side], limbs.row[:, side]) else []
+
+
+def _has_one_more(limb: Limb, partners: Ints) -> bool:
+    """Whether one of a limb's two innermost joints has a partner and the other one has none."""
+    last = len(limb.part) - 1
+    return bool(np.isin([last - 1, last], partners).sum() == 1)
+
+
+def _touch(F: Ints, label: Ints, one: int, other: int) -> bool:
+    """Whether an edge leads from one part to the other."""
+    edge = label[np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])]
+    return bool(((edge == one).any(axis=1) & (edge == other).any(axis=1)).any())
 
 
 def _length(tree: FirstTree, limb: Limb) -> float:
@@ -86,11 +136,11 @@ def _length(tree: FirstTree, limb: Limb) -> float:
     return float(np.linalg.norm(tree.rest[part] - tree.rest[below]) / radius)
 
 
-def _slice(body: MovingSurface, tree: FirstTree, limb: Limb, chosen: MirroredSlicesSettings) -> Slice:
+def _slice(body: MovingSurface, tree: FirstTree, limb: Limb) -> Slice:
     """A limb's innermost part."""
     below, part = limb.part[-2:].tolist()
     inner, outer = (np.linalg.norm(body.V - tree.rest[k], axis=1) for k in (part, below))
-    return Slice(part, int(tree.parents[part]), below, outer < chosen.outer * inner)
+    return Slice(part, int(tree.parents[part]), below, outer / np.maximum(inner, float(np.finfo(float).tiny)))
 
 
 def _mixture(body: MovingSurface, tree: FirstTree, one: Slice, confidence: Floats) -> float:
