@@ -36,7 +36,7 @@ coverage: $(READY)
 	$(BIN)/pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder --cov --cov-report=term
 
 # without those that have a command of their own, need data or many hours, and modules that others import
-APART := accuracy alignment arap contacts damage faults flaky_service forked fuzz generated_truth joint_errors names robustness \
+APART := accuracy alignment arap contacts damage faults flaky_service forked fuzz generated_truth joint_errors names rigged robustness \
 	scheduled_run sensitivity shaken_alignment silhouettes spoilt stability turning
 
 benchmarks: $(READY)
