@@ -3,11 +3,11 @@
     python benchmarks/rigged.py RIG.npz FOLDER MOTION:SEED ... [--frames 36] [--spacing 0.0107] [--noise 0.00067] [--fixed]
 
 RIG.npz holds V_rest (vertex, xyz), F (face, corner), W (vertex, joint), names and parents (joint,), head (joint, xyz), y up and
-x to the left, with the joints' names of the CMU motion capture database. FOLDER then holds rigSEEDMOTION.npz and
-rigSEEDMOTION.truth.json, which `python benchmarks/accuracy.py --data FOLDER --seeds none` scores. Each bone of the body turns
-as the bone of `adult:SEED` that stands for it, collar bones by a fifth of what the upper arm turns. --spacing is that of the
-grid on which a frame is surfaced, --noise that along the normals, shares of the height. --fixed keeps the body's own vertices,
-without noise.
+x to the left, with the joints' names of the CMU motion capture database, as bodies made with MakeHuman can have. FOLDER then
+holds rigSEEDMOTION.npz and rigSEEDMOTION.truth.json, which `python benchmarks/accuracy.py --data FOLDER --seeds none` scores.
+Each bone of the body turns as the bone of `adult:SEED` that stands for it, collar bones by a fifth of what the upper arm turns.
+--spacing is that of the grid on which a frame is surfaced, --noise that along the normals, shares of the height. --fixed keeps
+the body's own vertices, without noise.
 """
 
 import argparse
@@ -126,8 +126,7 @@ def _world(rig: Rig, figure: Figure, G: Floats) -> Floats:
 
 def _towards(a: Floats, b: Floats) -> Floats:
     """(3, 3) the least turn that takes one direction to another."""
-    axis, cosine = np.cross(a, b), float(a @ b) / float(np.linalg.norm(a) * np.linalg.norm(b))
-    return np.asarray(Rotation.from_rotvec(np.arccos(cosine) * axis / np.linalg.norm(axis)).as_matrix())
+    return np.asarray(Rotation.align_vectors(b[None], a[None])[0].as_matrix())
 
 
 def _widest(R: Floats) -> float:

@@ -111,37 +111,48 @@ def _without_lone_joints(
 def _without_slices(
     body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
-    """The tree without slices of flesh at the inner ends of limbs of a pair, which are shared out so that few joints drift."""
+    """The tree without slices of flesh at the inner ends of limbs of a pair, shared out so that few joints drift."""
     chosen = MirroredSlicesSettings()
     slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired, chosen)
     if not slices:
         return tree
-    tried = [_shared_out(body, tree, slices, [outer] * len(slices), confidence, settings) for outer in chosen.outer]
-    drift = np.array([[_drift_of(joints, one.below) for one in slices] for joints in tried])
+    start = _pruned(body, tree)
+    tried = [_shared_out(body, tree, start, slices, [share] * len(slices), confidence, settings) for share in chosen.shares]
+    between = [_between(joints) for joints in tried]
+    drift = np.array([[drifts.get(frozenset((one.above, one.below)), np.inf) for one in slices] for drifts in between])
     first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
-    return _of_cut(tree, _shared_out(body, tree, slices, [chosen.outer[k] for k in first], confidence, settings))
+    if (first == first[0]).all():
+        return _of_cut(tree, tried[first[0]])
+    return _of_cut(tree, _shared_out(body, tree, start, slices, [chosen.shares[k] for k in first], confidence, settings))
 
 
 def _shared_out(
     body: MovingSurface,
     tree: FirstTree,
+    left: Pruned,
     slices: Sequence[Slice],
-    outer: Sequence[float],
+    shares: Sequence[float],
     confidence: Floats,
     settings: KinematicTreeSettings,
 ) -> TreeJoints:
-    """The joints of the tree without slices; outer (slice,) see `MirroredSlicesSettings`."""
-    left = _pruned(body, tree)
-    for one, least in zip(slices, outer, strict=True):
+    """The joints of the tree without slices.
+
+    left   : the parts of the tree
+    shares : (slice,) see `MirroredSlicesSettings`
+    """
+    for one, share in zip(slices, shares, strict=True):
         gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
-        left = shared_out(body, left, gone, np.where(one.outwards < least, below, above), FLESH)
+        left = left._replace(parts=_neighbours_joined(left.parts, gone, frozenset((above, below))))
+        left = shared_out(body, left, gone, np.where(one.inwards < share, below, above), FLESH)
     return _joints(body, tree, left, confidence, settings)
 
 
-def _drift_of(joints: TreeJoints, part: int) -> float:
-    """Drift of the joint of a part, as it was numbered before any was dropped."""
-    place = joints.left.origin[joints.left.part_tree.tree.order] == part
-    return float(joints.drift[place][0])
+def _neighbours_joined(parts: MovingParts, gone: int, pair: frozenset[int]) -> MovingParts:
+    """The same parts; where joints of one that goes are to stay, so is that of its neighbours in its place."""
+    joined, by_shape = (
+        pairs | {pair} if any(gone in one for one in pairs) else pairs for pairs in (parts.joined, parts.by_shape)
+    )
+    return parts._replace(joined=joined, by_shape=by_shape)
 
 
 def _pruned(body: MovingSurface, tree: FirstTree) -> Pruned:

@@ -5,7 +5,6 @@ alike, and becomes a part of its own. The arm's joint is then two, one on either
 is a mixture of both; a bone of its own is none.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -37,22 +36,22 @@ class MirroredSlicesSettings(NamedTuple):
     dance, and on a person's body with collar bones in sixteen generated motions, of which seven show slices beside shoulders.
     """
 
-    beside: SliceLimits = SliceLimits(2.2, 1.5, 3.6)
+    touching: SliceLimits = SliceLimits(2.2, 1.5, 3.6)
     """Of parts that touch each other, as those about a pelvis do: the two halves of a wolf's have lengths of 2.5 and 2.9, and
-    mixtures of 2.8 and 3.9."""
+    mixtures of 2.8 and 3.9; a pelvis that one limb hangs on is 2.4 times as long as flesh above the other hip."""
     apart: SliceLimits = SliceLimits(3.9, 2.5, 5.2)
     """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
     2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
     least_length: float = 1.2
-    """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
-    of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
+    """Length of the longer one, or of one on one side alone, at least: slices beside shoulders have 1.4 and more, true links
+    from the pelvis to both hips of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
     longer: float = 1.6
-    """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Slices have 2.4
-    and 2.6."""
-    outer: tuple[float, ...] = (0.3, 0.5, 0.7, 1.0, 1.4)
+    """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Two were seen,
+    with 2.4 and 2.6."""
+    shares: tuple[float, ...] = (0.3, 0.5, 0.7, 1.0, 1.4)
     """Distances from its outer joint, in that from its inner joint, below which a vertex goes to the limb, else to the trunk;
-    of these the first with which the limb's joint drifts hardly more than with any. Chosen with `looser` on the shoulders of
-    the people who run and of that body: they are 1.2 and 0.8 % off, and 1.7 and 2.5 with 0.5 for all."""
+    of these the first with which the limb's joint drifts hardly more than with any. Chosen with `looser` on shoulders of the
+    people who run, 1.2 % off then (1.7 with 0.5 for all), and of that body, 0.8 % off (2.5)."""
     looser: float = 1.3
     """Drift of the limb's joint, in the least, at most. The more of a slice goes to the limb, the farther inwards the joint
     lies, and the less it drifts until it is where the limb turns; from there on the drift hardly changes."""
@@ -62,13 +61,14 @@ class Slice(NamedTuple):
     """A part that is a slice.
 
     part, above, below : its place in the tree, and those of its neighbours
-    outwards           : (vertex,) distance of every vertex from its outer joint, in that from its inner joint
+    inwards            : (vertex,) distance of every vertex from its outer joint, in that from its inner joint; infinite for
+                         those that lie before the inner joint
     """
 
     part: int
     above: int
     below: int
-    outwards: Floats
+    inwards: Floats
 
 
 def mirrored_slices(
@@ -90,35 +90,31 @@ def mirrored_slices(
     for limbs in mirrored_limbs(body.F, parts, pairs, paired):
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
-        are_beside = _touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
-        limits = chosen.beside if are_beside else chosen.apart
-        slices = [_slice(body, tree, limb) for limb in _short(tree, limbs, limits, are_beside, chosen)]
-        if all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
-            found |= {each.part: each for each in slices}
+        touch = _touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
+        limits = chosen.touching if touch else chosen.apart
+        for short in (_both(tree, limbs, limits, chosen), [] if touch else _one(tree, limbs, limits, chosen)):
+            slices = [_slice(body, tree, limb) for limb in short]
+            if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
+                found |= {each.part: each for each in slices}
+                break
     return [found[part] for part in sorted(found)]
 
 
-def _short(
-    tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, are_beside: bool, chosen: MirroredSlicesSettings
-) -> Sequence[Limb]:
-    """The limbs whose innermost part is as short as a slice: both, none, or the one with one joint more than the other.
-
-    are_beside : whether the innermost parts touch each other
-    """
-    both = limbs[:2]
-    lengths = [_length(tree, limb) for limb in both]
-    short, long = sorted(lengths)
-    if chosen.least_length <= long <= min(limits.length, limits.alike * short):
-        return both
-    side = int(np.argmin(lengths))
-    is_lone = chosen.least_length <= short <= limits.length and chosen.longer * short <= long < np.inf
-    return [both[side]] if is_lone and not are_beside and _has_one_more(both[side], limbs.row[:, side]) else []
+def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:
+    """Both limbs, if their innermost parts are as short as slices, and alike."""
+    short, long = sorted(_length(tree, limb) for limb in limbs[:2])
+    return [*limbs[:2]] if chosen.least_length <= long <= min(limits.length, limits.alike * short) else []
 
 
-def _has_one_more(limb: Limb, partners: Ints) -> bool:
-    """Whether one of a limb's two innermost joints has a partner and the other one has none."""
+def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:
+    """The limb whose innermost part alone is as short as a slice, if one of its two innermost joints has no partner."""
+    lengths = [_length(tree, limb) for limb in limbs[:2]]
+    side, (short, long) = int(np.argmin(lengths)), sorted(lengths)
+    if not (chosen.least_length <= short <= limits.length and chosen.longer * short <= long < np.inf):
+        return []
+    limb = (limbs.one, limbs.other)[side]
     last = len(limb.part) - 1
-    return bool(np.isin([last - 1, last], partners).sum() == 1)
+    return [limb] if np.isin([last - 1, last], limbs.row[:, side]).sum() == 1 else []
 
 
 def _touch(F: Ints, label: Ints, one: int, other: int) -> bool:
@@ -139,13 +135,21 @@ def _length(tree: FirstTree, limb: Limb) -> float:
 def _slice(body: MovingSurface, tree: FirstTree, limb: Limb) -> Slice:
     """A limb's innermost part."""
     below, part = limb.part[-2:].tolist()
-    inner, outer = (np.linalg.norm(body.V - tree.rest[k], axis=1) for k in (part, below))
-    return Slice(part, int(tree.parents[part]), below, outer / np.maximum(inner, float(np.finfo(float).tiny)))
+    to_inner, to_outer = (body.V - tree.rest[k] for k in (part, below))
+    inner, outer = (np.linalg.norm(away, axis=1) for away in (to_inner, to_outer))
+    is_before = to_inner @ (tree.rest[below] - tree.rest[part]) <= 0.0
+    inwards = np.where(is_before, np.inf, outer / np.maximum(inner, 1e-9 * body.size))
+    return Slice(part, int(tree.parents[part]), below, inwards)
 
 
 def _mixture(body: MovingSurface, tree: FirstTree, one: Slice, confidence: Floats) -> float:
-    """What mixtures of the motions above and below a part leave of it, in what mixtures of its own with either leave."""
+    """What mixtures of the motions above and below a part leave of it, in what mixtures of its own with either leave.
+
+    Infinite where nothing of it is certain.
+    """
     own, motions = tree.label == one.part, (one.above, one.part, one.below)
+    if not confidence[:, own].any():
+        return np.inf
     above, part, below = (np.einsum("fxy,vy->fvx", tree.R[:, k], body.V[own]) + tree.t[:, None, k] for k in motions)
     between = _left(body.x[:, own], above, below, confidence[:, own])
     by_itself = np.minimum(*(_left(body.x[:, own], part, other, confidence[:, own]) for other in (above, below)))

@@ -108,6 +108,12 @@ def test_a_joint_high_above_the_crotch_is_of_a_spine() -> None:
     assert found(*seen(hip=8.0), settings=AlikeLimbsSettings(near=9.0)) is not None
 
 
+@pytest.mark.parametrize(("hip", "is_one"), [(5.0, True), (5.5, False)])
+def test_how_high_above_the_crotch_a_joint_may_lie(hip: float, is_one: bool) -> None:
+    """1.69 and 1.81 radii from the line."""
+    assert (found(*seen(hip=hip)) is not None) == is_one
+
+
 @pytest.mark.parametrize(("limb", "is_one"), [(0.35, True), (0.37, False)])
 def test_how_much_of_the_part_each_limb_must_have(limb: float, is_one: bool) -> None:
     """With the trunk up to 20 each has 0.36 of it."""

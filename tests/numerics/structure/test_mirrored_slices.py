@@ -24,7 +24,7 @@ from kinetree.tasks.numerics.structure.mirrored_slices import (
 from kinetree.tasks.numerics.structure.part_motion import fit, residuals
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
 from kinetree.tasks.numerics.structure.pruning import FLESH, Pruned
-from kinetree.tasks.numerics.structure.tree_joints import tree_of_parts
+from kinetree.tasks.numerics.structure.tree_joints import TreeJoints, tree_of_parts
 
 HIP = 8.0
 """Distance of the joint from the fork; flesh about it is a part from `INNER` to `OUTER`."""
@@ -93,7 +93,7 @@ def test_flesh_on_both_sides_is_found() -> None:
 def limits(length: float = 2.2, alike: float = 1.5, mixture: float = 3.6, least: float = 1.2) -> MirroredSlicesSettings:
     """Of parts that do not touch each other, as here; parts that do are none."""
     return MirroredSlicesSettings(
-        apart=SliceLimits(length, alike, mixture), beside=SliceLimits(0.0, 0.0, 0.0), least_length=least
+        apart=SliceLimits(length, alike, mixture), touching=SliceLimits(0.0, 0.0, 0.0), least_length=least
     )
 
 
@@ -107,7 +107,6 @@ def test_bones_that_turn_by_themselves_are_none() -> None:
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_flesh_on_one_side_is_one_if_the_other_has_one_long_bone_there(side: str) -> None:
     other = {"left": "right", "right": "left"}[side]
-    assert found_in(seen(flesh_of=(side,))) == []
     body, tree = seen(flesh_of=(side,), limb_of=(other,))
     (one,) = found_in((body, tree))
     along = ALONG[side][tree.label == one.part]
@@ -169,33 +168,93 @@ def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
     touching, apart = seen(inner=0.0), seen()
     wide, none = SliceLimits(99.0, 99.0, 99.0), SliceLimits(0.0, 0.0, 0.0)
     for beside, away, counts in ((wide, none, (2, 0)), (none, wide, (0, 2))):
-        settings = MirroredSlicesSettings(beside=beside, apart=away, least_length=0.0)
+        settings = MirroredSlicesSettings(touching=beside, apart=away, least_length=0.0)
         assert tuple(len(found_in(there, settings)) for there in (touching, apart)) == counts
 
 
-def test_how_far_outwards_a_vertex_lies() -> None:
+def test_slices_on_one_side_that_touch_the_other_limb_are_none() -> None:
+    there = seen(flesh_of=("left",), limb_of=("right",), inner=0.0)
+    assert found_in(there) == []
+    wide = SliceLimits(99.0, 99.0, 99.0)
+    assert found_in(there, MirroredSlicesSettings(touching=wide, apart=wide, least_length=0.0, longer=1.0)) != []
+
+
+def test_a_bone_that_is_nowhere_certain_is_none() -> None:
+    body, tree = seen(is_flesh=False)
+    trust = ONES.copy()
+    trust[:, np.isin(tree.label, np.flatnonzero(tree.parents == 0))] = 0.0
+    assert mirrored_slices(body, tree, of_legs(), trust, PAIRED, ANY_LENGTH) == []
+
+
+def test_a_slice_opposite_to_a_bone_that_is_hardly_longer_is_one_all_the_same() -> None:
+    """Both are short enough for a pair, but one is no mixture."""
+    there = seen(flesh_of=("left",), limb_of=("right",))
+    assert len(found_in(there, MirroredSlicesSettings(apart=SliceLimits(9.0, 3.0, 5.2)))) == 1
+
+
+def test_how_far_inwards_a_vertex_lies() -> None:
     body, tree = seen()
     for one in found_in((body, tree)):
-        from_inner, from_outer = (np.linalg.norm(V - tree.rest[k], axis=1) for k in (one.part, one.below))
-        np.testing.assert_allclose(one.outwards, from_outer / from_inner)
+        inner, outer = tree.rest[[one.part, one.below]]
+        ratio = np.linalg.norm(V - outer, axis=1) / np.linalg.norm(V - inner, axis=1)
+        is_before = (V - inner) @ (outer - inner) <= 0.0
+        np.testing.assert_allclose(one.inwards, np.where(is_before, np.inf, ratio))
+        assert is_before.any()
 
 
-@pytest.mark.parametrize("looser", [1.0, 1.3, 99.0])
-def test_slices_are_shared_out_where_the_joint_no_longer_drifts(looser: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first share whose drift is hardly larger than the least; any drift will do if all may be looser."""
+def test_a_vertex_on_the_inner_joint_lies_innermost() -> None:
     body, tree = seen()
+    rest = tree.rest.copy()
+    (one, _) = found_in((body, tree))
+    rest[one.part] = V[np.linalg.norm(V - rest[one.part], axis=1).argmin()]
+    assert np.isinf(found_in((body, tree._replace(rest=rest)))[0].inwards[np.linalg.norm(V - rest[one.part], axis=1).argmin()])
+
+
+UNEVEN = (OUTER, OUTER - 3.0)
+"""Flesh reaches farther on the left, so that other shares of it go to the limb."""
+
+
+def errors(joints: TreeJoints) -> list[float]:
+    """Distance of the joint nearest to each hip from it, mesh unit."""
+    return [float(np.linalg.norm(joints.rest - HIP * leg, axis=1).min()) for leg in LEGS.values()]
+
+
+@pytest.mark.parametrize(("looser", "chosen"), [(1.3, (1.0, 0.7)), (3.0, (1.0, 0.3)), (99.0, (0.3, 0.3))])
+def test_slices_are_shared_out_where_the_joint_no_longer_drifts(
+    looser: float, chosen: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each side as its own joint wants it."""
+    body, tree = seen(outer=UNEVEN)
     settings = MirroredSlicesSettings(looser=looser)
     monkeypatch.setattr(agreed_tree, "MirroredSlicesSettings", lambda: settings)
-    slices, tried = found_in((body, tree)), dict[float, Floats]()
-    for outer in settings.outer:
-        joints = agreed_tree._shared_out(body, tree, slices, [outer, outer], ONES, TREE)
-        tried[outer] = np.array([agreed_tree._drift_of(joints, one.below) for one in slices])
-    least = np.min(list(tried.values()), axis=0)
-    want = [next(outer for outer, drift in tried.items() if drift[k] <= looser * least[k]) for k in range(2)]
-    assert looser < 99.0 or want == [settings.outer[0]] * 2
+    slices = found_in((body, tree))
+    assert [bool(ALONG["left"][tree.label == one.part].mean() > 0.0) for one in slices] == [True, False]
     made = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
-    by_hand = agreed_tree._shared_out(body, tree, slices, want, ONES, TREE)
-    np.testing.assert_array_equal(made.label, by_hand.label)
+    want = agreed_tree._shared_out(body, tree, agreed_tree._pruned(body, tree), slices, chosen, ONES, TREE)
+    np.testing.assert_array_equal(made.label, want.label)
+
+
+def test_joint_lies_nearer_so_than_with_one_share_for_all() -> None:
+    body, tree = seen(outer=UNEVEN)
+    slices, start = found_in((body, tree)), agreed_tree._pruned(body, tree)
+    made = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    best = [float(np.linalg.norm(made.rest - HIP * leg, axis=1).min()) for leg in LEGS.values()]
+    for share in (0.3, 1.4):
+        assert sum(best) < sum(errors(agreed_tree._shared_out(body, tree, start, slices, [share, share], ONES, TREE)))
+
+
+def test_joints_that_are_to_stay_are_those_of_the_neighbours_then() -> None:
+    """As where a limb was cut off: all borders of the tree cost nothing, so the next one must not cost."""
+    body, tree = seen()
+    cut_off = tree._replace(place=np.where(np.arange(len(tree.place)) == len(tree.place) - 1, -1, tree.place))
+    start = agreed_tree._pruned(body, cut_off)
+    slices = found_in((body, tree))
+    joints = agreed_tree._shared_out(body, tree, start, slices, [0.5, 0.5], ONES, TREE)
+    assert len(start.parts.joined) == len(tree.parents) - 1
+    origin = joints.left.origin
+    pairs = {frozenset(int(origin[part]) for part in pair) for pair in joints.left.parts.joined}
+    assert {frozenset((one.above, one.below)) for one in slices} <= pairs
+    assert len(pairs) == len(tree.parents) - 3
 
 
 def test_tree_without_them_has_one_joint_a_side_near_the_hip() -> None:
