@@ -1,7 +1,6 @@
 """Flesh between the trunk and limbs of a pair, which follows both, is no bone, on both sides or on one."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import agreed_tree
 from kinetree.tasks.numerics.structure import mirrored_slices as numerics
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.joint_partners import PAIRED, MirroredLimbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, Limb, MirroredLimbs
 from kinetree.tasks.numerics.structure.mirrored_slices import (
     MirroredSlicesSettings,
     Slice,
@@ -125,18 +124,78 @@ def test_flesh_opposite_to_a_bone_of_its_length_is_none(side: str) -> None:
     assert found_in(seen(bone_of=(other,)), ANY_LENGTH) == []
 
 
-def test_flesh_with_a_partner_of_both_joints_is_none_on_one_side(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("own", "others", "count"), [((0, 1, 2), (0, 1, 0), 0), ((), (), 0), ((0, 1), (0, 1), 1), ((0, 2), (0, 1), 1)]
+)
+def test_of_the_two_joints_of_flesh_on_one_side_one_has_a_partner(
+    own: Sequence[int], others: Sequence[int], count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    row = np.array([own, others], np.int64).T
+    assert len(found_with(lambda limbs: limbs._replace(row=row), monkeypatch)) == count
+
+
+@pytest.mark.parametrize("parts", [0, 1])
+def test_flesh_opposite_to_a_limb_of_a_part_or_none_is_none(parts: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def shorter(limbs: MirroredLimbs) -> MirroredLimbs:
+        return limbs._replace(other=Limb(limbs.other.part[:parts], limbs.other.level[:parts]))
+
+    assert found_with(shorter, monkeypatch) == []
+
+
+def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: pytest.MonkeyPatch) -> list[Slice]:
+    """With flesh on the left alone, as if limbs were others."""
     body, tree = seen(flesh_of=("left",), limb_of=("right",))
-    assert len(found_in((body, tree))) == 1
     real = numerics.mirrored_limbs
+    monkeypatch.setattr(numerics, "mirrored_limbs", lambda *of: [changed(limbs) for limbs in real(*of)])
+    return found_in((body, tree))
 
-    def all_paired(*of: Any) -> Iterator[MirroredLimbs]:
-        for limbs in real(*of):
-            count = min(len(limbs.one.part), len(limbs.other.part))
-            yield limbs._replace(row=np.tile(np.arange(count + 1)[:, None], (1, 2)))
 
-    monkeypatch.setattr(numerics, "mirrored_limbs", all_paired)
-    assert found_in((body, tree)) == []
+@pytest.mark.parametrize(
+    ("lengths", "mixtures", "inner", "count"),
+    [
+        ((3.8, 2.0), (5.1, 5.1), INNER, 2),
+        ((4.0, 2.0), (5.1, 5.1), INNER, 1),
+        ((4.0, 3.95), (5.1, 5.1), INNER, 0),
+        ((3.8, 2.0), (5.3, 5.1), INNER, 1),
+        ((3.8, 2.0), (5.1, 5.3), INNER, 0),
+        ((3.8, 1.5), (5.1, 5.1), INNER, 1),
+        ((2.5, 1.7), (5.3, 5.1), INNER, 0),
+        ((1.1, 1.0), (5.1, 5.1), INNER, 0),
+        ((2.1, 1.5), (3.5, 3.5), 0.0, 2),
+        ((2.1, 1.5), (3.7, 3.5), 0.0, 0),
+        ((2.3, 1.6), (3.5, 3.5), 0.0, 0),
+        ((2.1, 1.3), (3.5, 3.5), 0.0, 0),
+    ],
+)
+def test_limits(
+    lengths: tuple[float, float],
+    mixtures: tuple[float, float],
+    inner: float,
+    count: int,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of the part on the right, which is one with the thigh, and of that on the left; they touch if they begin at the fork."""
+    body, tree = seen(flesh_of=("left",), limb_of=("right",), inner=inner)
+    right = int(tree.label[np.argmin(np.where(tree.label > 0, np.abs(ALONG["right"] - OUTER), np.inf))])
+    monkeypatch.setattr(numerics, "_length", lambda _, limb: lengths[int(limb.part[-1] != right)])
+    monkeypatch.setattr(numerics, "_mixture", lambda _body, _tree, one, _trust: mixtures[int(one.part != right)])
+    assert len(found_in((body, tree))) == count
+
+
+def test_length_is_in_radii_of_the_smaller_border_of_a_part_that_carries_one() -> None:
+    _, tree = seen()
+    (part,) = np.flatnonzero(tree.parents == 0)[:1]
+    (below,) = np.flatnonzero(tree.parents == part)
+    limb = Limb(np.array([below, part]), np.ones(2))
+    apart = np.linalg.norm(tree.rest[part] - tree.rest[below])
+    for radii in ((2.0, 5.0), (5.0, 2.0)):
+        radius = tree.radius.copy()
+        radius[[part, below]] = radii
+        assert numerics._length(tree._replace(radius=radius), limb) == pytest.approx(apart / 2.0)
+    forked = tree.parents.copy()
+    forked[np.flatnonzero(tree.parents == 0)[1]] = part
+    assert numerics._length(tree._replace(parents=forked), limb) == np.inf
+    assert numerics._length(tree, Limb(limb.part[:1], limb.level[:1])) == np.inf
 
 
 def test_frames_in_which_vertices_are_not_certain_do_not_count() -> None:
@@ -173,10 +232,10 @@ def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
 
 
 def test_slices_on_one_side_that_touch_the_other_limb_are_none() -> None:
-    there = seen(flesh_of=("left",), limb_of=("right",), inner=0.0)
-    assert found_in(there) == []
-    wide = SliceLimits(99.0, 99.0, 99.0)
-    assert found_in(there, MirroredSlicesSettings(touching=wide, apart=wide, least_length=0.0, longer=1.0)) != []
+    lone = SliceLimits(99.0, 1.0, 99.0)
+    settings = MirroredSlicesSettings(touching=lone, apart=lone, least_length=0.0, longer=1.0)
+    counts = [len(found_in(seen(flesh_of=("left",), limb_of=("right",), inner=inner), settings)) for inner in (0.0, INNER)]
+    assert counts == [0, 1]
 
 
 def test_a_bone_that_is_nowhere_certain_is_none() -> None:
@@ -219,13 +278,13 @@ def errors(joints: TreeJoints) -> list[float]:
     return [float(np.linalg.norm(joints.rest - HIP * leg, axis=1).min()) for leg in LEGS.values()]
 
 
-@pytest.mark.parametrize(("looser", "chosen"), [(1.3, (1.0, 0.7)), (3.0, (1.0, 0.3)), (99.0, (0.3, 0.3))])
+@pytest.mark.parametrize(("looser", "chosen"), [(None, (1.0, 0.7)), (1.3, (1.0, 0.7)), (3.0, (1.0, 0.3)), (99.0, (0.3, 0.3))])
 def test_slices_are_shared_out_where_the_joint_no_longer_drifts(
-    looser: float, chosen: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+    looser: float | None, chosen: tuple[float, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each side as its own joint wants it."""
     body, tree = seen(outer=UNEVEN)
-    settings = MirroredSlicesSettings(looser=looser)
+    settings = MirroredSlicesSettings() if looser is None else MirroredSlicesSettings(looser=looser)
     monkeypatch.setattr(agreed_tree, "MirroredSlicesSettings", lambda: settings)
     slices = found_in((body, tree))
     assert [bool(ALONG["left"][tree.label == one.part].mean() > 0.0) for one in slices] == [True, False]
