@@ -43,8 +43,11 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
     2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
     least_length: float = 1.2
-    """Length of the longer one, or of one on one side alone, at least: slices beside shoulders have 1.4 and more, true links
-    from the pelvis to both hips of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
+    """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
+    of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
+    least_alone: float = 1.8
+    """Length of a slice on one side alone, at least: shorter ones `unpaired_parts` has judged already, and kept a true link
+    from the pelvis to one hip of the dance (every fourth frame), which has 1.43. Two slices were seen, with 2.6 and 2.7."""
     longer: float = 1.6
     """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Two were seen,
     with 2.4 and 2.6."""
@@ -110,7 +113,7 @@ def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: Mir
     """The limb whose innermost part alone is as short as a slice, if one of its two innermost joints has no partner."""
     lengths = [_length(tree, limb) for limb in limbs[:2]]
     side, (short, long) = int(np.argmin(lengths)), sorted(lengths)
-    if not (chosen.least_length <= short <= limits.length and chosen.longer * short <= long < np.inf):
+    if not (chosen.least_alone <= short <= limits.length and chosen.longer * short <= long < np.inf):
         return []
     limb = (limbs.one, limbs.other)[side]
     last = len(limb.part) - 1

@@ -89,13 +89,16 @@ def test_flesh_on_both_sides_is_found() -> None:
         assert INNER <= along.min() < along.max() <= OUTER
 
 
-def limits(length: float = 2.2, alike: float = 1.5, mixture: float = 3.6, least: float = 1.2) -> MirroredSlicesSettings:
+def limits(
+    length: float = 2.2, alike: float = 1.5, mixture: float = 3.6, least: float = 1.2, alone: float = 1.8
+) -> MirroredSlicesSettings:
     """Of parts that do not touch each other, as here; parts that do are none."""
-    return MirroredSlicesSettings(
-        apart=SliceLimits(length, alike, mixture), touching=SliceLimits(0.0, 0.0, 0.0), least_length=least
-    )
+    apart, none = SliceLimits(length, alike, mixture), SliceLimits(0.0, 0.0, 0.0)
+    return MirroredSlicesSettings(apart=apart, touching=none, least_length=least, least_alone=alone)
 
 
+ALONE = MirroredSlicesSettings(least_alone=1.2)
+"""The flesh here is 1.5 radii long, so that on one side alone it would be for others to judge."""
 ANY_LENGTH = limits(alike=np.inf, least=0.0)
 
 
@@ -107,15 +110,15 @@ def test_bones_that_turn_by_themselves_are_none() -> None:
 def test_flesh_on_one_side_is_one_if_the_other_has_one_long_bone_there(side: str) -> None:
     other = {"left": "right", "right": "left"}[side]
     body, tree = seen(flesh_of=(side,), limb_of=(other,))
-    (one,) = found_in((body, tree))
+    assert found_in((body, tree)) == []
+    (one,) = found_in((body, tree), ALONE)
     along = ALONG[side][tree.label == one.part]
     assert INNER <= along.min() < along.max() <= OUTER
-    assert found_in((body, tree), MirroredSlicesSettings(longer=9.0)) == []
-    assert found_in((body, tree), MirroredSlicesSettings(least_length=3.0)) == []
-    assert found_in((body, tree), limits(length=0.9)) == []
+    assert found_in((body, tree), ALONE._replace(longer=9.0)) == []
+    assert found_in((body, tree), limits(length=0.9, alone=0.0)) == []
     bone = seen(is_flesh=False, flesh_of=(side,), limb_of=(other,))
-    assert len(found_in(bone, limits(least=0.0, mixture=np.inf))) == 1
-    assert found_in(bone, limits(least=0.0)) == []
+    assert len(found_in(bone, limits(least=0.0, mixture=np.inf, alone=0.0))) == 1
+    assert found_in(bone, limits(least=0.0, alone=0.0)) == []
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -147,7 +150,7 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
     body, tree = seen(flesh_of=("left",), limb_of=("right",))
     real = numerics.mirrored_limbs
     monkeypatch.setattr(numerics, "mirrored_limbs", lambda *of: [changed(limbs) for limbs in real(*of)])
-    return found_in((body, tree))
+    return found_in((body, tree), ALONE)
 
 
 @pytest.mark.parametrize(
@@ -158,7 +161,9 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((4.0, 3.95), (5.1, 5.1), INNER, 0),
         ((3.8, 2.0), (5.3, 5.1), INNER, 1),
         ((3.8, 2.0), (5.1, 5.3), INNER, 0),
-        ((3.8, 1.5), (5.1, 5.1), INNER, 1),
+        ((3.8, 1.5), (5.1, 5.1), INNER, 0),
+        ((9.0, 1.9), (5.1, 5.1), INNER, 1),
+        ((9.0, 1.7), (5.1, 5.1), INNER, 0),
         ((2.5, 1.7), (5.3, 5.1), INNER, 0),
         ((1.1, 1.0), (5.1, 5.1), INNER, 0),
         ((2.1, 1.5), (3.5, 3.5), 0.0, 2),
@@ -233,7 +238,7 @@ def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
 
 def test_slices_on_one_side_that_touch_the_other_limb_are_none() -> None:
     lone = SliceLimits(99.0, 1.0, 99.0)
-    settings = MirroredSlicesSettings(touching=lone, apart=lone, least_length=0.0, longer=1.0)
+    settings = MirroredSlicesSettings(touching=lone, apart=lone, least_length=0.0, least_alone=0.0, longer=1.0)
     counts = [len(found_in(seen(flesh_of=("left",), limb_of=("right",), inner=inner), settings)) for inner in (0.0, INNER)]
     assert counts == [0, 1]
 
@@ -248,7 +253,7 @@ def test_a_bone_that_is_nowhere_certain_is_none() -> None:
 def test_a_slice_opposite_to_a_bone_that_is_hardly_longer_is_one_all_the_same() -> None:
     """Both are short enough for a pair, but one is no mixture."""
     there = seen(flesh_of=("left",), limb_of=("right",))
-    assert len(found_in(there, MirroredSlicesSettings(apart=SliceLimits(9.0, 3.0, 5.2)))) == 1
+    assert len(found_in(there, ALONE._replace(apart=SliceLimits(9.0, 3.0, 5.2)))) == 1
 
 
 def test_how_far_inwards_a_vertex_lies() -> None:
