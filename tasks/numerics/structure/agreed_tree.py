@@ -117,16 +117,16 @@ def _without_slices(
     if not slices:
         return tree
     start = _pruned(body, tree)
-    tried = [_shared_out(body, tree, start, slices, [share] * len(slices), confidence, settings) for share in chosen.shares]
+    tried = [_joints_without(body, tree, start, slices, [share] * len(slices), confidence, settings) for share in chosen.shares]
     between = [_between(joints) for joints in tried]
     drift = np.array([[drifts.get(frozenset((one.above, one.below)), np.inf) for one in slices] for drifts in between])
     first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
     if (first == first[0]).all():
         return _of_cut(tree, tried[first[0]])
-    return _of_cut(tree, _shared_out(body, tree, start, slices, [chosen.shares[k] for k in first], confidence, settings))
+    return _of_cut(tree, _joints_without(body, tree, start, slices, [chosen.shares[k] for k in first], confidence, settings))
 
 
-def _shared_out(
+def _joints_without(
     body: MovingSurface,
     tree: FirstTree,
     left: Pruned,

@@ -14,6 +14,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_partners import Limb, MirroredLimbs, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
 
 
 class SliceLimits(NamedTuple):
@@ -45,7 +46,7 @@ class MirroredSlicesSettings(NamedTuple):
     least_length: float = 1.2
     """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
     of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
-    least_alone: float = 1.8
+    least_alone: float = UnpairedPartsSettings().near
     """Length of a slice on one side alone, at least: shorter ones `unpaired_parts` has judged already, and kept a true link
     from the pelvis to one hip of the dance (every fourth frame), which has 1.43. Two slices were seen, with 2.6 and 2.7."""
     longer: float = 1.6

@@ -66,7 +66,7 @@ class MovingSurface(NamedTuple):
 
 
 PartPairs = frozenset[frozenset[int]]
-"""PartPairs of parts, by their numbers."""
+"""Pairs of parts, by their numbers."""
 
 
 class MovingParts(NamedTuple):
@@ -98,7 +98,7 @@ class MovingParts(NamedTuple):
 
 
 def _renumbered(pairs: PartPairs, gone: int) -> PartPairs:
-    """PartPairs of parts as they are numbered without one."""
+    """Pairs of parts as they are numbered without one."""
     return frozenset(frozenset(part - (part > gone) for part in pair) for pair in pairs if gone not in pair)
 
 
