@@ -164,12 +164,20 @@ def truth_of(rig: Rig, clip: Clip) -> Mapping[str, Any]:
     return {"unit": "mm", "height": HEIGHT, "joints": joints, "positions": clip.X.tolist()}
 
 
+def named(text: str) -> tuple[str, int]:
+    """A motion and a seed."""
+    motion, _, seed = text.partition(":")
+    if not seed.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is no MOTION:SEED, e.g. walk:301")
+    return motion, int(seed)
+
+
 def main() -> None:
     """Reads the command line and writes the sequences."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("rig", type=Path)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("clips", nargs="+", metavar="MOTION:SEED")
+    parser.add_argument("clips", type=named, nargs="+", metavar="MOTION:SEED")
     parser.add_argument("--frames", type=int, default=36)
     parser.add_argument("--spacing", type=float, default=0.0107)
     parser.add_argument("--noise", type=float, default=0.00067)
@@ -177,8 +185,8 @@ def main() -> None:
     args = parser.parse_args()
     rig = Rig.of(args.rig)
     args.folder.mkdir(parents=True, exist_ok=True)
-    for motion, _, seed in (text.partition(":") for text in args.clips):
-        clip, rng = posed(rig, motion, int(seed), args.frames), np.random.default_rng(int(seed))
+    for motion, seed in args.clips:
+        clip, rng = posed(rig, motion, seed, args.frames), np.random.default_rng(seed)
         sizes = args.spacing * HEIGHT, args.noise * HEIGHT
         meshes = [(V, rig.F) if args.fixed else surfaced(V, rig.F, *sizes, rng) for V in clip.V]
         faces = meshes[:1] if args.fixed else meshes
