@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges, rings
 
 
@@ -35,16 +35,18 @@ def end_effectors(V: Floats, F: Ints, label: Ints, parents: Ints, leaves: Ints) 
     return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
 
-def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer[Any]], counts: Flags) -> Ints:
-    """Vertices of the reference at the leaves that are seen in its frame and count in some interval.
+def leaf_vertices(V: Floats, positions: Floats, extremum: npt.NDArray[np.integer[Any]]) -> Ints:
+    """Vertices of the reference at the leaves that are seen in its frame.
+
+    Whether they count in an interval is not asked. In fast motion leaves are lost and found anew, so that many count in none,
+    while the reference is one of the frames that show most.
 
     V         : (vertex, xyz) reference, mesh unit
     positions : (leaf, xyz) of the leaves in the reference's frame, mesh unit; NaN where a leaf is not seen
     extremum  : (leaf,) extremum of that frame that is the leaf, −1 where it is not seen
-    counts    : (interval, leaf) whether a leaf counts in an interval
     returns   : (seen leaf,) the nearest vertex to each
     """
-    points = positions[(extremum >= 0) & counts.any(axis=0)]
+    points = positions[extremum >= 0]
     return np.asarray(KDTree(V).query(points)[1] if len(points) else [], dtype=np.int64).reshape(-1)
 
 

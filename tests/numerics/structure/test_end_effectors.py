@@ -30,9 +30,8 @@ def test_body_of_one_part_ends_nowhere_but_in_its_leaves() -> None:
     assert end_effectors(body.V, body.F, one, root, np.array([5])).tolist() == [[0, 5]]
 
 
-def test_leaves_that_are_seen_and_count_are_at_the_nearest_vertices() -> None:
+def test_leaves_that_are_seen_are_at_the_nearest_vertices() -> None:
     V = np.eye(3)
     positions = np.array([[0.9, 0.0, 0.1], [np.nan] * 3, [0.0, 0.0, 1.1], [0.0, 1.0, 0.0]])
-    extremum, counts = np.array([0, -1, 2, 1]), np.array([[True, True, False, False], [False, True, False, True]])
-    assert leaf_vertices(V, positions, extremum, counts).tolist() == [0, 1]
-    assert leaf_vertices(V, positions[:0], extremum[:0], counts[:, :0]).tolist() == []
+    assert leaf_vertices(V, positions, np.array([0, -1, 2, 1])).tolist() == [0, 2, 1]
+    assert leaf_vertices(V, positions[:0], np.zeros(0, np.int64)).tolist() == []
