@@ -20,10 +20,16 @@ Fits = dict[int, HingedFit]
 
 
 class EndRing(NamedTuple):
-    """A ring across the last part of a limb, and points of that part."""
+    """A ring across the last part of a limb or across the trunk.
+
+    piece   : points of its part
+    is_bent : whether its hinge is also laid bent, see `laid_hinged`. Across the ends of limbs with a mirror image it is: there
+              it found seven true joints in some 165 bodies. Within heads it found three that are none, in hands and tails too
+    """
 
     cut: EndCut
     piece: Piece
+    is_bent: bool = False
 
 
 class EndRings(NamedTuple):
@@ -121,7 +127,8 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
     """
     N = smoothed_normals(V, F)
     of = (V, F, area, tree.label, tree.parents, tree.rest)
-    return [_ring(V, N, tree, cut) for cut in (*end_cuts(*of), *trunk_cuts(*of, mirrored))]
+    at_ends = [_ring(V, N, tree, cut)._replace(is_bent=bool(mirrored[cut.part])) for cut in end_cuts(*of)]
+    return [*at_ends, *(_ring(V, N, tree, cut) for cut in trunk_cuts(*of, mirrored))]
 
 
 def closer_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, parts: Collection[int]) -> list[EndRing]:
@@ -164,12 +171,12 @@ def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Se
     for f, target, there in frames.showing(which, rings):
         whole: dict[tuple[int, int], PieceFit] = {}
         for k in there:
-            (cut, piece), goal = rings[k], frames.goal(f, rings[k])
+            (cut, piece, is_bent), goal = rings[k], frames.goal(f, rings[k])
             of = (cut.part, cut.above)
             if of not in whole:
                 start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
                 whole[of] = laid_as_one(piece, start, goal, target)
-            fits[k][f] = laid_hinged(piece, whole[of], goal, target, _nearest(fits[k], f))
+            fits[k][f] = laid_hinged(piece, whole[of], goal, target, _nearest(fits[k], f), is_bent=is_bent)
 
 
 def _nearest(known: Fits, f: int) -> Floats | None:

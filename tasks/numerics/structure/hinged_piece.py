@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.registration.correspondence import Target
@@ -10,6 +11,8 @@ from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PieceFi
 
 BETTER = 0.98
 """What is left with another turn to start from, share of what is left without, at most. Not recorded."""
+BEND = 0.6
+"""Radians by which a hinge at the end of a limb is bent to begin with. Not varied."""
 POINTS = 250
 """Points of a part, about; for time."""
 SAMPLE = 6000
@@ -62,16 +65,34 @@ def laid_as_one(
     return piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=False, settings=settings)
 
 
-def laid_hinged(piece: Piece, one: PieceFit, goal: Floats, target: Target, turn: Floats | None) -> HingedFit:
-    """The part with the hinge, from where it lies as one piece, and with the turn of another frame if that is better."""
+def laid_hinged(
+    piece: Piece, one: PieceFit, goal: Floats, target: Target, turn: Floats | None, *, is_bent: bool = False
+) -> HingedFit:
+    """The part with the hinge, from where it lies as one piece, and from other turns of the hinge where that is better.
+
+    turn    : (3, 3) that of another frame
+    is_bent : whether the hinge is also bent by `BEND` to either side to begin with: small steps do not reach a toe that turns far
+    """
     best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
-    if turn is not None:
-        start = one.pose._replace(Q=turn)
+    others = [] if turn is None else [turn]
+    for other_turn in [*others, *_bent(piece, best.pose.Q)] if is_bent else others:
+        start = one.pose._replace(Q=other_turn)
         y, n, _ = placed_piece(piece, start)
         other = piece_fit(piece, start, goal, target, target.nearest(y, n), hinged=True)
         if other.cost(piece.mass) < BETTER * best.cost(piece.mass):
             best = other
     return HingedFit(one.cost(piece.mass), best.cost(piece.mass), best.pose)
+
+
+def _bent(piece: Piece, Q: Floats) -> tuple[Floats, Floats]:
+    """(3, 3) · (3, 3) a turn of the hinge bent to either side, about the axis along which the far piece is wider."""
+    beyond = piece.V[piece.far] - piece.hinge
+    along = beyond.mean(axis=0)
+    along = along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
+    across = beyond - (beyond @ along)[:, None] * along
+    axis = np.linalg.eigh(across.T @ across)[1][:, 2]
+    back, forth = (Q @ Rotation.from_rotvec(angle * axis).as_matrix() for angle in (-BEND, BEND))
+    return back, forth
 
 
 def turns_of_halves(both: tuple[Piece, Piece], start: PiecePose, goal: Floats, target: Target) -> tuple[Floats, Floats]:

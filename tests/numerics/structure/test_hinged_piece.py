@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+import trimesh
 from limbs import rotation
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.hinged_piece import (
     POINTS,
     halves,
+    laid_as_one,
+    laid_hinged,
     motions,
     on_pieces,
     sampled_piece,
@@ -92,3 +95,43 @@ def test_each_half_turns_as_its_own_points_lie() -> None:
         second = second._replace(V=np.where(second.far[:, None], second.V @ back.T, second.V))
         turns = turns_of_halves((first, second), still, np.zeros(3), Target.of(x, F, 10.0))
         assert np.arccos([Q[2, 2] for Q in turns]) == pytest.approx([angle, angle + 0.1], abs=0.01)
+
+
+def foot(angle: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices, normals and faces of a block, and of a flat one before it that is bent up about x; which are the latter's."""
+    V, N, F = [], [], []
+    for size, middle, turn in (((2.0, 4.0, 2.0), -2.0, 0.0), ((2.0, 2.0, 0.5), 1.0, angle)):
+        block = trimesh.creation.box(size)
+        v, f = block.vertices, block.faces
+        for _ in range(4):
+            v, f = trimesh.remesh.subdivide(v, f)
+        F.append(f + sum(len(other) for other in V))
+        R = rotation((1.0, 0.0, 0.0), turn)
+        N.append(trimesh.Trimesh(v, f, process=False).vertex_normals @ R.T)
+        V.append((v + [0.0, middle, 0.0]) @ R.T)
+    return np.concatenate(V), np.concatenate(N), np.concatenate(F), np.arange(len(V[0]) + len(V[1])) >= len(V[0])
+
+
+def test_a_toe_that_turns_far_is_found_from_a_bent_hinge_alone() -> None:
+    V, N, _, far = foot(0.0)
+    heel, still = np.array([0.0, -4.0, 0.0]), PiecePose(np.eye(3), np.zeros(3), np.eye(3))
+    piece = sampled_piece(V, N, np.ones(len(V)), far, np.zeros(3), heel)
+    for angle in (-1.0, 1.0):
+        x, _, F, _ = foot(angle)
+        target = Target.of(x, F, 8.0)
+        one = laid_as_one(piece, still, heel, target)
+        fits = [laid_hinged(piece, one, heel, target, None, is_bent=is_bent) for is_bent in (False, True)]
+        turns = [np.arccos(fit.pose.Q[1, 1]) for fit in fits]
+        assert turns[0] < 0.3
+        assert turns[1] == pytest.approx(1.0, abs=0.05)
+        assert fits[1].two < 0.1 * fits[0].two
+        assert fits[0].one == fits[1].one
+
+
+def test_a_hinge_that_does_not_turn_stays_whether_bent_or_not() -> None:
+    V, N, F, far = foot(0.0)
+    heel, still = np.array([0.0, -4.0, 0.0]), PiecePose(np.eye(3), np.zeros(3), np.eye(3))
+    piece, target = sampled_piece(V, N, np.ones(len(V)), far, np.zeros(3), heel), Target.of(V, F, 8.0)
+    one = laid_as_one(piece, still, heel, target)
+    plain, bent = (laid_hinged(piece, one, heel, target, None, is_bent=is_bent) for is_bent in (False, True))
+    np.testing.assert_array_equal(plain.pose.Q, bent.pose.Q)
