@@ -12,7 +12,7 @@ from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PieceFi
 BETTER = 0.98
 """What is left with another turn to start from, share of what is left without, at most. Not recorded."""
 BEND = 0.6
-"""Radians by which a hinge at the end of a limb is bent to begin with. Not varied."""
+"""Radians by which a hinge at the end of a limb is bent to begin with. At 0.35 sixteen clips have one joint less."""
 POINTS = 250
 """Points of a part, about; for time."""
 SAMPLE = 6000
@@ -71,7 +71,7 @@ def laid_hinged(
     """The part with the hinge, from where it lies as one piece, and from other turns of the hinge where that is better.
 
     turn    : (3, 3) that of another frame
-    is_bent : whether the hinge is also bent by `BEND` to either side to begin with: small steps do not reach a toe that turns far
+    is_bent : whether the hinge is also bent by `BEND` to either side to begin with: small steps do not reach what turns far
     """
     best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
     others = [] if turn is None else [turn]
