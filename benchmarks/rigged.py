@@ -99,7 +99,7 @@ def posed(rig: Rig, motion: str, seed: int, frames: int) -> Clip:
         own = np.flatnonzero(weight)
         V[:, own] += weight[own, None] * ((rig.V[own] - rig.head[k]) @ world[:, k].swapaxes(1, 2) + X[:, k, None])
     local = world[:, np.maximum(rig.parents, 0)].swapaxes(2, 3) @ world
-    return Clip(V, X, np.array([0.0 if p < 0 else _widest(local[:, k]) for k, p in enumerate(rig.parents)]), body.fps)
+    return Clip(V, X, np.array([0.0 if p < 0 else widest(local[:, k]) for k, p in enumerate(rig.parents)]), body.fps)
 
 
 def _world(rig: Rig, figure: Figure, G: Floats) -> Floats:
@@ -129,7 +129,7 @@ def _towards(a: Floats, b: Floats) -> Floats:
     return np.asarray(Rotation.align_vectors(b[None], a[None])[0].as_matrix())
 
 
-def _widest(R: Floats) -> float:
+def widest(R: Floats) -> float:
     """The largest angle between two of some rotations (frame, 3, 3), degrees."""
     Q = Rotation.from_matrix(R)
     return float(np.degrees(max((Q * one.inv()).magnitude().max() for one in Q)))

@@ -50,4 +50,4 @@ def aligned_body(reference: Reference, alignment: Mapping[int, Alignment], leave
 def tips_of(reference: Reference, leaves: Leaves) -> Ints:
     """(leaf,) vertices of the reference at the ends of limbs."""
     at = leaves.frames.index(reference.frame)
-    return leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows[:, at])
+    return leaf_vertices(reference.vertices, leaves.positions[:, at], leaves.rows, at, leaves.kept)

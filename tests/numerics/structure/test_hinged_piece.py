@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 from limbs import rotation
+from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.hinged_piece import (
+    BEND,
     POINTS,
+    _bent,
     halves,
     laid_as_one,
     laid_hinged,
@@ -97,10 +100,16 @@ def test_each_half_turns_as_its_own_points_lie() -> None:
         assert np.arccos([Q[2, 2] for Q in turns]) == pytest.approx([angle, angle + 0.1], abs=0.01)
 
 
+AT = np.array([3.0, -1.0, 2.0])
+"""Where the foot's hinge lies."""
+TURNED = rotation((1.0, 2.0, -1.0), 1.1)
+"""How the foot's surface is turned in a frame."""
+
+
 def foot(angle: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices, normals and faces of a block, and of a flat one before it that is bent up about x; which are the latter's."""
+    """Vertices, normals and faces of an upright block and a flat one before it, bent up about x; which are of the flat one."""
     V, N, F = [], [], []
-    for size, middle, turn in (((2.0, 4.0, 2.0), -2.0, 0.0), ((2.0, 2.0, 0.5), 1.0, angle)):
+    for size, middle, turn in (((2.0, 4.0, 3.0), -2.0, 0.0), ((2.0, 2.0, 0.5), 1.0, angle)):
         block = trimesh.creation.box(size)
         v, f = block.vertices, block.faces
         for _ in range(4):
@@ -108,30 +117,44 @@ def foot(angle: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         F.append(f + sum(len(other) for other in V))
         R = rotation((1.0, 0.0, 0.0), turn)
         N.append(trimesh.Trimesh(v, f, process=False).vertex_normals @ R.T)
-        V.append((v + [0.0, middle, 0.0]) @ R.T)
+        V.append((v + [0.0, middle, 0.0]) @ R.T + AT)
     return np.concatenate(V), np.concatenate(N), np.concatenate(F), np.arange(len(V[0]) + len(V[1])) >= len(V[0])
 
 
-def test_a_toe_that_turns_far_is_found_from_a_bent_hinge_alone() -> None:
+def toes(angle: float, turn: np.ndarray | None, is_bent: bool) -> tuple[float, float]:
+    """By how much the toe of a foot is found turned up, radian, and what is left, share of what is left as one piece."""
     V, N, _, far = foot(0.0)
-    heel, still = np.array([0.0, -4.0, 0.0]), PiecePose(np.eye(3), np.zeros(3), np.eye(3))
-    piece = sampled_piece(V, N, np.ones(len(V)), far, np.zeros(3), heel)
+    piece = sampled_piece(V, N, np.ones(len(V)), far, AT, AT + [0.0, -4.0, 0.0])
+    x, _, F, _ = foot(angle)
+    target, heel = Target.of(x @ TURNED.T, F, 8.0), TURNED @ piece.joint
+    one = laid_as_one(piece, PiecePose(TURNED, np.zeros(3), np.eye(3)), heel, target)
+    fit = laid_hinged(piece, one, heel, target, turn, is_bent=is_bent)
+    return float(Rotation.from_matrix(fit.pose.Q).as_rotvec()[0]), fit.two / fit.one
+
+
+def test_a_toe_that_turns_far_is_found_only_from_a_bent_hinge() -> None:
     for angle in (-1.0, 1.0):
-        x, _, F, _ = foot(angle)
-        target = Target.of(x, F, 8.0)
-        one = laid_as_one(piece, still, heel, target)
-        fits = [laid_hinged(piece, one, heel, target, None, is_bent=is_bent) for is_bent in (False, True)]
-        turns = [np.arccos(fit.pose.Q[1, 1]) for fit in fits]
-        assert turns[0] < 0.3
-        assert turns[1] == pytest.approx(1.0, abs=0.05)
-        assert fits[1].two < 0.1 * fits[0].two
-        assert fits[0].one == fits[1].one
+        straight, bent = (toes(angle, None, is_bent) for is_bent in (False, True))
+        assert abs(straight[0]) < 0.3
+        assert bent[0] == pytest.approx(angle, abs=0.05)
+        assert bent[1] < 0.1 * straight[1]
+
+
+def test_the_turn_of_another_frame_counts_whether_hinges_are_bent_or_not() -> None:
+    near = rotation((1.0, 0.0, 0.0), 1.6)
+    assert abs(toes(1.7, None, True)[0]) < 1.0
+    assert all(toes(1.7, near, is_bent)[0] == pytest.approx(1.7, abs=0.05) for is_bent in (False, True))
 
 
 def test_a_hinge_that_does_not_turn_stays_whether_bent_or_not() -> None:
-    V, N, F, far = foot(0.0)
-    heel, still = np.array([0.0, -4.0, 0.0]), PiecePose(np.eye(3), np.zeros(3), np.eye(3))
-    piece, target = sampled_piece(V, N, np.ones(len(V)), far, np.zeros(3), heel), Target.of(V, F, 8.0)
-    one = laid_as_one(piece, still, heel, target)
-    plain, bent = (laid_hinged(piece, one, heel, target, None, is_bent=is_bent) for is_bent in (False, True))
-    np.testing.assert_array_equal(plain.pose.Q, bent.pose.Q)
+    assert toes(0.0, None, False) == toes(0.0, None, True)
+
+
+def test_a_hinge_is_bent_from_its_turn_about_the_axis_along_which_the_far_piece_is_wide() -> None:
+    V, N, _, far = foot(0.0)
+    turned = sampled_piece(V @ TURNED.T, N @ TURNED.T, np.ones(len(V)), far, TURNED @ AT, TURNED @ AT)
+    Q = rotation((0.0, 1.0, 1.0), 0.5)
+    angles = [Rotation.from_matrix(Q.T @ turn).as_rotvec() for turn in _bent(turned, Q)]
+    assert sorted(float(angle @ TURNED[:, 0]) for angle in angles) == pytest.approx([-BEND, BEND], abs=0.01)
+    assert [float(np.linalg.norm(angle)) for angle in angles] == pytest.approx([BEND, BEND])
+    assert _bent(turned._replace(far=np.zeros(len(turned.far), np.bool_)), Q) == ()
