@@ -39,9 +39,9 @@ class EndJointsSettings(NamedTuple):
     """
 
     least_score: float = 0.006
-    """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19, 60 to 69 and 86 to 99,
-    and humans, four-legged and random trees 60 to 63: of 26 true joints the least has 0.0061, rings where nothing turns 0.0058
-    at most, in a hand of person 92; all others have 0.0032 at most."""
+    """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans,
+    four-legged and random trees 60 to 63: of 26 true joints the least had 0.0061 with straight hinges, rings where nothing
+    turns 0.0032 at most. With bent ones two rings in hands of person 92 have 0.0050 and 0.0058, a true wrist 0.0055."""
     least_score_if_short: float = 0.0145
     """The same where the nearer piece is shorter than `slice_length`, as a neck is. On these bodies five true heads have 0.0164
     to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads, of people 86 to 99 too, and beside a foot of

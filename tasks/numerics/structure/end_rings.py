@@ -23,8 +23,8 @@ class EndRing(NamedTuple):
     """A ring across the last part of a limb or across the trunk.
 
     piece   : points of its part
-    is_bent : whether its hinge is also laid bent, see `laid_hinged`. Across the ends of limbs with a mirror image it is; within
-              heads, which have none, bent hinges find joints that are none
+    is_bent : whether its hinge is also laid bent, see `laid_hinged`: across the ends of limbs with a mirror image. Heads have
+              none, and bent hinges found false joints there
     """
 
     cut: EndCut

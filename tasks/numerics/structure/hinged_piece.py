@@ -73,13 +73,14 @@ def laid_hinged(
     turn    : (3, 3) that of another frame
     is_bent : whether the hinge, as first fitted, is also bent to either side (`BEND`): small steps do not reach what turns far
     """
-    straight = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
-    turns = [*([] if turn is None else [turn]), *(_bent(piece, straight.pose.Q) if is_bent else ())]
-    others = [one.pose._replace(Q=Q) for Q in turns]
-    fits = [piece_fit(piece, pose, goal, target, _first_matches(piece, pose, target), hinged=True) for pose in others]
-    best = min(fits, key=lambda fit: fit.cost(piece.mass), default=straight)
-    if best.cost(piece.mass) >= BETTER * straight.cost(piece.mass):
-        best = straight
+    best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
+    known = () if turn is None else (turn,)
+    for turns in (known, _bent(piece, best.pose.Q)) if is_bent else (known,):
+        starts = [one.pose._replace(Q=Q) for Q in turns]
+        fits = [piece_fit(piece, start, goal, target, _first_matches(piece, start, target), hinged=True) for start in starts]
+        cheapest = min(fits, key=lambda fit: fit.cost(piece.mass), default=best)
+        if cheapest.cost(piece.mass) < BETTER * best.cost(piece.mass):
+            best = cheapest
     return HingedFit(one.cost(piece.mass), best.cost(piece.mass), best.pose)
 
 
