@@ -74,13 +74,11 @@ def laid_hinged(
     is_bent : whether the hinge, as first fitted, is also bent to either side (`BEND`): small steps do not reach what turns far
     """
     best = piece_fit(piece, one.pose, goal, target, one.match, hinged=True)
-    known = () if turn is None else (turn,)
-    for turns in (known, _bent(piece, best.pose.Q)) if is_bent else (known,):
-        starts = [one.pose._replace(Q=Q) for Q in turns]
-        fits = [piece_fit(piece, start, goal, target, _first_matches(piece, start, target), hinged=True) for start in starts]
-        cheapest = min(fits, key=lambda fit: fit.cost(piece.mass), default=best)
-        if cheapest.cost(piece.mass) < BETTER * best.cost(piece.mass):
-            best = cheapest
+    for Q in (*(() if turn is None else (turn,)), *(_bent(piece, best.pose.Q) if is_bent else ())):
+        start = one.pose._replace(Q=Q)
+        other = piece_fit(piece, start, goal, target, _first_matches(piece, start, target), hinged=True)
+        if other.cost(piece.mass) < BETTER * best.cost(piece.mass):
+            best = other
     return HingedFit(one.cost(piece.mass), best.cost(piece.mass), best.pose)
 
 
