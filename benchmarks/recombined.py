@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from rigged import SCORED, surfaced, widest
+from rigged import SCORED, surfaced, widest, write
 from scipy.spatial.transform import Rotation, Slerp
 
 Floats = npt.NDArray[np.float64]
@@ -28,7 +28,7 @@ LIMB = 3
 PACE = (0.8, 1.2)
 """Range of a limb's pace, in that of the recording; half of them go backwards."""
 UNHELD = 1e-9
-"""Weight by which a bone that little skin follows stays as it is, share of the mean."""
+"""Ridge of the least squares for bones that little skin follows alone, share of the mean of their diagonal."""
 
 
 class Body(NamedTuple):
@@ -192,17 +192,7 @@ def main() -> None:
         clip, rng = recombined(body, seed, args.frames, args.rate), np.random.default_rng(seed)
         meshes = [surfaced(V, body.F, args.spacing * height, args.noise * height, rng) for V in clip.V]
         name = f"{stem}{seed}"
-        np.savez(
-            args.folder / f"{name}.npz",
-            vertices=np.concatenate([V for V, _ in meshes]).astype(np.float32),
-            faces=np.concatenate([F for _, F in meshes]).astype(np.int32),
-            vertex_offsets=np.cumsum([0, *(len(V) for V, _ in meshes)]),
-            face_offsets=np.cumsum([0, *(len(F) for _, F in meshes)]),
-            fps=body.fps * args.rate,
-            unit=str(body.truth["unit"]),
-            name=name,
-        )
-        (args.folder / f"{name}.truth.json").write_text(json.dumps(truth_of(body, clip)))
+        write(args.folder / name, meshes, truth_of(body, clip), body.fps * args.rate)
         print(f"{name}: {args.frames} frames of {len(meshes[0][0])} vertices", flush=True)
 
 

@@ -12,7 +12,7 @@ the body's own vertices, without noise.
 
 import argparse
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -164,6 +164,24 @@ def truth_of(rig: Rig, clip: Clip) -> Mapping[str, Any]:
     return {"unit": "mm", "height": HEIGHT, "joints": joints, "positions": clip.X.tolist()}
 
 
+def write(
+    path: Path, meshes: Sequence[tuple[Floats, Ints]], truth: Mapping[str, Any], fps: float, *, fixed: bool = False
+) -> None:
+    """Writes a sequence and its true joints; fixed: all frames have the faces of the first."""
+    faces = meshes[:1] if fixed else meshes
+    np.savez(
+        path.with_suffix(".npz"),
+        vertices=np.concatenate([V for V, _ in meshes]).astype(np.float32),
+        faces=np.concatenate([F for _, F in faces]).astype(np.int32),
+        vertex_offsets=np.cumsum([0, *(len(V) for V, _ in meshes)]),
+        face_offsets=np.cumsum([0, *(len(F) for _, F in faces)]),
+        fps=fps,
+        unit=str(truth["unit"]),
+        name=path.name,
+    )
+    path.with_suffix(".truth.json").write_text(json.dumps(truth))
+
+
 def named(text: str) -> tuple[str, int]:
     """A motion and a seed."""
     motion, _, seed = text.partition(":")
@@ -189,19 +207,8 @@ def main() -> None:
         clip, rng = posed(rig, motion, seed, args.frames), np.random.default_rng(seed)
         sizes = args.spacing * HEIGHT, args.noise * HEIGHT
         meshes = [(V, rig.F) if args.fixed else surfaced(V, rig.F, *sizes, rng) for V in clip.V]
-        faces = meshes[:1] if args.fixed else meshes
         name = f"rig{seed}{motion}"
-        np.savez(
-            args.folder / f"{name}.npz",
-            vertices=np.concatenate([V for V, _ in meshes]).astype(np.float32),
-            faces=np.concatenate([F for _, F in faces]).astype(np.int32),
-            vertex_offsets=np.cumsum([0, *(len(V) for V, _ in meshes)]),
-            face_offsets=np.cumsum([0, *(len(F) for _, F in faces)]),
-            fps=clip.fps,
-            unit="mm",
-            name=name,
-        )
-        (args.folder / f"{name}.truth.json").write_text(json.dumps(truth_of(rig, clip)))
+        write(args.folder / name, meshes, truth_of(rig, clip), clip.fps, fixed=args.fixed)
         print(f"{name}: {args.frames} frames of {len(meshes[0][0])} vertices", flush=True)
 
 
