@@ -85,8 +85,7 @@ def _on_surface(
         (R, t), (Q, u) = (_rigid_part(body, x, mass, parts) for parts in ([near, far], [above]))
         goal = Q @ joint + u
         one = laid_as_one(piece, PiecePose(R, t, np.eye(3)), goal, target)
-        is_end = not (body.parents == far).any()
-        moved = motions(laid_hinged(piece, one, goal, target, turn[far], is_bent=is_end).pose, hinge)
+        moved = motions(laid_hinged(piece, one, goal, target, turn[far]).pose, hinge)
         x[own] = on_pieces(body.V[own], x[own], weight, W[own, far] / np.maximum(weight, 1e-12), *moved)
     return x
 
