@@ -24,7 +24,7 @@ from kinetree.tasks.numerics.input.synth.flesh import Flesh
 from kinetree.tasks.numerics.input.synth.motion import forward_kinematics, joint_rotations
 
 _TRUNK = {"hips", "spine", "chest"}
-_HEAD = {"head_top", "nose", "ear_l", "ear_r"}
+_HEAD = {"head_top", "chin", "nose", "ear_l", "ear_r"}
 _LEG = {"knee", "ankle"}
 _FOOT = {"heel", "ball", "toe"}
 _ARM = {"elbow", "wrist"}

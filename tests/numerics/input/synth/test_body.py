@@ -313,7 +313,8 @@ def test_head_hands_and_feet_of_the_adult_show_how_they_turn(joint):
         length = np.linalg.norm(axis)
         along = (V - clip.X[0, base]) @ axis / length
         across = V - clip.X[0, base] - along[:, None] * axis / length
-        near = (along > 0.2 * length) & (along < 0.8 * length) & (np.linalg.norm(across, axis=1) < 1.2 * length)
+        wide = 1.5 * max(length, max(figure.joints[at].radii))
+        near = (along > 0.2 * length) & (along < 0.8 * length) & (np.linalg.norm(across, axis=1) < wide)
         spread = np.linalg.eigvalsh(across[near].T @ across[near])
         return np.sqrt(spread[1] / spread[2])
 
