@@ -36,7 +36,7 @@ class StationSettings(NamedTuple):
         ("finger", 0.04, 0.03), ("wrist", 0.085, 0.05), ("elbow", 0.22, 0.07), ("shoulder", 0.375, 0.06),
         ("collar", 0.48, 0.08),
     )  # fmt: skip
-    head: Stations = (("head", 0.11, 0.05), ("neck", 0.16, 0.05))
+    head: Stations = (("head", 0.09, 0.05), ("neck", 0.16, 0.05))
     hind: Stations = (
         ("hind_toe", 0.16, 0.1), ("hind_ankle", 0.38, 0.12), ("hind_knee", 0.7, 0.14), ("hind_hip", 1.0, 0.2),
     )  # fmt: skip
