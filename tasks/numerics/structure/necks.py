@@ -1,11 +1,13 @@
 """Necks: bones that the shape alone shows, tubes between what carries them and what they carry (ours).
 
 A short neck turns no vertex by itself, and a round head shows no turn about its own axis. The aligned neck moves as one piece
-with the head or with the trunk, so that motion shows one joint of two, at either end. The shape shows both: a last part that
-hangs on a tube narrower than itself and than what carries the tube has a joint at both ends of the tube.
+with the head or with the trunk, so that motion shows one joint of two. The shape shows both: a last part that hangs on a tube
+narrower than itself and than what carries the tube turns on the tube, and the tube on what carries it. The tube turns about the
+lower end of where it is narrow. What it carries turns about a place beyond the upper end: a skull turns about its base, level
+with the ears, and chin and nape lie lower.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +34,12 @@ class NecksSettings(NamedTuple):
     """How far from the tube's narrowest place these girths are looked for, in its radii."""
     slack: float = 1.25
     """Girth at which the tube ends, in its least ones."""
+    narrow: float = 1.1
+    """Girth up to which it is narrow, in its least ones."""
+    base: float = 1.15
+    """Distance of the upper joint from the last narrow ring, in radii of the tube, along the line through the middles of the
+    narrow rings. Chosen on people 0 to 19: the true ones lie 1.15 beyond with a standard deviation of 0.33 and 0.16 beside the
+    line, the lower ones 0.03 above the first narrow ring (0.38, and 0.06 beside the line)."""
     near: float = 1.5
     """How far from the border of the part the narrowest place is looked for, in radii of the border."""
     near_end: float = 1.3
@@ -40,8 +48,29 @@ class NecksSettings(NamedTuple):
     lies within 1.3 of one end and 0.9 or more from the other in all but one, which has 1.46 and 1.5."""
     apart: float = 0.85
     """Distance of the tube's other end from that joint, and from all others, at least."""
+    astray: tuple[float, float] = (0.4, 0.8)
+    """Distance of a joint from its place, in radii of the tube: up to the first it stays, from the second it is moved there."""
+    amid: float = 0.65
+    """Distance below the upper joint, in radii, from which on a joint is a third one where the lower joint is known: some necks
+    have two bones. Of eleven such joints of people 0 to 19 and 60 to 69 and humans 0 and 1 the farthest has 0.5; of recorded
+    ballet the middle one has 0.8."""
     step: float = 0.125
     """Distance between rings, in radii of the border."""
+
+
+class Tube(NamedTuple):
+    """A narrow tube on which the last part of a limb hangs.
+
+    part   : that hangs on it
+    joint  : (2, xyz) where the tube turns and where the part does, in the reference, mesh unit
+    radius : its least girth over 2π, mesh unit
+    share  : (vertex,) how much each vertex follows the tube, 0 to 1
+    """
+
+    part: int
+    joint: Floats
+    radius: float
+    share: Floats
 
 
 class _Rings(NamedTuple):
@@ -52,20 +81,18 @@ class _Rings(NamedTuple):
     centre: Floats
 
 
-def necks(
-    V: Floats, F: Ints, label: Ints, parents: Ints, rest: Floats, border: Floats, settings: NecksSettings | None = None
-) -> Iterator[StillJoint]:
-    """The necks on which the last parts of limbs hang, by part; none where the surface has a hole, which looks like a tube.
+def tubes(V: Floats, F: Ints, label: Ints, parents: Ints, border: Floats, settings: NecksSettings | None = None) -> list[Tube]:
+    """The tubes on which the last parts of limbs hang, by part; none where the surface has a hole, which looks like a tube.
 
     V, F    : (vertex, xyz) reference, mesh unit · (face, corner)
     label   : (vertex,) part
     parents : (part,) −1 for the root
-    rest    : (part, xyz) joints in the reference, mesh unit
     border  : (part,) radius of the border at each joint, mesh unit
     """
     chosen, edge = settings or NecksSettings(), np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     pairs, faces = np.unique(np.sort(edge, axis=1), axis=0, return_counts=True)
     links, rim = edge_lengths(V, pairs), pairs[faces == 1].ravel()
+    found = []
     for part in range(1, len(parents)):
         crossing = edge[(label[edge] == part).sum(axis=1) == 1]
         if border[part] > 0.0 and len(crossing) and not (parents == part).any():
@@ -73,30 +100,108 @@ def necks(
             distance = dijkstra(links, directed=False, indices=np.unique(crossing), min_only=True, limit=reach)
             half = 0.5 * np.linalg.norm(V[crossing[:, 0]] - V[crossing[:, 1]], axis=1).mean()
             beyond = np.where(label == part, 1.0, -1.0) * (distance + half)
-            others = np.delete(rest, [0, part], axis=0)
-            neck = _neck(V, F, beyond, part, rest[part], others, float(border[part]), chosen)
-            if neck is not None and not (neck.share[rim] > 0.0).any():
-                yield neck
+            tube = _tube(V, F, beyond, part, float(border[part]), chosen)
+            if tube is not None and not (tube.share[rim] > 0.0).any():
+                found.append(tube)
+    return found
 
 
-def _neck(
-    V: Floats, F: Ints, beyond: Floats, part: int, joint: Floats, others: Floats, border: float, chosen: NecksSettings
-) -> StillJoint | None:
-    """The neck of a part; None where there is none, or a joint at both of its ends."""
+def necks(
+    hanging: Iterable[Tube], rest: Floats, shown: Collection[int] = (), settings: NecksSettings | None = None
+) -> Iterator[StillJoint]:
+    """The joints of tubes that motion does not show, by part: the other one of two, and the upper one of three.
+
+    hanging : tubes with the last parts of limbs on them
+    rest    : (part, xyz) joints in the reference, mesh unit
+    shown   : parts that the frames' surfaces alone show, see `extended_tree`; they have no joint more
+    """
+    chosen = settings or NecksSettings()
+    for tube in hanging:
+        at = _place(tube, rest, shown, chosen)
+        if at is not None and tube.part not in shown:
+            free = at.own if at.is_amid else 1 - at.own
+            if at.is_amid or (not at.has_lower and at.away[free] >= chosen.apart):
+                yield StillJoint(tube.part, free == 0, tube.joint[free], tube.radius, tube.share)
+
+
+def on_tubes(
+    hanging: Iterable[Tube], rest: Floats, shown: Collection[int] = (), settings: NecksSettings | None = None
+) -> tuple[Floats, Flags]:
+    """(part, xyz) joints of parts that hang on tubes, moved to the nearer joint of the tube where they are far from it ·
+    (part,) joints that stay there.
+
+    Where motion shows one joint of two, it lies somewhere between them. The parameters are those of `necks`.
+    """
+    chosen, moved, stays = settings or NecksSettings(), rest.copy(), np.zeros(len(rest), np.bool_)
+    for tube in hanging:
+        at = _place(tube, rest, shown, chosen)
+        if at is not None:
+            low, high = chosen.astray
+            part, share = tube.part, 0.0 if at.is_amid else float(np.clip((at.away[at.own] - low) / (high - low), 0.0, 1.0))
+            moved[part] += share * (tube.joint[at.own] - rest[part])
+            stays[part] = at.is_amid or share > 0.0
+    return moved if stays.any() else rest, stays
+
+
+class _Place(NamedTuple):
+    """Where the joint of a part is on its tube.
+
+    away      : (2,) distance from the tube's joints, in its radii
+    own       : which of them it is, 0 or 1; where it is amid the tube, the upper one, that is still to be added
+    has_lower : whether the lower one is another part's
+    is_amid   : whether it is a third one, between both
+    """
+
+    away: Floats
+    own: int
+    has_lower: bool
+    is_amid: bool
+
+
+def _place(tube: Tube, rest: Floats, shown: Collection[int], chosen: NecksSettings) -> _Place | None:
+    """None where the joint of the part is at neither of the tube's joints, or another part's is at the upper one."""
+    joint, others = rest[tube.part], np.delete(rest, [0, tube.part], axis=0)
+    away = np.linalg.norm(tube.joint - joint, axis=1) / tube.radius
+    taken = [bool((np.linalg.norm(others - place, axis=1) < chosen.apart * tube.radius).any()) for place in tube.joint]
+    if away.min() > chosen.near_end or taken[1]:
+        return None
+    axis = tube.joint[1] - tube.joint[0]
+    below = float((tube.joint[1] - joint) @ axis) > 0.0
+    is_amid = taken[0] and below and float(away[1]) >= chosen.amid and tube.part not in shown
+    return _Place(away, 1 if taken[0] else int(away.argmin()), taken[0], is_amid)
+
+
+def _tube(V: Floats, F: Ints, beyond: Floats, part: int, border: float, chosen: NecksSettings) -> Tube | None:
+    """The tube of a part; None where there is none."""
     rings = _rings(V, F, beyond, border, chosen)
     ends = _ends(rings, border, chosen)
     if ends is None:
         return None
-    centre = rings.centre[ends]
-    radius = float(rings.girth[ends[0] : ends[1] + 1].min() / (2.0 * np.pi))
-    away = np.linalg.norm(centre - joint, axis=1) / radius
-    free = int(away.argmax())
-    taken = bool(len(others)) and np.linalg.norm(others - centre[free], axis=1).min() < chosen.apart * radius
-    if away.min() > chosen.near_end or away.max() < chosen.apart or taken:
-        return None
+    inner = slice(ends[0], ends[1] + 1)
+    least = float(rings.girth[inner].min())
+    radius = least / (2.0 * np.pi)
+    joint = _places(rings.centre[inner], rings.girth[inner] <= chosen.narrow * least, chosen.base * radius)
     low, high = rings.level[ends]
     share = np.clip(0.5 + np.minimum(beyond - low, high - beyond) / radius, 0.0, 1.0)
-    return StillJoint(part, free == 0, centre[free], radius, np.where(np.isfinite(beyond), share, 0.0))
+    return Tube(part, joint, radius, np.where(np.isfinite(beyond), share, 0.0))
+
+
+def _places(middle: Floats, is_narrow: Flags, base: float) -> Floats:
+    """(2, xyz) the joints of a tube, the lower one first, on the line nearest to the middles of its narrow rings.
+
+    middle    : (ring, xyz) of all rings of the tube, from its lower end to its upper one
+    is_narrow : (ring,)
+    base      : distance of the upper joint from the last narrow ring, mesh unit
+    """
+    narrow = middle[is_narrow]
+    mean = narrow.mean(axis=0)
+    axis = middle[-1] - middle[0]
+    if len(narrow) > 2:
+        along = np.linalg.svd(narrow - mean, full_matrices=False)[2][0]
+        axis = along if along @ axis > 0.0 else -along
+    axis = axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
+    low, high = (narrow[[0, -1]] - mean) @ axis
+    return np.asarray(mean + np.outer([low, high + base], axis))
 
 
 def _rings(V: Floats, F: Ints, beyond: Floats, border: float, chosen: NecksSettings) -> _Rings:
