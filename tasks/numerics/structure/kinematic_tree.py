@@ -171,7 +171,7 @@ def _posed(
     body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None,
     hanging: Sequence[Tube],
 ) -> PosedTree:  # fmt: skip
-    """The tree in every frame, its joints where all cuts have them, moved to the tubes they hang on and to the frames' surfaces."""
+    """The tree in every frame; its joints are where all cuts have them, moved to tubes and to the frames' surfaces."""
     parts = len(first.parents)
     consensus = _consensus(first, further, body.size)
     shared = shared_joints(first, consensus.rest, body.size, body.takes)
