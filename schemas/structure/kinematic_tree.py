@@ -60,8 +60,8 @@ class ShapeParams(Params):
     """Which joints shape alone gives."""
 
     necks: bool = True
-    """Whether a tube between the last part of a limb and what carries it has a joint at both ends though one alone turns;
-    not where connectivity is fixed, since motion shows both there."""
+    """Whether a tube between the last part of a limb and what carries it, as a neck, has a joint at its lower end and one
+    beyond its upper end though motion shows one alone, and that one is moved to the nearer place."""
     mirrored_joints: bool = True
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
     fixed."""

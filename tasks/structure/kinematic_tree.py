@@ -46,7 +46,7 @@ def kinematic_tree(
             for frame, cut in further_cut.items()
         ],
         laid=joined(laid_parts),
-        has_necks=params.necks and not body.is_given,
+        has_necks=params.necks,
         has_mirrored_joints=params.mirrored_joints and not body.is_given,
     )
     return KinematicTree(

@@ -119,8 +119,8 @@ def necks(
     for tube in hanging:
         at = _place(tube, rest, shown, chosen)
         if at is not None and tube.part not in shown:
-            free = at.own if at.is_amid else 1 - at.own
-            if at.is_amid or (not at.has_lower and at.away[free] >= chosen.apart):
+            free = at.own if at.is_third else 1 - at.own
+            if at.is_third or (not at.has_lower and at.away[free] >= chosen.apart):
                 yield StillJoint(tube.part, free == 0, tube.joint[free], tube.radius, tube.share)
 
 
@@ -137,9 +137,9 @@ def on_tubes(
         at = _place(tube, rest, shown, chosen)
         if at is not None:
             low, high = chosen.astray
-            part, share = tube.part, 0.0 if at.is_amid else float(np.clip((at.away[at.own] - low) / (high - low), 0.0, 1.0))
+            part, share = tube.part, 0.0 if at.is_third else float(np.clip((at.away[at.own] - low) / (high - low), 0.0, 1.0))
             moved[part] += share * (tube.joint[at.own] - rest[part])
-            stays[part] = at.is_amid or share > 0.0
+            stays[part] = at.is_third or share > 0.0
     return moved if stays.any() else rest, stays
 
 
@@ -149,26 +149,28 @@ class _Place(NamedTuple):
     away      : (2,) distance from the tube's joints, in its radii
     own       : which of them it is, 0 or 1; where it is amid the tube, the upper one, that is still to be added
     has_lower : whether the lower one is another part's
-    is_amid   : whether it is a third one, between both
+    is_third  : whether it is a third one, between both
     """
 
     away: Floats
     own: int
     has_lower: bool
-    is_amid: bool
+    is_third: bool
 
 
 def _place(tube: Tube, rest: Floats, shown: Collection[int], chosen: NecksSettings) -> _Place | None:
     """None where the joint of the part is at neither of the tube's joints, or another part's is at the upper one."""
     joint, others = rest[tube.part], np.delete(rest, [0, tube.part], axis=0)
     away = np.linalg.norm(tube.joint - joint, axis=1) / tube.radius
+    along = tube.joint[1] - tube.joint[0]
+    share = np.clip((others - tube.joint[0]) @ along / max(float(along @ along), np.finfo(float).tiny), 0.0, 1.0)
+    on_it = int((np.linalg.norm(others - tube.joint[0] - np.outer(share, along), axis=1) < chosen.apart * tube.radius).sum())
     taken = [bool((np.linalg.norm(others - place, axis=1) < chosen.apart * tube.radius).any()) for place in tube.joint]
     if away.min() > chosen.near_end or taken[1]:
         return None
-    axis = tube.joint[1] - tube.joint[0]
-    below = float((tube.joint[1] - joint) @ axis) > 0.0
-    is_amid = taken[0] and below and float(away[1]) >= chosen.amid and tube.part not in shown
-    return _Place(away, 1 if taken[0] else int(away.argmin()), taken[0], is_amid)
+    below = float((tube.joint[1] - joint) @ along) > 0.0
+    is_third = taken[0] and on_it == 1 and below and float(away[1]) >= chosen.amid and tube.part not in shown
+    return _Place(away, 1 if taken[0] else int(away.argmin()), taken[0], is_third)
 
 
 def _tube(V: Floats, F: Ints, beyond: Floats, part: int, border: float, chosen: NecksSettings) -> Tube | None:

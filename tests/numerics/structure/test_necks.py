@@ -129,6 +129,21 @@ def test_a_joint_amid_the_tube_is_a_third_one_where_the_lower_one_is_known(below
         np.testing.assert_allclose(found[0].centre, [0.0, 0.0, BASE], atol=0.2)
 
 
+def test_a_tube_has_no_fourth_joint() -> None:
+    """One at its lower end, another one amid it; the part's own is the upper one, though far from its place."""
+    rest = at(BASE - 0.85, BOTTOM, BOTTOM + 1.0)
+    assert list(necks(tube_of(), rest)) == []
+    moved, _ = on_tubes(tube_of(), rest)
+    np.testing.assert_allclose(moved[1], [0.0, 0.0, BASE], atol=0.2)
+
+
+def test_joints_beside_a_tube_are_not_on_it() -> None:
+    """As shoulders lie beside a neck."""
+    rest = at(BASE - 0.85, BOTTOM, BOTTOM + 1.0)
+    rest[3, 0] = 2.0
+    assert len(list(necks(tube_of(), rest))) == 1
+
+
 def test_a_joint_beyond_the_upper_place_is_no_third_one() -> None:
     assert necks_of(BASE + 0.9, BOTTOM) == []
 
