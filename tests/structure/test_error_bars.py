@@ -108,6 +108,6 @@ def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(field
     lines = views.text(body, lambda cls: bars if cls is ErrorBars else None)
     assert [j for j, line in enumerate(lines) if f"{words}, no turn measured" in line] == [3]
     moving = error_bars(body, tree)
-    assert bars.expected[3] == pytest.approx(0.55 * 2.0), "it goes by the radius alone"
+    assert bars.expected[3] == pytest.approx(0.4 * 2.0), "it goes by the radius alone"
     assert bars.expected[1] == moving.expected[1] != bars.expected[3]
     assert unknown_error_bars(body).evidence == (None,) * 5
