@@ -16,12 +16,13 @@ from kinetree.tasks.numerics.registration import tracking as numerics
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, at_rest
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph as Nodes
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swung
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swings
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     distant_points,
     is_lost,
     near_pose,
+    nearest_pose,
     thinned_body,
     thinned_frame,
 )
@@ -60,8 +61,8 @@ def tracking(
     # few points show too little of colours, and say nothing of where a body stands in another take
     near, attempt = None if is_entry or has_colours else near_pose(cloud, last, points), 0
     limbs = limbs_of(deformation_graph, tips)
-    if near is not None and is_lost(near, previous.usual) and (start := swung(cloud, last, *limbs)) is not None:
-        near = min(near, near_pose(cloud, start, points), key=lambda one: one.distant)
+    if near is not None and is_lost(near, previous.usual) and (starts := swings(cloud, last, *limbs)):
+        near = min(near, nearest_pose(cloud, starts, points), key=lambda one: one.distant)
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)

@@ -130,6 +130,11 @@ def shape(graph: DeformationGraph, pose: Pose) -> tuple[Floats, Floats]:
     return x, turned(graph.N, graph.bound, graph.weight, pose.rotation)
 
 
+def bending(graph: DeformationGraph, pose: Pose) -> float:
+    """How far the graph bends, every edge alike, mesh unit²."""
+    return float(edge_energy(graph.edge, np.ones(len(graph.edge)), *pose, graph.g))
+
+
 def fit(
     graph: DeformationGraph,
     start: Pose,

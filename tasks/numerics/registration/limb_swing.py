@@ -35,6 +35,10 @@ class LimbSwingSettings(NamedTuple):
     exchange: float = 0.875
     """Share of the energy that an exchange of two stems must fall below. Right exchanges of five people had 0.22 to 0.77, a
     wrong one of a ballet 0.98, all others more than 1."""
+    likely: float = 1.15
+    """Exchanges of two stems with no more than this share of the least energy are as likely as it: a trunk that has turned by
+    half a turn brings both arms to each other's stems, and the energy of a person who throws, at 6 frames a second, is 0.98 of
+    the wrong one's. Their fits tell them apart, by bending half as much. Chosen on that person."""
     begun: float = 2.0
     """How many times the energy it may have after one round, to be gone on with: right exchanges had 0.9 to 1.7 times."""
     held: float = 1e-3
@@ -78,7 +82,20 @@ def swung(
     centre: Floats,
     settings: LimbSwingSettings | None = None,
 ) -> Pose | None:
-    """The pose with every limb swung to a stem of a frame, each to one, so that the body bends least (ours).
+    """The first of `swings`; None where one of body and frame has no limbs. The parameters are those of `swings`."""
+    found = swings(graph, pose, stems, seen, centre, settings)
+    return found[0] if found else None
+
+
+def swings(
+    graph: DeformationGraph,
+    pose: Pose,
+    stems: Floats,
+    seen: Floats,
+    centre: Floats,
+    settings: LimbSwingSettings | None = None,
+) -> list[Pose]:
+    """Poses with every limb swung to a stem of a frame, each to one: so that the body bends least, and those as likely (ours).
 
     Begun with the stems nearest about the body's centre; two limbs exchange theirs for as long as the body then bends
     clearly less. A trunk that twists fast brings each arm nearer to the other one's stem. A stem that no limb begins with is
@@ -89,17 +106,17 @@ def swung(
     stems   : (limb, station, xyz) of the reference, see `extrema.stems`, mesh unit
     seen    : (limb, station, xyz) of the frame
     centre  : (xyz) of the frame's surface, mesh unit
-    returns : Pose; None where one of both has no limbs
+    returns : that which bends least, then those as likely with two limbs exchanged; none where body or frame has no limbs
     """
     chosen = settings or LimbSwingSettings()
     if not len(stems) or not len(seen):
-        return None
+        return []
     points = stem_points(graph, stems, chosen)
     now = carried(graph, pose, points).reshape(stems.shape) - shape(graph, pose)[0][graph.sample].mean(axis=0)
     limb, other = linear_sum_assignment(np.linalg.norm(now[:, None] - (seen - centre)[None], axis=3).mean(axis=2))
     row = (limb[:, None] * stems.shape[1] + np.arange(stems.shape[1])).ravel()
     swing = _Swing.of(graph, pose, StemPoints(*(array[row] for array in points)), chosen)
-    return _least_energy_exchange(swing, seen, other)
+    return _least_energy_exchanges(swing, seen, other)
 
 
 def stem_points(graph: DeformationGraph, stems: Floats, settings: LimbSwingSettings | None = None) -> StemPoints:
@@ -197,8 +214,10 @@ def _applied(A: csr_array, x: Floats) -> Floats:
     return np.stack([A @ one for one in x])
 
 
-def _least_energy_exchange(swing: _Swing, stems: Floats, given: Ints) -> Pose:
-    """The pose with stems as given (limb,) or with pairs exchanged, for as long as an exchange has clearly less energy."""
+def _least_energy_exchanges(swing: _Swing, stems: Floats, given: Ints) -> list[Pose]:
+    """The pose with stems as given (limb,) or with pairs exchanged, for as long as an exchange has clearly less energy, and
+    the exchanges of a pair that are then as likely.
+    """
     chosen = swing.settings
 
     def reached(orders: list[Ints], rounds: int) -> list[tuple[Pose, float]]:
@@ -212,7 +231,7 @@ def _least_energy_exchange(swing: _Swing, stems: Floats, given: Ints) -> Pose:
         ends = [(*end, order) for end, order in zip(reached(near, chosen.rounds), near, strict=True)]
         pose, least, order = min(ends, key=lambda one: one[1], default=(best, energy, given))
         if not least < chosen.exchange * energy:
-            return best
+            return [best, *(end for end, one, _ in ends if one <= chosen.likely * energy)]
         best, energy, given = pose, least, order
 
 

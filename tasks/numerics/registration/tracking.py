@@ -13,10 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, uncovered
-from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, fit, shape
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, bending, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.edges import edge_energy
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swung
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swings
 
 
 class TrackingSettings(NamedTuple):
@@ -201,23 +200,19 @@ def _by_limbs(
     settings: TrackingSettings,
 ) -> Tracking:
     """The frame fitted from swung limbs if that covers more and bends hardly more: exchanged limbs cover a frame, but bend."""
-    start = swung(graph, neighbour, *limbs)
-    if start is None:
+    number = len(attempts(fitting, settings))
+    tried = [_attempted(graph, start, target, fitting, number) for start in swings(graph, neighbour, *limbs)]
+    if not tried:
         return best
-    found = _attempted(graph, start, target, fitting, len(attempts(fitting, settings)))
-    most = settings.bent * _bending(graph, best.pose) + settings.bent_more * graph.size**2
-    return min(best, found, key=lambda one: one.uncovered) if _bending(graph, found.pose) <= most else best
+    found = _least_bent(graph, tried, min(one.uncovered for one in tried) + settings.uncovered)
+    most = settings.bent * bending(graph, best.pose) + settings.bent_more * graph.size**2
+    return min(best, found, key=lambda one: one.uncovered) if bending(graph, found.pose) <= most else best
 
 
 def _least_bent(graph: DeformationGraph, found: Sequence[Tracking], most: float) -> Tracking:
     """Of those that leave no more uncovered than `most`, the one whose graph bends least."""
-    bent = [_bending(graph, one.pose) if one.uncovered <= most else np.inf for one in found]
+    bent = [bending(graph, one.pose) if one.uncovered <= most else np.inf for one in found]
     return found[int(np.argmin(bent))]
-
-
-def _bending(graph: DeformationGraph, pose: Pose) -> float:
-    """How far the graph bends, mesh unit²."""
-    return float(edge_energy(graph.edge, np.ones(len(graph.edge)), *pose, graph.g))
 
 
 def _attempted(graph: DeformationGraph, start: Pose, target: Target, settings: FitSettings, number: int) -> Tracking:

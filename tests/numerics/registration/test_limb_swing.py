@@ -8,7 +8,7 @@ from skimage.measure import marching_cubes
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, carried, stem_points, swung
+from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, carried, stem_points, swings, swung
 from kinetree.tasks.numerics.registration.near_pose import near_pose, thinned_body, thinned_frame
 
 V, F = tube(around=29, along=57, start=0.07)
@@ -119,6 +119,24 @@ def off(angle, settings=None):
 def test_limbs_keep_the_nearest_stems_where_the_body_would_not_bend_clearly_less(strict):
     assert off(1.65).max() < 1.0
     assert off(1.65, LimbSwingSettings(**strict))[:2].min() > 3.0
+
+
+@pytest.mark.parametrize(("angle", "likely", "ways"), [(1.65, 1.15, 1), (2.1, 1.15, 2), (2.1, 1.0, 1)])
+def test_where_both_ways_of_swinging_the_arms_are_as_likely_both_are_given(angle, likely, ways):
+    """Turned by 120°, either arm may as well have gone the other way round."""
+    surface, faces, stems = reaching_body()
+    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    goal = twisted(stems, angle)
+    centre = twisted(shape(body, at_rest(body))[0][body.sample], angle).mean(axis=0)
+    found = swings(body, at_rest(body), stems, goal, centre, LimbSwingSettings(likely=likely))
+    points = stem_points(body, stems)
+    off = [np.linalg.norm(carried(body, pose, points).reshape(stems.shape) - goal, axis=2).mean(axis=1)[:2] for pose in found]
+    assert len(found) == ways
+    if ways == 2:
+        assert off[0].min() > 3.0
+        assert off[1].max() < 1.0
+        first = swung(body, at_rest(body), stems, goal, centre, LimbSwingSettings(likely=likely))
+        np.testing.assert_array_equal(first.translation, found[0].translation)
 
 
 def test_without_limbs_nothing_is_swung(body):

@@ -1,15 +1,18 @@
 """Laws of near poses: few points of both surfaces carry a pose from frame to frame, and show when a limb is lost."""
 
 import numpy as np
+import pytest
 from limbs import ANGLES, LENGTH, bent, tube
+from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, bending, shape
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     NearPoseSettings,
     distant_points,
     is_lost,
     near_pose,
+    nearest_pose,
     thinned_body,
     thinned_frame,
 )
@@ -59,3 +62,28 @@ def test_the_distant_points_are_those_far_from_the_body(body):
     assert distant_points(thin, rest, frame) < SETTINGS.lost
     assert distant_points(thin, Pose(rest.rotation, rest.translation + 10 * LENGTH), frame) == 1
     assert is_lost(NearPose(rest, 1.0), 0.0)
+
+
+def wrung(graph, angle):
+    """The tube with its upper half turned about its own axis, which leaves its surface where it is."""
+    turn = angle * np.clip(graph.g[:, 2] / LENGTH + 0.5, 0.0, 1.0)
+    R = Rotation.from_rotvec(np.outer(turn, [0.0, 0.0, 1.0])).as_matrix()
+    return Pose(R, np.einsum("nxy,ny->nx", R, graph.g))
+
+
+@pytest.mark.parametrize(
+    ("angles", "taken"), [((2.0, 0.0), 0.0), ((0.0, 2.0), 0.0), ((2.0, 1.0), 1.0), ((2.0, 1.95), 2.0), ((2.0,), 2.0)]
+)
+def test_of_poses_that_cover_a_frame_the_first_counts_unless_another_bends_clearly_less(body, angles, taken):
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    found = nearest_pose(thin, [wrung(thin, angle) for angle in angles], frame)
+    one = near_pose(thin, wrung(thin, taken), frame)
+    np.testing.assert_array_equal(found.pose.rotation, one.pose.rotation)
+
+
+def test_a_pose_that_covers_a_frame_counts_before_one_that_bends_less(body):
+    thin, frame = thinned_body(body), thinned_frame(bent(V, 0.2), F, body.size)
+    away = Pose(at_rest(thin).rotation, thin.g + [0.0, 0.0, 3.0 * LENGTH])
+    found = nearest_pose(thin, [away, at_rest(thin)], frame)
+    assert found.distant < 0.1
+    assert bending(thin, found.pose) > 0.0

@@ -10,7 +10,7 @@ from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swung
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swings
 from kinetree.tasks.numerics.registration.tracking import (
     TrackingSettings,
     attempts,
@@ -74,8 +74,8 @@ def crossed(graph, way, angle, base=4.0):
 
 
 def test_exchanged_limbs_that_cover_more_but_bend_much_more_are_not_taken(monkeypatch):
-    nearest = LimbSwingSettings(exchange=0.0)
-    monkeypatch.setattr(module, "swung", lambda *a: swung(*a, nearest))
+    nearest = LimbSwingSettings(exchange=0.0, likely=0.0)
+    monkeypatch.setattr(module, "swings", lambda *a: swings(*a, nearest))
     V, F, _ = y_pipe()
     graph = deformation_graph(V, F, GRAPH._replace(nodes=120))
     around = 2 * np.pi * np.arange(3) / 3
