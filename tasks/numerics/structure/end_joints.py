@@ -77,6 +77,11 @@ class EndJointsSettings(NamedTuple):
     a mirror image every shorter one is a slice: necks alone are as short. Chosen on people 5, 7, 14 to 18 and 20 in three
     takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had
     2.6 to 5.2, two false ones 1.5 and 1.7."""
+    most_left: float = 2.0
+    """Root mean square distance that a part with its hinge may keep from a frame's surface, in its median over the frames: what
+    keeps more is touched or hidden there, and the frame does not count. A hand that rests on a hip keeps 2.5 times as much."""
+    little_left: float = 0.05
+    """Distance that is none, in radii of the ring."""
     most_frames: int = 40
     """Frames of a take in which rings are judged in all of them; of more, in as many pairs of neighbours, in evenly spread runs
     of four frames, 52 in all; for time."""
@@ -219,7 +224,7 @@ def _judged(
     frames: EndFrames, laid: Sequence[_RingFits], pairs: Ints, span: Ints, chosen: EndJointsSettings
 ) -> list[RingEvidence]:
     """What every ring shows in the frames of a span; its hinge is held where it shows enough even against one piece."""
-    within, tree = [one.within(span) for one in laid], frames.tree
+    within, tree = [_usual(one.within(span), chosen) for one in laid], frames.tree
     pairs = pairs[(pairs >= span[0]).all(axis=1) & (pairs < span[1]).all(axis=1)]
     above = [tree.R[:, one.ring.cut.above] for one in laid]
     apart = len(pairs) > 0 and going_on(tree.R, tree.parents, pairs, chosen.nearer) < chosen.goes_on
@@ -246,6 +251,15 @@ def _judged(
         if shown.score >= chosen.least_in_halves:
             evidence[k] = shown._replace(score=max(scaled, evidence[k].score))
     return evidence
+
+
+def _usual(laid: _RingFits, chosen: EndJointsSettings) -> _RingFits:
+    """The ring without the frames in which much is left of its part, hinge or not: there something touches or hides it."""
+    if not laid.fits:
+        return laid
+    usual = np.sqrt(np.median([fit.two for fit in laid.fits.values()]))
+    most = (chosen.most_left * max(float(usual), chosen.little_left * laid.ring.cut.radius)) ** 2
+    return laid._replace(fits={f: fit for f, fit in laid.fits.items() if fit.two <= most})
 
 
 def _mean_turn(fits: Fits) -> Floats:
@@ -279,7 +293,8 @@ def _laid_in_frames(
     """Ring, frame, where the part lies in it but for the hinge, which has this turn (3, 3), and the frame's surface."""
     for f, target, there in frames.showing(sorted({f for one in laid for f in one.fits}), [one.ring for one in laid]):
         for k in there:
-            yield k, f, laid[k].fits[f].pose._replace(Q=turn[k]), target
+            if f in laid[k].fits:
+                yield k, f, laid[k].fits[f].pose._replace(Q=turn[k]), target
 
 
 def _joint(tree: FirstTree, laid: _RingFits, score: float) -> EndJoint:

@@ -12,7 +12,14 @@ from trunk import trunk
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, _one_beside_each_joint, judged_runs
+from kinetree.tasks.numerics.structure.end_joints import (
+    EndJoint,
+    EndJointsSettings,
+    _one_beside_each_joint,
+    _RingFits,
+    _usual,
+    judged_runs,
+)
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 
 
@@ -109,6 +116,34 @@ def test_halves_that_agree_more_never_lose_a_joint() -> None:
 @pytest.mark.parametrize("noise", [0.0, 0.02, 0.05])
 def test_no_joint_is_found_where_nothing_turns(noise: float) -> None:
     assert joints_at(0.0, noise) == []
+
+
+@pytest.mark.parametrize(
+    ("left", "kept"),
+    [
+        ((0.1, 0.1, 0.12, 0.19, 0.21, 0.4), (0, 1, 2, 3, 4)),
+        ((0.1, 0.1, 0.1, 0.1, 0.25, 0.25), (0, 1, 2, 3)),
+        ((0.0, 0.0, 0.0, 0.0, 0.09, 0.11), (0, 1, 2, 3, 4)),
+        ((), ()),
+    ],
+)
+def test_frames_in_which_something_touches_a_piece_do_not_count(left: tuple[float, ...], kept: tuple[int, ...]) -> None:
+    """Distances from the surface with the hinge, of a ring of radius 1; with a twentieth of it or less nothing touches."""
+    fits = {f: SimpleNamespace(two=two**2) for f, two in enumerate(left)}
+    laid = _RingFits(SimpleNamespace(cut=SimpleNamespace(radius=1.0)), fits)  # type: ignore[arg-type]
+    assert tuple(_usual(laid, EndJointsSettings()).fits) == kept
+
+
+def test_a_frame_in_which_little_is_seen_of_a_piece_loses_no_joint() -> None:
+    """In a quarter of the frames the surface is another one; the hinge turns as it does in all others."""
+    turn, touched = turning(25.0), range(9, 15)
+    surface, tree = found_in(aligned(turn))
+    free, touching = Frames(turn, 0.0).prepared(surface.size), Frames(turn, 0.3).prepared(surface.size)
+    found = joints_at_ends(
+        surface, in_tree_order(tree, 2), np.ones(surface.x.shape[:2]), lambda f: (touching if f in touched else free)(f)
+    )
+    assert len(found) == 1
+    assert found[0].visible.all()
 
 
 def test_a_reference_that_is_bent_beyond_the_ring_is_no_evidence() -> None:
