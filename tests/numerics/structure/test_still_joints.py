@@ -1,6 +1,7 @@
 """A neck becomes a bone between its part and the part above."""
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,13 +12,15 @@ from shipped import TREE
 from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.structure import kinematic_tree as module
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
-from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.necks import NecksSettings, necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.still_joints import PosedTree, StillJoint, with_still_joints
-from kinetree.tasks.numerics.structure.tree_joints import Cut
+from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints
+from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 
 def nodding_cut(joint: float) -> tuple[MovingSurface, Cut, np.ndarray]:
@@ -136,25 +139,47 @@ def test_the_joint_that_turns_stays(joint: float) -> None:
     np.testing.assert_array_equal(two.confidence[:, new], one.confidence[:, known])
 
 
-def test_a_joint_that_stands_for_two_is_moved_to_one_of_them() -> None:
+def compound_cut() -> tuple[MovingSurface, Cut, np.ndarray]:
     """Neck and head turn by 20° each, the aligned neck as the head does: the two parts turn about no point."""
     V, F = bottle(3.0, 1.8)
     time = np.arange(12.0)
     neck, head = (
-        Rotation.from_rotvec(np.radians(20.0) * np.outer(wave, axis)).as_matrix()
-        for wave, axis in ((np.sin(time), [1.0, 0.0, 0.0]), (np.cos(time), [1.0, 0.0, 0.0]))
+        Rotation.from_rotvec(np.radians(20.0) * np.outer(wave, [1.0, 0.0, 0.0])).as_matrix()
+        for wave in (np.sin(time), np.cos(time))
     )
     low, high = np.array([0.0, 0.0, BOTTOM]), np.array([0.0, 0.0, BASE])
     turn = neck @ head
     shift = low + neck @ (high - low) - turn @ high
     R = np.stack([np.tile(np.eye(3), (12, 1, 1)), turn], axis=1)
-    cut = moving(V, F, (V[:, 2] > TOP - 0.8).astype(np.int64), R, np.stack([np.zeros((12, 3)), shift], axis=1))
+    return moving(V, F, (V[:, 2] > TOP - 0.8).astype(np.int64), R, np.stack([np.zeros((12, 3)), shift], axis=1))
+
+
+def test_a_joint_that_stands_for_two_is_moved_to_one_of_them() -> None:
     settings = TREE._replace(hidden_bones=False)
-    (alone, _), (both, derivation) = (whole_tree(*cut, settings=settings, has_necks=has) for has in (False, True))
+    (alone, _), (both, derivation) = (whole_tree(*compound_cut(), settings=settings, has_necks=has) for has in (False, True))
     (between,) = joint_heights(alone)
     assert BOTTOM + 0.4 < between < BASE - 0.4
     assert joint_heights(both) == pytest.approx([BOTTOM, BASE], abs=0.2)
     assert len(derivation.neck_joints) == 1
+
+
+@pytest.mark.parametrize(("astray", "stays"), [(True, True), (False, False)])
+def test_surfaces_do_not_move_a_joint_that_is_moved_to_a_tube(
+    astray: bool, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: dict[str, Any] = {}
+
+    def stay(*args: Any, held: Any, **_: Any) -> SurfaceJoints:
+        asked.update(held=held, rest=args[2])
+        return SurfaceJoints(args[2], *np.full((2, 2), np.nan))
+
+    monkeypatch.setattr(module, "surface_joints", stay)
+    surface, cut, tips = compound_cut() if astray else nodding_cut(BOTTOM)
+    first = in_tree_order(tree_joints(surface, cut, tips, settings=TREE._replace(hidden_bones=False)), 2)
+    laid: Any = object()
+    kinematic_tree(surface, first, tips, laid=laid, has_necks=True)
+    assert asked["held"].tolist() == [False, stays]
+    assert (asked["rest"] == first.rest).all() != stays
 
 
 def test_lengths_are_held_and_weights_sum_to_one() -> None:
