@@ -61,7 +61,7 @@ class ShapeParams(Params):
 
     necks: bool = True
     """Whether a tube between the last part of a limb and what carries it, as a neck, has a joint at its lower end and one
-    beyond its upper end though motion shows one alone, and that one is moved to the nearer place."""
+    beyond its upper end though motion shows one alone; a joint far from both places is moved to the nearer one."""
     mirrored_joints: bool = True
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
     fixed."""
@@ -123,8 +123,8 @@ class KinematicTree(ArticulatedBody):
     end_joints: tuple[int, ...] = ()
     """Joints that the frames' surfaces alone show: aligned vertices smear their turn, so that every frame is looked at."""
     neck_joints: tuple[int, ...] = ()
-    """Joints that the shape alone shows, at the other end of a tube from one that turns. They turn by nothing, since
-    motion shows no turn of theirs."""
+    """Joints that the shape alone shows, on a tube with another one that turns. They turn by nothing, since motion shows no
+    turn of theirs."""
     mirrored_joints: tuple[int, ...] = ()
     """Joints that their mirror images alone show, at the same distance from the end of the limb. They turn by nothing."""
 

@@ -61,8 +61,8 @@ def tracking(
     # few points show too little of colours, and say nothing of where a body stands in another take
     near, attempt = None if is_entry or has_colours else near_pose(cloud, last, points), 0
     limbs = limbs_of(deformation_graph, tips)
-    if near is not None and is_lost(near, previous.usual) and (starts := swings(cloud, last, *limbs)):
-        near = min(near, nearest_pose(cloud, starts, points), key=lambda one: one.distant)
+    if near is not None and is_lost(near, previous.usual):
+        near = nearest_pose(cloud, near, swings(cloud, last, *limbs), points)
     if near is None or is_lost(near, previous.usual):
         starts = _moved(last, take_entries, index[0]) if is_entry else []
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)

@@ -5,6 +5,7 @@ every frame by its own surface, however fast it moves. A point inside the body f
 nodes are moved until such points lie on the stems, and bend as little as they can (Sorkine and Alexa 2007, on the graph).
 """
 
+from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.geometry.rigid_fit import nearest_rotations
-from kinetree.tasks.numerics.registration.deformation import Pose, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, bending, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
 
 
@@ -36,9 +37,14 @@ class LimbSwingSettings(NamedTuple):
     """Share of the energy that an exchange of two stems must fall below. Right exchanges of five people had 0.22 to 0.77, a
     wrong one of a ballet 0.98, all others more than 1."""
     likely: float = 1.15
-    """Exchanges of two stems with no more than this share of the least energy are as likely as it: a trunk that has turned by
-    half a turn brings both arms to each other's stems, and the energy of a person who throws, at 6 frames a second, is 0.98 of
-    the wrong one's. Their fits tell them apart, by bending half as much. Chosen on that person."""
+    """How many times the energy of the first way an exchange of two stems may have, to be a way as well. After half a turn of
+    the trunk both arms lie as near to each other's stems: of a person who throws, at 6 frames a second, the true way has 0.98
+    times the energy of the first. Chosen on that person; fits on the frame tell the ways apart (`clearly`)."""
+    ways: int = 3
+    """Ways at most, for time."""
+    clearly: float = 0.8
+    """How much the fit of another way may bend, share of what that of the first bends, to count before it. Chosen on that
+    person: 0.47."""
     begun: float = 2.0
     """How many times the energy it may have after one round, to be gone on with: right exchanges had 0.9 to 1.7 times."""
     held: float = 1e-3
@@ -95,7 +101,7 @@ def swings(
     centre: Floats,
     settings: LimbSwingSettings | None = None,
 ) -> list[Pose]:
-    """Poses with every limb swung to a stem of a frame, each to one: so that the body bends least, and those as likely (ours).
+    """Poses with every limb swung to a stem of a frame, each to one: so that the body bends least, and as likely ones (ours).
 
     Begun with the stems nearest about the body's centre; two limbs exchange theirs for as long as the body then bends
     clearly less. A trunk that twists fast brings each arm nearer to the other one's stem. A stem that no limb begins with is
@@ -106,7 +112,8 @@ def swings(
     stems   : (limb, station, xyz) of the reference, see `extrema.stems`, mesh unit
     seen    : (limb, station, xyz) of the frame
     centre  : (xyz) of the frame's surface, mesh unit
-    returns : that which bends least, then those as likely with two limbs exchanged; none where body or frame has no limbs
+    returns : the way that no exchange of two stems betters clearly, then those exchanges of it that are as likely, those of
+              less energy first; none where body or frame has no limbs
     """
     chosen = settings or LimbSwingSettings()
     if not len(stems) or not len(seen):
@@ -231,8 +238,16 @@ def _least_energy_exchanges(swing: _Swing, stems: Floats, given: Ints) -> list[P
         ends = [(*end, order) for end, order in zip(reached(near, chosen.rounds), near, strict=True)]
         pose, least, order = min(ends, key=lambda one: one[1], default=(best, energy, given))
         if not least < chosen.exchange * energy:
-            return [best, *(end for end, one, _ in ends if one <= chosen.likely * energy)]
+            likely = sorted((end for end in ends if end[1] <= chosen.likely * energy), key=lambda end: end[1])
+            return [best, *(end for end, _, _ in likely[: chosen.ways - 1])]
         best, energy, given = pose, least, order
+
+
+def clearly_less_bent(graph: DeformationGraph, poses: Sequence[Pose], settings: LimbSwingSettings | None = None) -> int:
+    """Which of some poses counts: the first, unless another one bends clearly less, then that which bends least."""
+    bent = [bending(graph, pose) for pose in poses]
+    least = int(np.argmin(bent))
+    return least if bent[least] <= (settings or LimbSwingSettings()).clearly * bent[0] else 0
 
 
 def _exchanged(stem: Ints, one: int, two: int) -> Ints:

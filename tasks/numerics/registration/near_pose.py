@@ -14,8 +14,9 @@ from scipy.spatial import cKDTree
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target
-from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, bending, fit, shape
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
+from kinetree.tasks.numerics.registration.limb_swing import clearly_less_bent
 
 
 class NearPoseSettings(NamedTuple):
@@ -33,9 +34,6 @@ class NearPoseSettings(NamedTuple):
     """From which distance to the body's points a point of the frame is far, share of √area; as `TrackingSettings.distance`."""
     spacings: float = 1.4
     """And from which multiple of the body's mean spacing of points: where it has few, a point may be far from all by chance."""
-    clearly: float = 0.8
-    """How much a pose from other swung limbs may bend, share of what that of the first bends. Chosen on a person who throws,
-    at 6 frames a second: 0.47 where arms are not exchanged."""
     lost: float = 0.003
     """Share of a frame's points that may be far beyond the usual; above it a limb is lost. As `TrackingSettings.distant`."""
 
@@ -110,20 +108,22 @@ def near_pose(body: DeformationGraph, neighbour: Pose, frame: Target, settings: 
 
 
 def nearest_pose(
-    body: DeformationGraph, starts: Sequence[Pose], frame: Target, settings: NearPoseSettings | None = None
+    body: DeformationGraph, near: NearPose, starts: Sequence[Pose], frame: Target, settings: NearPoseSettings | None = None
 ) -> NearPose:
-    """Fit a thinned frame from each of some poses; of the nearest the first counts, unless one bends clearly less (ours).
+    """Fit a thinned frame from each of some poses too, and take what lies nearest; of those from the other poses that lie as
+    near the first counts, unless another one bends clearly less (ours).
 
-    starts      : one at least
+    near        : the frame as it was fitted from its neighbour's pose
+    starts      : other poses, see `swings`; none leaves it as it is
     body, frame : as in `near_pose`
     """
     chosen = settings or NearPoseSettings()
     found = [near_pose(body, start, frame, chosen) for start in starts]
-    least = min(one.distant for one in found)
-    near = [one for one in found if one.distant <= least + chosen.lost]
-    first, *others = ((bending(body, one.pose), one) for one in near)
-    other = min(others, key=lambda one: one[0], default=first)
-    return (other if other[0] < chosen.clearly * first[0] else first)[1]
+    least = min((one.distant for one in found), default=np.inf)
+    if not least < near.distant:
+        return near
+    alike = [one for one in found if one.distant <= least + chosen.lost]
+    return alike[clearly_less_bent(body, [one.pose for one in alike])]
 
 
 def is_lost(near: NearPose, usual: float, settings: NearPoseSettings | None = None) -> bool:

@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.geometry.closest_point import projected
 from kinetree.tasks.numerics.registration.correspondence import CorrespondenceSettings, Target, uncovered
 from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, bending, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, swings
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, clearly_less_bent, swings
 
 
 class TrackingSettings(NamedTuple):
@@ -202,11 +202,13 @@ def _by_limbs(
     """The frame fitted from swung limbs if that covers more and bends hardly more: exchanged limbs cover a frame, but bend."""
     number = len(attempts(fitting, settings))
     tried = [_attempted(graph, start, target, fitting, number) for start in swings(graph, neighbour, *limbs)]
-    if not tried:
+    least = min((one.uncovered for one in tried), default=np.inf)
+    if not least < best.uncovered:
         return best
-    found = _least_bent(graph, tried, min(one.uncovered for one in tried) + settings.uncovered)
+    alike = [one for one in tried if one.uncovered <= least + settings.uncovered]
+    found = alike[clearly_less_bent(graph, [one.pose for one in alike])]
     most = settings.bent * bending(graph, best.pose) + settings.bent_more * graph.size**2
-    return min(best, found, key=lambda one: one.uncovered) if bending(graph, found.pose) <= most else best
+    return found if bending(graph, found.pose) <= most else best
 
 
 def _least_bent(graph: DeformationGraph, found: Sequence[Tracking], most: float) -> Tracking:

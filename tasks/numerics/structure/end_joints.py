@@ -78,10 +78,11 @@ class EndJointsSettings(NamedTuple):
     takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had
     2.6 to 5.2, two false ones 1.5 and 1.7."""
     most_left: float = 2.0
-    """Root mean square distance that a part with its hinge may keep from a frame's surface, in its median over the frames: what
-    keeps more is touched or hidden there, and the frame does not count. A hand that rests on a hip keeps 2.5 times as much."""
-    little_left: float = 0.05
-    """Distance that is none, in radii of the ring."""
+    """Root mean square distance that a part with its hinge may keep from a frame's surface, in its median over the take's
+    frames: what keeps more is touched or hidden there, and the frame says nothing of it. A hand that rests on a hip keeps 2.5
+    times as much."""
+    little_left: float = 0.1
+    """Distance that no part is refused for, in radii of the ring."""
     most_frames: int = 40
     """Frames of a take in which rings are judged in all of them; of more, in as many pairs of neighbours, in evenly spread runs
     of four frames, 52 in all; for time."""
@@ -137,7 +138,7 @@ def end_joints(
     evident = _one_beside_each_joint(frames.tree, _evident(frames, laid, pairs, score_spans(count, takes), mirrored, chosen))
     own = [one for one, _ in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
-    return [_joint(frames.tree, one, score) for one, score in evident]
+    return [_joint(frames.tree, _usual(one, chosen), score) for one, score in evident]
 
 
 def judged_runs(count: int, takes: Sequence[slice] | None, settings: EndJointsSettings | None = None) -> list[Ints]:
@@ -254,11 +255,11 @@ def _judged(
 
 
 def _usual(laid: _RingFits, chosen: EndJointsSettings) -> _RingFits:
-    """The ring without the frames in which much is left of its part, hinge or not: there something touches or hides it."""
+    """The ring without the frames in which its part lies badly even with its hinge: there something touches or hides it."""
     if not laid.fits:
         return laid
-    usual = np.sqrt(np.median([fit.two for fit in laid.fits.values()]))
-    most = (chosen.most_left * max(float(usual), chosen.little_left * laid.ring.cut.radius)) ** 2
+    usual = float(np.sqrt(np.median([fit.two for fit in laid.fits.values()])))
+    most = max(chosen.most_left * usual, chosen.little_left * laid.ring.cut.radius) ** 2
     return laid._replace(fits={f: fit for f, fit in laid.fits.items() if fit.two <= most})
 
 

@@ -64,9 +64,9 @@ class KinematicTree(NamedTuple):
 
 
 CERTAIN = 2.5
-"""Drift of a joint where the shape has it, by its drift and what the motions of its parts leave unexplained where it is: from
-here on motion alone places it. Of 29 joints of recorded and generated people that would be moved three have more: 2.6, where
-motion was right, 3.4, where both were, and 3.8, where the shape was; where motion has no error there is no limit."""
+"""How many times as much a joint must drift at its place on a tube as where motion has it to stay where it is; what the motions
+of its parts leave unexplained counts as drift there. Of 29 joints of recorded and generated people that would be moved three
+have more: 2.6, where motion was right, 3.4, where both were, and 3.8, where the shape was. With 5 these three move as well."""
 
 
 class Derivation(NamedTuple):
@@ -136,7 +136,7 @@ def kinematic_tree(
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
-    has_necks       : whether bones are looked for that the shape alone shows, see `necks`
+    has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
     has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
     """
     V = body.V

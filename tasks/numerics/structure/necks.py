@@ -19,14 +19,13 @@ from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 
 class NecksSettings(NamedTuple):
-    """What makes a neck; its radius is its least girth over 2π.
+    """What makes a neck; its radius is its least girth over 2π. Chosen on generated people, but where something else is said.
 
-    But for `near_end` and `apart` chosen on generated humans of seeds 0 to 9, quadrupeds and random trees of seeds 0 to 2, and
-    not varied.
+    `head`, `reach`, `slack`, `near` and `step` were chosen on generated humans of seeds 0 to 9 and not varied.
     """
 
-    trunk: float = 2.0
-    """Girth of what carries the tube, in girths of the tube, at least: trunks had 2.55 and more, forearms and shanks before
+    trunk: float = 1.75
+    """Girth of what carries the tube, in girths of the tube, at least: trunks had 1.95 and more, forearms and shanks before
     wrists and ankles 1.49 at most."""
     head: float = 1.4
     """The same of what it carries: heads had 1.6 to 1.9, plain ends of limbs less than 1.3."""
@@ -35,25 +34,28 @@ class NecksSettings(NamedTuple):
     slack: float = 1.25
     """Girth at which the tube ends, in its least ones."""
     narrow: float = 1.1
-    """Girth up to which it is narrow, in its least ones."""
+    """Girth up to which it is narrow, in its least ones. With 1.05 to 1.15 joints lie as evenly from its ends."""
     base: float = 1.15
     """Distance of the upper joint from the last narrow ring, in radii of the tube, along the line through the middles of the
     narrow rings. Chosen on people 0 to 19: the true ones lie 1.15 beyond with a standard deviation of 0.33 and 0.16 beside the
     line, the lower ones 0.03 above the first narrow ring (0.38, and 0.06 beside the line)."""
+    oblique: float = 0.7
+    """Cosine of that line with the one through the ends of the tube, at least; below it the latter counts. Not varied."""
     near: float = 1.5
     """How far from the border of the part the narrowest place is looked for, in radii of the border."""
-    near_end: float = 1.3
-    """Distance from an end of the tube within which a joint is that of this end, in its radii. Chosen with `apart` on people 0
-    to 19, 60 to 69 and 86 to 99, humans 0 to 4 and 60 to 64, wave, dance and ballet: of 52 that have one joint at a tube it
-    lies within 1.3 of one end and 0.9 or more from the other in all but one, which has 1.46 and 1.5."""
+    near_place: float = 1.3
+    """Distance of a joint from one of the tube's joints within which it is that one, in radii of the tube. Of 60 people and 16
+    clips of a recorded body the farthest lies 1.25 off. Chosen on ends of tubes, when joints were expected there."""
     apart: float = 0.85
-    """Distance of the tube's other end from that joint, and from all others, at least."""
+    """Distance from a place within which a joint of another part has it, and of the other place from the part's own joint, at
+    least. Chosen as `near_place`."""
     astray: tuple[float, float] = (0.4, 0.8)
-    """Distance of a joint from its place, in radii of the tube: up to the first it stays, from the second it is moved there."""
+    """Distance of a joint from its place, in radii of the tube: up to the first it stays, from the second it is moved there.
+    Chosen on people 0 to 19 and eight clips of a recorded body, where joints that stand for two lie 0.7 to 1.2 off."""
     amid: float = 0.65
-    """Distance below the upper joint, in radii, from which on a joint is a third one where the lower joint is known: some necks
-    have two bones. Of eleven such joints of people 0 to 19 and 60 to 69 and humans 0 and 1 the farthest has 0.5; of recorded
-    ballet the middle one has 0.8."""
+    """Distance of a joint from both places, in radii, from which on it is a third one where another part has the lower one:
+    some necks have two bones. Of eleven joints beside such a one, of people 0 to 19 and 60 to 69 and humans 0 and 1, the
+    farthest lies 0.5 from the upper place; of recorded ballet the middle one lies 0.8 from it."""
     step: float = 0.125
     """Distance between rings, in radii of the border."""
 
@@ -62,9 +64,9 @@ class Tube(NamedTuple):
     """A narrow tube on which the last part of a limb hangs.
 
     part   : that hangs on it
-    joint  : (2, xyz) where the tube turns and where the part does, in the reference, mesh unit
+    joint  : (2, xyz) the places where the tube turns and where the part does, in the reference, mesh unit
     radius : its least girth over 2π, mesh unit
-    share  : (vertex,) how much each vertex follows the tube, 0 to 1
+    share  : (vertex,) how much each vertex follows the tube, 0 to 1; chin and nape follow the part
     """
 
     part: int
@@ -127,8 +129,8 @@ def necks(
 def on_tubes(
     hanging: Iterable[Tube], rest: Floats, shown: Collection[int] = (), settings: NecksSettings | None = None
 ) -> tuple[Floats, Flags]:
-    """(part, xyz) joints of parts that hang on tubes, moved to the nearer joint of the tube where they are far from it ·
-    (part,) joints that stay there.
+    """(part, xyz) joints of parts that hang on tubes, moved to their place on the tube where they are far from it · (part,)
+    joints that are to stay there.
 
     Where motion shows one joint of two, it lies somewhere between them. The parameters are those of `necks`.
     """
@@ -147,8 +149,8 @@ class _Place(NamedTuple):
     """Where the joint of a part is on its tube.
 
     away      : (2,) distance from the tube's joints, in its radii
-    own       : which of them it is, 0 or 1; where it is amid the tube, the upper one, that is still to be added
-    has_lower : whether the lower one is another part's
+    own       : which of these it is, 0 or 1; of a third one the upper, which is still free
+    has_lower : whether another part has the lower one
     is_third  : whether it is a third one, between both
     """
 
@@ -159,18 +161,23 @@ class _Place(NamedTuple):
 
 
 def _place(tube: Tube, rest: Floats, shown: Collection[int], chosen: NecksSettings) -> _Place | None:
-    """None where the joint of the part is at neither of the tube's joints, or another part's is at the upper one."""
+    """None where the joint of the part is at neither free place, or another part has the upper one."""
     joint, others = rest[tube.part], np.delete(rest, [0, tube.part], axis=0)
+    low, high = tube.joint
     away = np.linalg.norm(tube.joint - joint, axis=1) / tube.radius
-    along = tube.joint[1] - tube.joint[0]
-    share = np.clip((others - tube.joint[0]) @ along / max(float(along @ along), np.finfo(float).tiny), 0.0, 1.0)
-    on_it = int((np.linalg.norm(others - tube.joint[0] - np.outer(share, along), axis=1) < chosen.apart * tube.radius).sum())
+    length = float(np.linalg.norm(high - low))
+    along = (high - low) / max(length, np.finfo(float).tiny)
+    height = np.clip((others - low) @ along, 0.0, length)
+    on_it = int((np.linalg.norm(others - low - np.outer(height, along), axis=1) < chosen.apart * tube.radius).sum())
     taken = [bool((np.linalg.norm(others - place, axis=1) < chosen.apart * tube.radius).any()) for place in tube.joint]
-    if away.min() > chosen.near_end or taken[1]:
+    if taken[1]:
         return None
-    below = float((tube.joint[1] - joint) @ along) > 0.0
-    is_third = taken[0] and on_it == 1 and below and float(away[1]) >= chosen.amid and tube.part not in shown
-    return _Place(away, 1 if taken[0] else int(away.argmin()), taken[0], is_third)
+    inside = min(float((joint - low) @ along), float((high - joint) @ along)) / tube.radius
+    is_third = taken[0] and on_it == 1 and inside >= chosen.amid and tube.part not in shown
+    own = 1 if taken[0] else int(away.argmin())
+    if not is_third and away[own] > chosen.near_place:
+        return None
+    return _Place(away, own, taken[0], is_third)
 
 
 def _tube(V: Floats, F: Ints, beyond: Floats, part: int, border: float, chosen: NecksSettings) -> Tube | None:
@@ -182,26 +189,28 @@ def _tube(V: Floats, F: Ints, beyond: Floats, part: int, border: float, chosen: 
     inner = slice(ends[0], ends[1] + 1)
     least = float(rings.girth[inner].min())
     radius = least / (2.0 * np.pi)
-    joint = _places(rings.centre[inner], rings.girth[inner] <= chosen.narrow * least, chosen.base * radius)
+    joint = _places(rings.centre[inner], rings.girth[inner] <= chosen.narrow * least, chosen.base * radius, chosen.oblique)
     low, high = rings.level[ends]
     share = np.clip(0.5 + np.minimum(beyond - low, high - beyond) / radius, 0.0, 1.0)
     return Tube(part, joint, radius, np.where(np.isfinite(beyond), share, 0.0))
 
 
-def _places(middle: Floats, is_narrow: Flags, base: float) -> Floats:
+def _places(middle: Floats, is_narrow: Flags, base: float, oblique: float) -> Floats:
     """(2, xyz) the joints of a tube, the lower one first, on the line nearest to the middles of its narrow rings.
 
     middle    : (ring, xyz) of all rings of the tube, from its lower end to its upper one
     is_narrow : (ring,)
     base      : distance of the upper joint from the last narrow ring, mesh unit
+    oblique   : see `NecksSettings`
     """
     narrow = middle[is_narrow]
     mean = narrow.mean(axis=0)
     axis = middle[-1] - middle[0]
+    axis = axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
     if len(narrow) > 2:
         along = np.linalg.svd(narrow - mean, full_matrices=False)[2][0]
-        axis = along if along @ axis > 0.0 else -along
-    axis = axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
+        if abs(float(along @ axis)) >= oblique:
+            axis = along if along @ axis > 0.0 else -along
     low, high = (narrow[[0, -1]] - mean) @ axis
     return np.asarray(mean + np.outer([low, high + base], axis))
 

@@ -12,7 +12,8 @@ A = TypeVar("A", bound=np.ndarray[Any, Any])
 
 
 class StillJoint(NamedTuple):
-    """A joint to be added at one end of a piece of a part, or of a tube before it; the part's own joint is at the other end.
+    """A joint to be added at one end of a piece of a part, or of a tube before it; the part's own joint is at the other end, or
+    amid the tube.
 
     part   : in the tree's order
     above  : whether the joint is at the end towards the part above

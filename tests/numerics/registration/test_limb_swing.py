@@ -137,6 +137,8 @@ def test_where_both_ways_of_swinging_the_arms_are_as_likely_both_are_given(angle
         assert off[1].max() < 1.0
         first = swung(body, at_rest(body), stems, goal, centre, LimbSwingSettings(likely=likely))
         np.testing.assert_array_equal(first.translation, found[0].translation)
+        alone = LimbSwingSettings(likely=likely, ways=1)
+        assert len(swings(body, at_rest(body), stems, goal, centre, alone)) == 1
 
 
 def test_without_limbs_nothing_is_swung(body):

@@ -5,7 +5,7 @@ import pytest
 from limbs import ANGLES, LENGTH, bent, tube
 from scipy.spatial.transform import Rotation
 
-from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, bending, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     NearPoseSettings,
@@ -71,19 +71,36 @@ def wrung(graph, angle):
     return Pose(R, np.einsum("nxy,ny->nx", R, graph.g))
 
 
+FAR = NearPose(Pose(np.zeros((0, 3, 3)), np.zeros((0, 3))), 0.9)
+
+
 @pytest.mark.parametrize(
-    ("angles", "taken"), [((2.0, 0.0), 0.0), ((0.0, 2.0), 0.0), ((2.0, 1.0), 1.0), ((2.0, 1.95), 2.0), ((2.0,), 2.0)]
+    ("angles", "taken"),
+    [((2.0, 0.0), 0.0), ((0.0, 2.0), 0.0), ((2.0, 1.7), 1.7), ((2.0, 1.95), 2.0), ((2.0, 1.7, 0.0), 0.0), ((2.0,), 2.0)],
 )
 def test_of_poses_that_cover_a_frame_the_first_counts_unless_another_bends_clearly_less(body, angles, taken):
+    """Bending grows with the square of the angle: 1.7² is 0.72 of 2², and 1.95² 0.95."""
     thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
-    found = nearest_pose(thin, [wrung(thin, angle) for angle in angles], frame)
+    found = nearest_pose(thin, FAR, [wrung(thin, angle) for angle in angles], frame)
     one = near_pose(thin, wrung(thin, taken), frame)
     np.testing.assert_array_equal(found.pose.rotation, one.pose.rotation)
 
 
-def test_a_pose_that_covers_a_frame_counts_before_one_that_bends_less(body):
-    thin, frame = thinned_body(body), thinned_frame(bent(V, 0.2), F, body.size)
-    away = Pose(at_rest(thin).rotation, thin.g + [0.0, 0.0, 3.0 * LENGTH])
-    found = nearest_pose(thin, [away, at_rest(thin)], frame)
-    assert found.distant < 0.1
-    assert bending(thin, found.pose) > 0.0
+@pytest.mark.parametrize("away", [0.02, 3.0])
+def test_a_pose_that_covers_a_frame_counts_before_one_that_bends_less(body, away):
+    """Though by little: a part of the frame is far from a body that stands aside."""
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    still = SETTINGS._replace(distance=1e-3, spacings=0.0)
+    aside = Pose(at_rest(thin).rotation, thin.g + [0.0, 0.0, away * LENGTH])
+    others = [near_pose(thin, start, frame, still) for start in (aside, wrung(thin, 2.0))]
+    found = nearest_pose(thin, FAR, [aside, wrung(thin, 2.0)], frame, still)
+    best = min(others, key=lambda one: one.distant)
+    assert found.distant <= best.distant + still.lost
+
+
+def test_the_pose_from_the_neighbour_counts_if_no_other_lies_nearer(body):
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    near = near_pose(thin, at_rest(thin), frame)._replace(distant=0.0)
+    assert nearest_pose(thin, near, [wrung(thin, 2.0)], frame) is near
+    assert nearest_pose(thin, near, [], frame) is near
+    assert nearest_pose(thin, FAR, [], frame) is FAR

@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 from limbs import LENGTH, rotation, tube
+from scipy.spatial.transform import Rotation
 from shapes import y_pipe
 from shipped import FITTING, GRAPH
 
 from kinetree.tasks.numerics.registration import tracking as module
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, fit, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, bending, fit, shape
 from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
 from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swings
 from kinetree.tasks.numerics.registration.tracking import (
+    Tracking,
     TrackingSettings,
     attempts,
     distant_share,
@@ -161,3 +163,35 @@ def test_later_attempts_reach_further_and_try_longer():
     assert first.start == "neighbour"
     assert max(a.settings.reach[0] for a in others) > first.settings.reach[0]
     assert max(a.settings.steps for a in others) > first.settings.steps
+
+
+def wrung(body, angle):
+    """The tube with its upper half turned about its own axis."""
+    turn = angle * np.clip(body.g[:, 2] / LENGTH + 0.5, 0.0, 1.0)
+    R = Rotation.from_rotvec(np.outer(turn, [0.0, 0.0, 1.0])).as_matrix()
+    return Pose(R, np.einsum("nxy,ny->nx", R, body.g))
+
+
+@pytest.mark.parametrize(
+    ("angles", "uncovered", "before", "most", "taken"),
+    [
+        ((2.0, 0.5), (0.010, 0.012), 0.020, 1.1, 1),
+        ((2.0, 0.5), (0.010, 0.016), 0.020, 1.1, 0),
+        ((2.0, 1.95), (0.010, 0.010), 0.020, 1.1, 0),
+        ((0.5, 2.0), (0.010, 0.008), 0.020, 1.1, 0),
+        ((2.0, 0.5), (0.010, 0.012), 0.009, 1.1, None),
+        ((2.0, 1.9), (0.010, 0.012), 0.020, 0.5, None),
+    ],
+)
+def test_of_two_ways_to_swing_limbs_the_second_counts_where_it_covers_as_much_and_bends_clearly_less(
+    body, monkeypatch, angles, uncovered, before, most, taken
+):
+    """None is taken where the frame is covered more without, or where both bend more than allowed: `most` times the widest."""
+    rest, *ways = (wrung(body, angle) for angle in (0.0, *angles))
+    left = {id(pose): share for pose, share in zip(ways, uncovered, strict=True)}
+    monkeypatch.setattr(module, "swings", lambda *_: ways)
+    monkeypatch.setattr(module, "_attempted", lambda _, start, *__: Tracking(start, left[id(start)], 5))
+    limbs = FrameLimbs(np.zeros((1, 2, 3)), np.zeros((1, 2, 3)), np.zeros(3))
+    settings = SETTINGS._replace(bent_more=most * bending(body, wrung(body, 2.0)) / body.size**2)
+    found = module._by_limbs(body, Tracking(rest, before, 0), rest, limbs, None, FITTING, settings)
+    assert found.pose is (rest if taken is None else ways[taken])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from bottles import BOTTOM, TOP, bottle
 
-from kinetree.tasks.numerics.structure.necks import NecksSettings, Tube, necks, on_tubes, tubes
+from kinetree.tasks.numerics.structure.necks import NecksSettings, Tube, _places, necks, on_tubes, tubes
 from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 BASE = TOP + NecksSettings().base
@@ -144,6 +144,62 @@ def test_joints_beside_a_tube_are_not_on_it() -> None:
     assert len(list(necks(tube_of(), rest))) == 1
 
 
+@pytest.mark.parametrize(
+    ("joint", "others", "shown"),
+    [(6.2, (BOTTOM, 7.2), ()), (4.8, (BOTTOM, 7.0), ()), (BOTTOM, (BOTTOM,), (1,)), (5.0, (BOTTOM,), (1,))],
+)
+def test_a_joint_near_the_lower_place_is_not_moved_to_the_upper_one_if_another_part_has_the_lower(
+    joint: float, others: tuple[float, ...], shown: tuple[int, ...]
+) -> None:
+    hanging, rest = tube_of(), at(joint, *others)
+    moved, stays = on_tubes(hanging, rest, shown)
+    assert moved is rest
+    assert not stays.any()
+    assert list(necks(hanging, rest, shown)) == []
+
+
+@pytest.mark.parametrize(("above", "is_third"), [(-0.5, False), (0.0, False), (0.5, False), (0.8, True)])
+def test_a_third_joint_lies_between_both_places(above: float, is_third: bool) -> None:
+    assert bool(necks_of(BOTTOM + above, BOTTOM)) == is_third
+
+
+def test_joints_on_the_upper_half_of_a_tube_are_on_it() -> None:
+    assert len(list(necks(tube_of(), at(BASE - 1.2, BOTTOM)))) == 1
+    assert list(necks(tube_of(), at(BASE - 1.2, BOTTOM, BASE - 1.0))) == []
+
+
+def test_the_root_has_no_place_on_a_tube() -> None:
+    rest = at(BASE)
+    rest[0, 2] = BOTTOM
+    assert len(list(necks(tube_of(), rest))) == 1
+
+
+def test_places_go_by_the_narrow_rings_and_the_radius_of_the_tube_whatever_the_border() -> None:
+    """A neck that widens upwards by a fifth: it is narrow to its middle."""
+    V, F = bottle(3.0, 1.8)
+    z = V[:, 2]
+    wider = np.where((z > BOTTOM) & (z <= TOP), 1.0 + 0.2 * (z - BOTTOM) / (TOP - BOTTOM), 1.0)
+    V = V * np.stack([wider, wider, np.ones(len(V))], axis=1)
+    label, parents = (z > BOTTOM).astype(np.int64), np.array([-1, 0])
+    for border in (0.8, 1.0, 1.4):
+        (tube,) = tubes(V, F, label, parents, np.array([0.0, border]))
+        np.testing.assert_allclose(tube.joint, at(BOTTOM, (BOTTOM + TOP) / 2 + NecksSettings().base)[1:], atol=0.3)
+
+
+LEANING = [[0.0, 0, 0], [0.05, 0, 0.5], [0.1, 0, 1.0], [0.15, 0, 1.5], [0.6, 0, 2.0]]
+ACROSS = [[0.0, 0, 0], [0.3, 0, 1.0], [-0.3, 0, 1.1], [0.3, 0, 1.2], [0.0, 0, 2.0]]
+
+
+@pytest.mark.parametrize(("middle", "first", "along"), [(LEANING, 0, [0.1, 0.0, 1.0]), (ACROSS, 1, [0.0, 0.0, 1.0])])
+def test_the_line_of_a_tube_goes_through_its_narrow_rings_unless_they_lie_across_it(
+    middle: list[list[float]], first: int, along: list[float]
+) -> None:
+    chosen, is_narrow = NecksSettings(), np.array([first == 0, True, True, True, False])
+    low, high = _places(np.array(middle), is_narrow, chosen.base, chosen.oblique)
+    axis = (high - low) / np.linalg.norm(high - low)
+    np.testing.assert_allclose(axis, np.array(along) / np.linalg.norm(along), atol=0.03)
+
+
 def test_a_joint_beyond_the_upper_place_is_no_third_one() -> None:
     assert necks_of(BASE + 0.9, BOTTOM) == []
 
@@ -170,7 +226,7 @@ def test_a_hole_in_a_plain_tube_is_no_neck() -> None:
     assert tubes(V, open_F, label, parents, np.array([0.0, 1.0])) == []
 
 
-@pytest.mark.parametrize(("trunk", "head", "count"), [(1.85, 1.8, 0), (2.15, 1.8, 1), (3.0, 1.3, 0), (3.0, 1.5, 1)])
+@pytest.mark.parametrize(("trunk", "head", "count"), [(1.6, 1.8, 0), (1.9, 1.8, 1), (3.0, 1.3, 0), (3.0, 1.5, 1)])
 def test_trunk_and_head_are_wider_than_the_tube_by_their_limits(trunk: float, head: float, count: int) -> None:
     assert len(tube_of(trunk, head)) == count
 

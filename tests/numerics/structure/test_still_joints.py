@@ -1,6 +1,7 @@
 """A neck becomes a bone between its part and the part above."""
 
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,25 @@ def test_a_joint_that_stands_for_two_is_moved_to_one_of_them() -> None:
     assert BOTTOM + 0.4 < between < BASE - 0.4
     assert joint_heights(both) == pytest.approx([BOTTOM, BASE], abs=0.2)
     assert len(derivation.neck_joints) == 1
+
+
+@pytest.mark.parametrize(
+    ("here", "unexplained", "there", "moves"),
+    [(0.1, 0.0, 0.24, True), (0.1, 0.0, 0.26, False), (0.0, 0.1, 0.24, True), (0.0, 0.1, 0.26, False), (0.0, 0.0, 0.0, True)],
+)
+def test_motion_that_leaves_no_doubt_places_a_joint(here: float, unexplained: float, there: float, moves: bool) -> None:
+    """The drift where motion has it, what that leaves unexplained, and the drift where the shape has it."""
+    V, F = bottle(3.0, 1.8)
+    hanging = tubes(V, F, (V[:, 2] > BOTTOM).astype(np.int64), np.array([-1, 0]), np.array([0.0, 1.0]))
+    joints = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, BOTTOM + 1.0]])
+    first: Any = SimpleNamespace(
+        shown=(),
+        residual=np.array([0.0, unexplained]),
+        drift_at=lambda rest: np.array([0.0, here if rest is joints else there]),
+    )
+    rest, stays = module._on_tubes(first, hanging, joints)
+    assert stays.tolist() == [False, moves]
+    assert (rest[1, 2] != joints[1, 2]) == moves
 
 
 @pytest.mark.parametrize(("astray", "stays"), [(True, True), (False, False)])
