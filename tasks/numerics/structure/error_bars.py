@@ -78,8 +78,8 @@ class ErrorBarsSettings(NamedTuple):
     across_tube: float = 0.4
     """Error of a joint that no motion shows, radii of its tube, see `necks` and `mirrored_joints`. On 45 people and 12 other
     generated bodies 35 joints of necks err by 0.25 in the geometric mean and nine tenths of them by 0.48 at most, 15 mirrored
-    ones by 0.31 and 0.84. In 27 motions of a recorded body 26 joints of necks err by 0.50 and 0.86, 15 mirrored ones by 0.84 and
-    1.32, so that of these fewer keep the bound, 0.86."""
+    ones by 0.31 and 0.84. In 27 motions of a recorded body 26 joints of necks err by 0.50 and 0.86, 15 mirrored ones by 0.84
+    and 1.32, so that of these fewer keep the bound, 0.86."""
     uncertain: float = 0.5
     """m: how much farther off a joint is in a frame where its confidence is 0."""
 
