@@ -26,7 +26,7 @@ def human(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
 def test_human_becomes_one_tree_with_a_pose_in_every_frame(human: Pipeline) -> None:
     skeleton: Any = human.artifact("skeleton")
     assert skeleton.frames == tuple(range(3))
-    assert skeleton.kinds.count("leaf") == 5
+    assert 5 <= skeleton.kinds.count("leaf") <= 7, "head, hands and feet, and heels where so few vertices show them"
     assert skeleton.kinds.count("joint") >= 2
     assert np.isfinite(skeleton.positions).all()
     summary: Any = human.artifact("evaluation").summary
