@@ -22,7 +22,7 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, shape
 from kinetree.tasks.numerics.registration.first_fit import last_steps
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
-from kinetree.tasks.numerics.registration.limb_swing import swung
+from kinetree.tasks.numerics.registration.limb_swing import swings
 from kinetree.tasks.numerics.registration.tracking import entered
 from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.pose import fit_settings, graph, pose
@@ -91,7 +91,7 @@ def test_a_limb_far_from_where_it_was_is_brought_to_where_the_frame_shows_it_and
     rest, at = made.tracking[made.reference.frame], made.reference.frame + 1
     stems, body = np.array(made.reference.stems), graph(made.deformation_graph)
     raised = (stems - stems[:, :1]) @ rotation((1, 0, 0), 2.0).T + stems[:, :1]
-    elsewhere = swung(body, pose(rest), stems, raised, body.V[body.sample].mean(axis=0))
+    elsewhere = swings(body, pose(rest), stems, raised, body.V[body.sample].mean(axis=0))[0]
     assert elsewhere is not None
     last = rest.model_copy(update={"rotation": elsewhere.rotation, "translation": elsewhere.translation})
 

@@ -80,19 +80,6 @@ class FrameLimbs(NamedTuple):
     centre: Floats
 
 
-def swung(
-    graph: DeformationGraph,
-    pose: Pose,
-    stems: Floats,
-    seen: Floats,
-    centre: Floats,
-    settings: LimbSwingSettings | None = None,
-) -> Pose | None:
-    """The first of `swings`; None where one of body and frame has no limbs. The parameters are those of `swings`."""
-    found = swings(graph, pose, stems, seen, centre, settings)
-    return found[0] if found else None
-
-
 def swings(
     graph: DeformationGraph,
     pose: Pose,

@@ -5,6 +5,7 @@ import pytest
 from limbs import ANGLES, LENGTH, bent, tube
 from scipy.spatial.transform import Rotation
 
+from kinetree.tasks.numerics.registration import near_pose as module
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
@@ -86,16 +87,23 @@ def test_of_poses_that_cover_a_frame_the_first_counts_unless_another_bends_clear
     np.testing.assert_array_equal(found.pose.rotation, one.pose.rotation)
 
 
-@pytest.mark.parametrize("away", [0.02, 3.0])
-def test_a_pose_that_covers_a_frame_counts_before_one_that_bends_less(body, away):
-    """Though by little: a part of the frame is far from a body that stands aside."""
+@pytest.mark.parametrize(
+    ("angles", "distant", "taken"),
+    [
+        ((2.0, 1.7), (0.010, 0.012), 1),
+        ((2.0, 1.7), (0.010, 0.014), 0),
+        ((2.0, 1.85), (0.010, 0.010), 0),
+        ((1.0, 2.0), (0.014, 0.010), 1),
+        ((2.0, 1.0, 0.5), (0.010, 0.012, 0.012), 2),
+    ],
+)
+def test_of_poses_as_near_the_first_counts_unless_another_bends_clearly_less(body, monkeypatch, angles, distant, taken):
+    """As near: to 0.003; clearly: 0.8. Bending grows with the square of the angle."""
     thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
-    still = SETTINGS._replace(distance=1e-3, spacings=0.0)
-    aside = Pose(at_rest(thin).rotation, thin.g + [0.0, 0.0, away * LENGTH])
-    others = [near_pose(thin, start, frame, still) for start in (aside, wrung(thin, 2.0))]
-    found = nearest_pose(thin, FAR, [aside, wrung(thin, 2.0)], frame, still)
-    best = min(others, key=lambda one: one.distant)
-    assert found.distant <= best.distant + still.lost
+    starts = [wrung(thin, angle) for angle in angles]
+    far = {id(start): share for start, share in zip(starts, distant, strict=True)}
+    monkeypatch.setattr(module, "near_pose", lambda _, start, *__: NearPose(start, far[id(start)]))
+    assert nearest_pose(thin, FAR, starts, frame).pose is starts[taken]
 
 
 def test_the_pose_from_the_neighbour_counts_if_no_other_lies_nearer(body):

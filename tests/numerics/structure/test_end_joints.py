@@ -134,6 +134,10 @@ def test_frames_in_which_something_touches_a_piece_do_not_count(left: tuple[floa
     assert tuple(_usual(laid, EndJointsSettings()).fits) == kept
 
 
+def test_where_no_frame_counts_no_joint_is_found() -> None:
+    assert joints_at(25.0, 0.02, EndJointsSettings(most_left=0.0, little_left=0.0)) == []
+
+
 def test_a_frame_in_which_little_is_seen_of_a_piece_loses_no_joint() -> None:
     """In a quarter of the frames the surface is another one; there the piece beyond goes with its part."""
     turn, touched = turning(25.0), range(9, 15)
