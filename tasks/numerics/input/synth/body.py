@@ -255,16 +255,20 @@ def _loose(
     X, G : (frame, joint, xyz) positions and (frame, joint, 3, 3) world rotations at these seconds
     """
 
-    def at(times: Floats) -> Floats:
-        return forward_kinematics(figure.rest, figure.parents, *joint_rotations(figure, motion, times))[0]
+    def posed(times: Floats) -> tuple[Floats, Floats]:
+        return forward_kinematics(figure.rest, figure.parents, *joint_rotations(figure, motion, times))
+
+    def fleshed(X: Floats, G: Floats) -> Floats:
+        return X + np.einsum("tjxy,jy->tjx", G, figure.flesh)
 
     sag = worn = None
     if figure.softness is not None:
         ends, radius = (flesh.parent, flesh.child), flesh.table.mean(axis=1)
-        sag = figure.softness.sag(ends, radius, at(seconds - STEP), at(seconds), at(seconds + STEP))
+        sag = figure.softness.sag(ends, radius, *(posed(seconds + k * STEP)[0] for k in (-1, 0, 1)))
     if figure.clothes:
-        earlier = [at(seconds - g.lag) for g in figure.clothes]
-        worn = tubes(figure.clothes, figure.rest, X, G, earlier, seconds, flesh.table.shape[1])
+        earlier = [fleshed(*posed(seconds - g.lag)) for g in figure.clothes]
+        rest, now = figure.rest + figure.flesh, fleshed(X, G)
+        worn = tubes(figure.clothes, rest, now, G, earlier, seconds, flesh.table.shape[1])
     return sag, worn
 
 

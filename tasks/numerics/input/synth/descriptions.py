@@ -15,7 +15,7 @@ from kinetree.errors import FigureError
 
 Triple = tuple[float, float, float]
 
-_JOINT_KEYS = ("name", "parent", "position", "radius", "radii", "flatten", "side", "blend")
+_JOINT_KEYS = ("name", "parent", "position", "radius", "radii", "flatten", "side", "blend", "flesh")
 _CURVE_KEYS = ("axis", "amplitude", "distance", "frequency", "phase", "offset", "keys", "slides", "period")
 
 
@@ -26,6 +26,7 @@ class Joint:
     radii   : the limb's radius at even steps from the parent to this joint; the root's single radius is its ball's
     flatten : share of its radius that the limb keeps along `side` (rest coordinates)
     blend   : width of the blend between the limbs that meet here, as a share of the radius
+    flesh   : how far the middle of the limbs lies off the joint at rest, as that of a trunk off its spine
     """
 
     name: str
@@ -35,6 +36,7 @@ class Joint:
     flatten: float
     side: Triple
     blend: float
+    flesh: Triple
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,10 @@ def _joint(where: str, row: Mapping[str, Any], parent: Joint | None, order: Mapp
         if np.linalg.norm(along) <= 0.0:
             raise FigureError(f"{where}: flatten needs a side across the limb, found {list(side)}")
     blend = number(where, "blend", row.get("blend", 0.7), low=-1e-9)
-    return Joint(str(row["name"]), -1 if parent is None else order[parent.name], position, radii, flatten, side, blend)
+    flesh = triple(where, "flesh", row.get("flesh", (0.0, 0.0, 0.0)))
+    if parent is not None and math.dist(np.add(position, flesh), np.add(parent.position, parent.flesh)) <= 0.0:
+        raise FigureError(f"{where}: its flesh lies where that of its parent {parent.name!r} does; a limb needs a length")
+    return Joint(str(row["name"]), -1 if parent is None else order[parent.name], position, radii, flatten, side, blend, flesh)
 
 
 def read_motion(where: str, curves: object, names: Sequence[str]) -> Motion:

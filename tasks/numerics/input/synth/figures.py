@@ -14,7 +14,8 @@ A figure is data, so that a user can write one; this module checks the words and
 
 `radii` is the profile of the limb from the parent to the joint, evenly spaced; without it the limb runs from the
 parent's radius to the joint's. `keys: [[second, angle], …]` in place of an amplitude are postures; with a `period` they repeat.
-`flatten` squeezes the limb to that share of its radius along `side`. Flesh is rigid unless
+`flatten` squeezes the limb to that share of its radius along `side`. `flesh: [0, -20, 0]` puts the middle of the limbs at a
+joint that far off it: a spine is no middle of a trunk. Flesh is rigid unless
 `softness: {frequency: 6, bulge: 0.05}` says how late it comes after its bone and how much it swells. Garments are listed as
 `clothes`, each with its joints:
 
@@ -101,6 +102,11 @@ class Figure:
     def rest(self) -> Floats:
         """(joint, xyz) positions at rest, in the figure's unit."""
         return np.array([joint.position for joint in self.joints], dtype=np.float64)
+
+    @property
+    def flesh(self) -> Floats:
+        """(joint, xyz) how far the middle of the limbs lies off each joint at rest, in the figure's unit."""
+        return np.array([joint.flesh for joint in self.joints], dtype=np.float64)
 
     @property
     def height(self) -> float:

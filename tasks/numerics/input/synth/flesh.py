@@ -31,11 +31,13 @@ class Flesh:
     """What of a figure's surface does not depend on the pose.
 
     parent, child : (limb,) joints at the limb's ends; the limb moves rigidly with `parent`
+    ends          : (limb, end, xyz) how far the middle of the limb lies off its two joints at rest
     neighbours    : (limb, limb) whether two limbs blend somewhere
     """
 
     parent: Ints
     child: Ints
+    ends: Floats
     side: Floats
     table: Floats
     flat: Floats
@@ -51,7 +53,8 @@ class Flesh:
         limbs = [j for j, joint in enumerate(figure.joints) if joint.parent >= 0]
         child = np.array(limbs, dtype=np.int64)
         parent = figure.parents[child]
-        D = figure.rest[child] - figure.rest[parent]
+        middle = figure.rest + figure.flesh
+        D = middle[child] - middle[parent]
         length = np.linalg.norm(D, axis=1)
         table = np.array([_profile(figure.joints[j].radii) for j in limbs])
         steps = np.abs(np.diff(table, axis=1)).max(axis=1) / (length / (_SETTINGS.knots - 1))
@@ -65,7 +68,8 @@ class Flesh:
         for _, limbs_ in groups:
             neighbours[np.ix_(limbs_, limbs_)] = True
         slope = float(np.sqrt(1.0 + steps.max() ** 2))
-        return cls(parent, child, side, table, flat, first, members, reach, slope, neighbours)
+        ends = np.stack([figure.flesh[parent], figure.flesh[child]], axis=1)
+        return cls(parent, child, ends, side, table, flat, first, members, reach, slope, neighbours)
 
     def at(self, X: Floats, G: Floats, without: Flags | None = None) -> Cones:
         """The limbs at a pose, those of `without` absent.
@@ -75,7 +79,9 @@ class Flesh:
         """
         side = np.einsum("bij,bj->bi", G[self.parent], self.side)
         table = self.table if without is None else np.where(without[:, None], -1e6 * self.table.max(), self.table)
-        A, D = X[self.parent], X[self.child] - X[self.parent]
+        off = np.einsum("bij,bej->bei", G[self.parent], self.ends)
+        A = X[self.parent] + off[:, 0]
+        D = X[self.child] + off[:, 1] - A
         none = (np.zeros_like(D), np.zeros_like(D), np.zeros(len(D), np.bool_))
         return Cones(A, D, side, table, self.flat, *none, self.first, self.members, self.reach, self.slope)
 

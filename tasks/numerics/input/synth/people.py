@@ -125,6 +125,8 @@ def _proportioned(description: Mapping[str, Any], rng: np.random.Generator) -> d
         for key in {"radius", "radii"} & set(row):
             wide = thick * (1.0 + _SETTINGS.side_thickness * uneven[1])
             row[key] = np.round(np.array(row[key]) * wide * share["stature"], 2).tolist()
+        if "flesh" in row:
+            row["flesh"] = np.round(np.array(row["flesh"]) * thick * share["stature"], 2).tolist()
         row["blend"] = round(float(row.get("blend", 0.7) * share["softness"]), 3)
     for row in rows:
         row["position"] = np.round(new[row["name"]] * share["stature"], 2).tolist()

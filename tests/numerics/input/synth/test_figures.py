@@ -60,6 +60,8 @@ def test_axes_become_unit_vectors():
         (("joints", 1, "radius"), float("nan"), "expected a finite number"),
         (("joints", 1, "position"), [0, 0, 0], "it lies at its parent 'root'"),
         (("joints", 1, "position"), [0, 1], "position is [0, 1], expected three numbers"),
+        (("joints", 1, "flesh"), [0, 0, -5], "its flesh lies where that of its parent 'root' does"),
+        (("joints", 1, "flesh"), 5, "flesh is 5, expected three numbers"),
         (("joints", 1, "radious"), 3, "unknown key 'radious'; did you mean 'radius'?"),
         (("joints", 2, "radii"), [1], "expected at least two"),
         (("joints", 1, "flatten"), 0.5, "flatten needs a side across the limb"),

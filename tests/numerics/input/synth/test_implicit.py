@@ -1,8 +1,11 @@
 """Laws of blended generalized cylinders and of their surfaces, on capsules and bends whose shape is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial.transform import Rotation
 
 from kinetree.tasks.numerics.input.synth.figures import Figure
 from kinetree.tasks.numerics.input.synth.flesh import Flesh
@@ -31,6 +34,29 @@ def test_a_limb_of_one_radius_is_a_capsule():
     field, gradient = values(at_rest(chain((0, 0, 0), (0, 0, 6))), P)
     np.testing.assert_allclose(field, segment_distance(P, np.zeros(3), np.array([0.0, 0.0, 6.0])) - 1.0, atol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(gradient, axis=1), 1.0)
+
+
+def with_flesh_off(figure, off):
+    """The figure with its joints moved against `off`, and its flesh left where it is."""
+    joints = tuple(replace(j, position=tuple(np.subtract(j.position, off)), flesh=tuple(off)) for j in figure.joints)
+    return replace(figure, joints=joints)
+
+
+def test_joints_that_lie_off_their_flesh_leave_the_surface_at_rest_as_it_is():
+    P = np.random.default_rng(8).uniform(-3, 9, (500, 3))
+    amid = chain((0, 0, 0), (0, 0, 3), (0, 0.5, 6))
+    behind = with_flesh_off(amid, (0.0, -0.7, 0.2))
+    np.testing.assert_allclose(values(at_rest(behind), P)[0], values(at_rest(amid), P)[0], atol=1e-12)
+
+
+def test_flesh_off_a_joint_turns_about_the_joint():
+    off = np.array([0.0, -0.7, 0.0])
+    behind, Q = with_flesh_off(chain((0, 0, 0), (0, 0, 6)), off), Rotation.from_euler("x", 50, degrees=True).as_matrix()
+    pivot = np.array(behind.joints[0].position)
+    P = np.random.default_rng(9).uniform(-3, 9, (500, 3))
+    X = pivot + (behind.rest - pivot) @ Q.T
+    turned = Flesh.of(behind).at(X, np.tile(Q, (2, 1, 1)))
+    np.testing.assert_allclose(values(turned, pivot + (P - pivot) @ Q.T)[0], values(at_rest(behind), P)[0], atol=1e-12)
 
 
 def test_a_straight_limb_of_several_bones_has_no_bulge_at_its_joints():
