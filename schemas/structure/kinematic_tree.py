@@ -65,6 +65,9 @@ class ShapeParams(Params):
     mirrored_joints: bool = True
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
     fixed."""
+    spine: bool = True
+    """Whether joints of a person's spine lie behind the middle of the trunk, as vertebrae do, where the front is known; not
+    where connectivity is fixed."""
 
 
 class KinematicTreeParams(ShapeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):

@@ -11,8 +11,8 @@ class UpDirectionParams(Params):
     """What the user knows of the up direction."""
 
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(default=None)
-    """Direction of the coordinates that points up, e.g. z or -y; None finds it. Pictures and files for
-    other programs depend on it, the skeleton does not."""
+    """Direction of the coordinates that points up, e.g. z or -y; None finds it. Pictures and files for other programs depend on
+    it, and whether a body is taken for a person's, whose spine is placed and whose joints are named."""
 
 
 class UpDirection(Artifact):

@@ -3,7 +3,6 @@
 import numpy as np
 
 from kinetree.pipeline.task import task
-from kinetree.schemas.array import Floats
 from kinetree.schemas.structure.joint_names import JointNames, JointNamesParams
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.schemas.topology.up_direction import UpDirection
@@ -11,6 +10,7 @@ from kinetree.tasks.numerics.structure.anatomical_names import Named, anatomical
 from kinetree.tasks.numerics.structure.anatomy import anatomy
 from kinetree.tasks.numerics.structure.limb_motion import Motion
 from kinetree.tasks.numerics.structure.name_styles import styled_names
+from kinetree.tasks.structure.arguments.signed_axis import signed_axis
 
 
 @task()
@@ -22,9 +22,9 @@ def joint_names(skeleton: Skeleton, up_direction: UpDirection, params: JointName
         np.array(skeleton.parents),
         np.array(skeleton.positions),
         np.array(skeleton.rotation),
-        _vector(up_direction.up),
+        signed_axis(up_direction.up),
     )
-    front = None if params.front is None else _vector(params.front)
+    front = None if params.front is None else signed_axis(params.front)
     found = None if params.style == "none" else anatomy(body, front)
     ends = np.array([kind == "leaf" for kind in skeleton.kinds])
     named: list[Named | None] = [None] * count if found is None else anatomical_names(body, ends, found)
@@ -39,10 +39,3 @@ def joint_names(skeleton: Skeleton, up_direction: UpDirection, params: JointName
         front_confidence=0.0 if found is None else found.certainty,
         spelling=params.model_copy(update={"style": style, "front": None}),
     )
-
-
-def _vector(axis: str) -> Floats:
-    """The unit vector of a signed axis."""
-    vector = np.zeros(3)
-    vector["xyz".index(axis[-1])] = -1.0 if axis.startswith("-") else 1.0
-    return vector

@@ -14,6 +14,7 @@ from kinetree.schemas.structure.further_cut import FurtherCut
 from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, ShapeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure.first_tree import FirstTree as Tree
@@ -21,6 +22,7 @@ from kinetree.tasks.numerics.structure.pose_refinement import needs_refinement
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.arguments.laid_parts import joined
+from kinetree.tasks.structure.arguments.signed_axis import signed_axis
 
 
 @task(among=Sequence, block=KinematicTreeParams)
@@ -32,6 +34,7 @@ def kinematic_tree(
     laid_parts: tuple[LaidParts, ...],
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
+    up_direction: UpDirection,
     params: ShapeParams,
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
@@ -48,6 +51,7 @@ def kinematic_tree(
         laid=joined(laid_parts),
         has_necks=params.necks,
         has_mirrored_joints=params.mirrored_joints and not body.is_given,
+        up=signed_axis(up_direction.up) if params.spine and not body.is_given else None,
     )
     return KinematicTree(
         frames=frames,

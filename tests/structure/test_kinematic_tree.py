@@ -16,6 +16,7 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.cut_poses import CutPoses
 from kinetree.schemas.structure.kinematic_tree import CutJointsParams, KinematicTree, KinematicTreeParams
 from kinetree.schemas.topology.leaves import Leaves
+from kinetree.schemas.topology.up_direction import UpDirection
 from kinetree.tasks.numerics.structure import first_tree as numerics
 from kinetree.tasks.structure.first_tree import first_tree
 from kinetree.tasks.structure.further_cut import further_cut
@@ -67,7 +68,7 @@ def tree_of(
     tree = extended(agreeing, reference, aligned, mesh, leaves, chosen.surface_joints)
     runs = [tree.members("laid/frame", (k,)) for k in tree.members("laid", ())]
     laid = tuple(laid_parts(reference, tree, {f: mesh[f] for f in run}) for run in runs)
-    return kinematic_tree(reference, tree, first, cuts, laid, aligned, leaves, chosen)
+    return kinematic_tree(reference, tree, first, cuts, laid, aligned, leaves, UpDirection(up="z", confidence=1.0), chosen)
 
 
 def test_arms_hang_on_one_root_and_end_in_their_leaves() -> None:

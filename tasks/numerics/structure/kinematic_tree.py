@@ -16,6 +16,7 @@ from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
+from kinetree.tasks.numerics.structure.limb_motion import Motion as LimbMotion
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.necks import Tube, necks, on_tubes, tubes
@@ -25,6 +26,7 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.shared_joints import shared_joints
 from kinetree.tasks.numerics.structure.skinning import heaviest
+from kinetree.tasks.numerics.structure.spine_joints import spine_shifts
 from kinetree.tasks.numerics.structure.still_joints import PosedTree, with_still_joints
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 
@@ -126,6 +128,7 @@ def kinematic_tree(
     has_second_ends: bool = False,
     has_necks: bool = False,
     has_mirrored_joints: bool = False,
+    up: Floats | None = None,
 ) -> tuple[KinematicTree, Derivation]:
     """Places the joints of a tree and poses it in every frame; and how that came about.
 
@@ -138,12 +141,16 @@ def kinematic_tree(
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
     has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
+    up         : (xyz,) unit vector, by which a person is told, whose spine lies behind the middle, see `spine_joints`; None
+                 leaves spines where motion has them
     """
     V = body.V
     if first.shown:
         body = first.with_ends(body)
     hanging = tubes(V, body.F, first.label, first.parents, first.radius) if has_necks else []
     tree = _posed(body, first, confidence, further, laid, hanging)
+    if up is not None:
+        tree = _with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):
         tree = with_still_joints(tree, found)
     if has_mirrored_joints:
@@ -204,6 +211,42 @@ def _posed(
     )
 
 
+def _with_spine(
+    body: MovingSurface, first: FirstTree, tree: PosedTree, ends: Ints, confidence: Floats | None, up: Floats
+) -> PosedTree:
+    """The tree with the joints of a person's spine behind the middle of the trunk, in every frame; ends as in `_chains`."""
+    chains = _chains(body.V, tree, ends)
+    of_joint = np.where(chains.is_end, 0.0, tree.radius[chains.part])
+    moving = LimbMotion(chains.rest, chains.parents, chains.X, tree.motion.R[:, chains.part], up)
+    shift = spine_shifts(moving, of_joint)[: len(tree.parents)]
+    if not shift.any():
+        return tree
+    start = tree.motion._replace(rest=tree.motion.rest + shift)
+    poses = frame_poses(body.V, body.x, body.area, tree.label, tree.W, start, tree.parents, confidence, takes=body.takes)
+    return tree._replace(motion=poses.motion, confidence=poses.confidence, drift=first.drift_at(start.rest))
+
+
+class _Chains(NamedTuple):
+    """Parts, and beyond them ends of bones: part, is_end, parents (joint,), rest (joint, xyz), X (frame, joint, xyz)."""
+
+    part: Ints
+    is_end: Flags
+    parents: Ints
+    rest: Floats
+    X: Floats
+
+
+def _chains(V: Floats, tree: PosedTree, ends: Ints) -> _Chains:
+    """The joints of a tree and the ends of its bones (end, 2), see `end_effectors`."""
+    parts, motion, hanging = len(tree.parents), tree.motion, ends[:, 0]
+    part = np.concatenate([np.arange(parts), hanging])
+    rest = np.concatenate([motion.rest, V[ends[:, 1]]])
+    X = placed(motion, tree.parents)
+    tips = X[:, hanging] + np.einsum("texy,ey->tex", motion.R[:, hanging], rest[parts:] - motion.rest[hanging])
+    above = np.concatenate([tree.parents, hanging])
+    return _Chains(part, np.arange(len(part)) >= parts, above, rest, np.concatenate([X, tips], axis=1))
+
+
 def _on_tubes(first: FirstTree, hanging: Sequence[Tube], joints: Floats) -> tuple[Floats, Flags]:
     """`on_tubes`; joints (part, xyz) stay where they are if motion leaves no doubt about them."""
     rest, stays = on_tubes(hanging, joints, first.shown)
@@ -229,14 +272,9 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
     parents, motion, W, label = tree.parents, tree.motion, tree.W, tree.label
     parts = len(parents)
-    part = np.concatenate([np.arange(parts), ends[:, 0]])
-    rest = np.concatenate([motion.rest, V[ends[:, 1]]])
-    above = np.concatenate([parents, ends[:, 0]])
-    is_end = np.arange(len(part)) >= parts
+    part, is_end, above, rest, X = _chains(V, tree, ends)
     order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
-    X = placed(motion, parents)
-    tips = X[:, ends[:, 0]] + np.einsum("texy,ey->tex", motion.R[:, ends[:, 0]], rest[parts:] - motion.rest[ends[:, 0]])
     turns = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)
     degrees = np.array([0.0, *(widest_turning_range(turns[:, p], spans) for p in range(1, parts))])
     influence, weight = heaviest(W)
@@ -245,7 +283,7 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
         kinds=tuple("leaf" if is_end[j] else "joint" if above[j] >= 0 else "root" for j in order),
         parents=np.where(above[order] >= 0, place[above[order]], -1),
         rest=rest[order],
-        positions=np.concatenate([X, tips], axis=1)[:, order],
+        positions=X[:, order],
         rotation=motion.R[:, part[order]],
         confidence=tree.confidence[:, part[order]],
         degrees=np.where(is_end | (tree.is_neck | tree.is_mirrored)[part], 0.0, degrees[part])[order],
