@@ -66,8 +66,8 @@ class ShapeParams(Params):
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
     fixed."""
     spine: bool = True
-    """Whether joints of a person's spine lie behind the middle of the trunk, as vertebrae do, where the front is known; not
-    where connectivity is fixed."""
+    """Whether joints of a person's spine lie behind the middle of the trunk, as vertebrae do, where toes, knees and travel tell
+    the front; not where connectivity is fixed. Where a run names the wrong front, switch it off."""
 
 
 class KinematicTreeParams(ShapeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
