@@ -13,9 +13,9 @@ goes a part of the way, s |s|² / (|s|² + δ v) with
 
     s = (A + κ λ I)⁻¹ g,   A = Σ_f w_f M_fᵀ Q_f M_f,   g = Σ_f w_f M_fᵀ Q_f d_f,   M_f = I − R_aᵀ R_b
 
-λ the largest eigenvalue of A, v the square of half the distance between the ways of two halves: it goes in directions in which the
-frames hold it about as firmly as in any other, and the less, the less halves agree. With a wide ρ the surfaces place c almost
-alone; how far halves of the frames then put it from the joint says how well that one is placed.
+λ the largest eigenvalue of A, v the square of half the distance between the ways of two halves: it goes in directions in which
+the frames hold it about as firmly as in any other, and the less, the less halves agree. With a wide ρ the surfaces place c
+almost alone; how far halves of the frames then put it from the joint says how well that one is placed.
 """
 
 from collections.abc import Sequence

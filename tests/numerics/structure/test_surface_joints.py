@@ -28,7 +28,8 @@ def on_surfaces(
     shift: Floats = HERE, hinged: bool = True, held: Flags | None = None, trunk_off: Floats = HERE,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and that of the limb with the
-    trunk too, and the body is shifted."""
+    trunk too, and the body is shifted.
+    """
     surface, found = three_parts(frames, scale)
     rest = found.rest.copy()
     rest[1], rest[2] = scale * trunk_off, scale * (np.array([0.0, 0.0, END]) + off)
