@@ -19,8 +19,11 @@ from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
 
 class MirroredJointsSettings(NamedTuple):
-    """Which joints are added. Not varied."""
+    """Which joints are added. Not varied where nothing is said."""
 
+    least_pairs: int = 2
+    """Pairs of limbs of the body, at least: two ends of a body without mirror images may be alike by chance. Of random trees 0
+    to 9 three have a pair and none has two; of 49 people, rigged and recorded bodies that have such joints all have two."""
     alike: float = 1.6
     """Radius of the ring in that of the other limb's border, at most, and the inverse at least."""
     apart: float = 1.0
@@ -40,7 +43,7 @@ def mirrored_joints(
 ) -> list[StillJoint]:
     """Joints within the last parts of limbs that the limb's mirror image has, the innermost of each part, by part.
 
-    A limb without any joint has none: it may hang on the trunk anywhere.
+    A limb without any joint has none: it may hang on the trunk anywhere. Nor has a body that has a single pair of limbs.
 
     V, F     : (vertex, xyz) reference, mesh unit · (face, corner)
     rest     : (part, xyz) joints in the reference, mesh unit
@@ -48,6 +51,8 @@ def mirrored_joints(
     is_still : (part,) joints that no motion shows, which say nothing of others; None has none
     """
     chosen, found = settings or MirroredJointsSettings(), dict[int, StillJoint]()
+    if len(pairs.tip) < chosen.least_pairs:
+        return []
     still = np.zeros(len(rest), np.bool_) if is_still is None else is_still
     edge = ring_edges(*rings(F, len(V)))
     for (tips, away), limbs in zip(zip(*pairs, strict=True), mirrored_limbs(F, parts, pairs), strict=False):

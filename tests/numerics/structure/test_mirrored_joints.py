@@ -16,6 +16,8 @@ V, F, _ = y_pipe()
 """A trunk along x from the fork at 0, and two legs of radius 4 at 60° on either side of −x, which end 28 from the fork."""
 TIPS = np.array([np.argmax(V[:, 1]), np.argmin(V[:, 1])])
 AWAY = geodesic_distance(Surface.of(V, F), TIPS)
+PAIRS = LimbPairs(np.stack([TIPS, TIPS]), np.stack([AWAY, AWAY]))
+"""Both legs, twice, since a single pair of limbs says nothing of a body."""
 RADIUS = 3.6
 """Of the borders across a leg, about."""
 
@@ -41,7 +43,7 @@ def found(
     pairs: LimbPairs | None = None,
 ) -> list[StillJoint]:
     of, rest = parts(one, other)
-    return mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]) if pairs is None else pairs, settings=settings)
+    return mirrored_joints(V, F, of, rest, PAIRS if pairs is None else pairs, settings=settings)
 
 
 def level(joint: StillJoint, side: int) -> float:
@@ -51,6 +53,10 @@ def level(joint: StillJoint, side: int) -> float:
 
 def last_part(one: tuple[float, ...], other: tuple[float, ...], side: int) -> int:
     return int(parts(one, other)[0].place[TIPS[side]])
+
+
+def test_a_body_with_a_single_pair_of_limbs_has_none() -> None:
+    assert not found((20.0,), (8.0, 20.0), pairs=LimbPairs(TIPS[None], AWAY[None]))
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -79,15 +85,15 @@ def test_a_joint_that_was_moved_along_its_limb_is_mirrored_where_it_is(moved: fl
     of, rest = parts((20.0,), (8.0, 20.0))
     inwards = -V[TIPS[1]] / np.linalg.norm(V[TIPS[1]])
     rest[of.place[TIPS[1]]] += moved * inwards
-    (joint,) = mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]))
+    (joint,) = mirrored_joints(V, F, of, rest, PAIRS)
     assert level(joint, 0) == pytest.approx(8.0 + moved, abs=0.8)
 
 
 def test_a_joint_that_no_motion_shows_is_not_mirrored() -> None:
     of, rest = parts((20.0,), (8.0, 20.0))
     still = np.arange(len(rest)) == of.place[TIPS[1]]
-    assert mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]), still) == []
-    assert mirrored_joints(V, F, of, rest, LimbPairs(TIPS[None], AWAY[None]), ~still)
+    assert mirrored_joints(V, F, of, rest, PAIRS, still) == []
+    assert mirrored_joints(V, F, of, rest, PAIRS, ~still)
 
 
 def test_a_part_that_carries_another_is_not_divided() -> None:
@@ -97,7 +103,7 @@ def test_a_part_that_carries_another_is_not_divided() -> None:
     thumb = (np.abs(AWAY[0] - 14.0) < 2.0) & (V[:, 2] > 3.0)
     with_thumb = RootedParts(np.where(thumb, len(rest), of.place), np.append(of.parents, last), np.append(of.radius, 1.0))
     there = np.concatenate([rest, V[thumb].mean(axis=0)[None]])
-    assert mirrored_joints(V, F, with_thumb, there, LimbPairs(TIPS[None], AWAY[None])) == []
+    assert mirrored_joints(V, F, with_thumb, there, PAIRS) == []
 
 
 def test_the_innermost_of_two_comes_first() -> None:
@@ -114,9 +120,7 @@ def test_a_limb_without_any_joint_has_none() -> None:
     assert found((), (8.0, 20.0)) == []
 
 
-def test_bodies_without_pairs_or_of_one_part_have_none() -> None:
-    none = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, len(V))))
-    assert found((20.0,), (8.0, 20.0), pairs=none) == []
+def test_a_body_of_one_part_has_none() -> None:
     assert found((), ()) == []
 
 
@@ -126,8 +130,7 @@ def test_the_ring_must_be_about_as_wide_as_the_other_limb(wide: float, is_there:
     (joint,) = found((20.0,), (8.0, 20.0))
     radius = of.radius.copy()
     radius[of.place[TIPS[1]]] = wide * joint.radius
-    pairs = LimbPairs(TIPS[None], AWAY[None])
-    assert bool(mirrored_joints(V, F, of._replace(radius=radius), rest, pairs)) == is_there
+    assert bool(mirrored_joints(V, F, of._replace(radius=radius), rest, PAIRS)) == is_there
 
 
 @pytest.mark.parametrize(("apart", "is_there"), [(3.0, True), (3.8, False), (0.0, True)])
@@ -146,6 +149,6 @@ def test_places_that_no_path_leads_to_count_nowhere() -> None:
     away = AWAY.copy()
     island = V[:, 0] > 26.0
     away[:, island] = np.inf
-    (joint,) = found((20.0,), (8.0, 20.0), pairs=LimbPairs(TIPS[None], away[None]))
+    (joint,) = found((20.0,), (8.0, 20.0), pairs=LimbPairs(PAIRS.tip, np.stack([away, away])))
     assert (joint.share[island] == 1.0).all()
     assert np.isfinite(joint.centre).all()

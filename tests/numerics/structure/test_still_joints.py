@@ -299,7 +299,10 @@ ANKLE = 18.0 * ALONG
 
 
 def legs() -> tuple[Cut, MovingSurface, np.ndarray]:
-    """A pipe of three arms: both legs swing about hips at 6 from the fork, the foot of one about its ankle too."""
+    """A pipe of three arms: both legs swing about hips at 6 from the fork, the foot of one about its ankle too.
+
+    Its third arm ends at a head, and at a hand on either side, so that it has two pairs of limbs.
+    """
     first = PIPE @ ALONG
     other = PIPE @ (ALONG * [1.0, -1.0, 1.0])
     label = np.where(first > 18.0, 2, np.where(first > 6.0, 1, np.where(other > 6.0, 3, 0)))
@@ -312,6 +315,6 @@ def legs() -> tuple[Cut, MovingSurface, np.ndarray]:
         t[f, 2] = R[f, 1] @ ANKLE + t[f, 1] - R[f, 2] @ ANKLE
     x = np.einsum("tvxy,vy->tvx", R[:, label], PIPE) + t[:, label]
     surface = MovingSurface(PIPE, FACES, x, Surface.of(PIPE, FACES).area)
-    side = int(np.argmin(np.linalg.norm(PIPE - [16.0, 0.0, 4.0], axis=1)))
-    leaves = np.array([first.argmax(), other.argmax(), PIPE[:, 0].argmax(), side])
+    hands = [int(np.argmin(np.linalg.norm(PIPE - [12.0, y, 0.0], axis=1))) for y in (4.0, -4.0)]
+    leaves = np.array([first.argmax(), other.argmax(), PIPE[:, 0].argmax(), *hands])
     return Cut(PIPE, label, R, t, np.zeros((24, 4))), surface, leaves
