@@ -15,7 +15,8 @@ class ExtendedTreeParams(Params):
     """Where joints are placed."""
 
     surface_joints: bool = True
-    """Whether joints are moved to where the frames' surfaces have them, if halves of the frames agree."""
+    """Whether joints are moved to where the frames' surfaces have them: all of the way if halves of the frames agree, else a
+    part of it."""
 
 
 class ExtendedTree(JointTree):

@@ -64,7 +64,7 @@ class ShapeParams(Params):
     beyond its upper end though motion shows one alone; a joint far from both places is moved to the nearer one."""
     mirrored_joints: bool = True
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
-    fixed."""
+    fixed, nor on a body with a single pair of such limbs."""
     spine: bool = True
     """Whether joints of a person's spine lie behind the middle of the trunk, as vertebrae do, where toes, knees and travel tell
     the front; not where connectivity is fixed. Where a run names the wrong front, switch it off."""

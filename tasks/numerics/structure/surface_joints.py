@@ -4,18 +4,19 @@ An alignment carries the surface near a border along with one of the two parts, 
 joint at the same wrong place. The two parts are therefore laid on the surfaces by themselves. A tube may slide along its axis
 and says nothing there: each part counts in a direction as firmly as its fit holds the joint,
 
-    c = argmin Σ_f w_f e_fᵀ (S_f / n)⁻¹ e_f + |c − c₀|² / (ρ r)²,   e_f = (I − R_aᵀ R_b) c − R_aᵀ (t_b − t_a)
+    c = argmin Σ_f w_f e_fᵀ Q_f e_f + |c − c₀|² / (ρ r)²,   e_f = M_f c − R_aᵀ (t_b − t_a),   M_f = I − R_aᵀ R_b
 
-with c₀ the joint as it is, r the radius of its border, and S_f = Σ over both parts of σ² K⁻¹, K the stiffness of the part's fit
-against a shift of the joint, its rotation free. A joint within a limb is moved there only where halves of the frames move it
-alike; any other, and one that stays, goes along its limb to where the surfaces bend, see `hinge_places`. One that neither moves
-goes a part of the way, s |s|² / (|s|² + δ v) with
+with c₀ the joint as it is, r the radius of its border, and Q_f = n S_f⁻¹, S_f = Σ over both parts of σ² K⁻¹, K the stiffness of
+the part's fit against a shift of the joint, its rotation free. A joint within a limb is moved there only where halves of the
+frames move it alike; any other, and one that stays, goes along its limb to where the surfaces bend, see `hinge_places`. A joint
+that neither of these moves goes a part of the way, s |s|² / (|s|² + δ v) with
 
-    s = (A + κ λ I)⁻¹ g,   A = Σ_f w_f M_fᵀ Q_f M_f,   g = Σ_f w_f M_fᵀ Q_f d_f,   M_f = I − R_aᵀ R_b
+    s = (A + κ λ I)⁻¹ Σ_f w_f M_fᵀ Q_f d_f,   A = Σ_f w_f M_fᵀ Q_f M_f,   d_f = −e_f at c₀
 
-λ the largest eigenvalue of A, v the square of half the distance between the ways of two halves: it goes in directions in which
-the frames hold it about as firmly as in any other, and the less, the less halves agree. With a wide ρ the surfaces place c
-almost alone; how far halves of the frames then put it from the joint says how well that one is placed.
+λ the largest eigenvalue of A, v the mean, over two ways of halving the frames, of the square of half the distance between what
+halves give. So it goes where the frames hold it firmly, 1 / (1 + κ) of the way at most, and less far where halves disagree.
+With a wide ρ the surfaces place c almost alone; how far halves of the frames then put it from the joint says how well that one
+is placed.
 """
 
 from collections.abc import Sequence
@@ -52,11 +53,13 @@ class SurfaceJointsSettings(NamedTuple):
     """Distance between the places that two halves of the frames give, share of the way that all go, at most. At 1 joints of
     generated bodies lie nearer by 1 to 3 %, those of recorded ones by nothing, and a wolf's farther."""
     hold: float = 0.3
-    """κ: how firmly joints that halves do not move are held in all directions, share of how firmly the frames hold them in the
-    firmest. Chosen with `doubt` on people 0 to 14, humans, quadrupeds and random trees of seeds 0 to 9, wave, dance, ballet and
-    wolf. From 0.3 to 0.5 they win alike; at 0.1 people win more, and quadrupeds lose."""
+    """κ: stiffness that draws a joint to where it is, share of the frames' stiffness in their firmest direction. Chosen with
+    `doubt` on people 0 to 14, humans, quadrupeds and random trees of seeds 0 to 9, wave, dance, ballet and wolf. From 0.3 to
+    0.5 they win alike; at 0.1 people win more, and quadrupeds lose."""
     doubt: float = 12.0
-    """δ: by how much more than its share the disagreement of halves shortens such a way. From 6 to 16 they win alike."""
+    """δ: weight of the disagreement of halves against the way. From 6 to 16 those bodies win alike."""
+    farthest: float = 0.5
+    """Length of such a way at most, in radii of the border. The longest of 616 on such bodies has 0.42."""
     outlier: float = 3.0
     """Distance in medians over the frames at which a frame counts a half. Not varied."""
     rounds: int = 3
@@ -128,8 +131,8 @@ def surface_joints(
             if may_move[joint]:
                 moved[joint] += _agreed_shift(pull, chosen.spread * radius, chosen)
             if _often_shown(pull):
-                for way in (shifts[joint], _shortened_shift(pull, chosen)):
-                    moved[joint] += way * (not stays[joint] and (moved[joint] == rest[joint]).all())
+                if not stays[joint] and (moved[joint] == rest[joint]).all():
+                    moved[joint] += shifts[joint] if shifts[joint].any() else _shortened_shift(pull, radius, chosen)
                 left = _of_halves(pull, chosen.free_spread * radius, chosen) - (moved[joint] - rest[joint])
                 offset[joint] = np.sqrt(np.square(left).sum(axis=2).mean())
     return SurfaceJoints(moved, offset, hinge_offsets(tree, laid.hinges, moved, share))
@@ -184,12 +187,13 @@ def _agreed_shift(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings) -> F
     return way if agree.all() else np.zeros(3)
 
 
-def _shortened_shift(pull: _Pull, chosen: SurfaceJointsSettings) -> Floats:
-    """(xyz,) the part of the way on which halves of the frames agree, in directions in which the frames hold the joint."""
+def _shortened_shift(pull: _Pull, radius: float, chosen: SurfaceJointsSettings) -> Floats:
+    """(xyz,) a part of the way to the rotation centre, the less the more halves disagree; radius of the border, mesh unit."""
     way = _shift(pull, np.inf, chosen, chosen.hold)
     one, other = _of_halves(pull, np.inf, chosen, chosen.hold)
-    doubt = chosen.doubt * float(np.square((one - other) / 2.0).sum(axis=1).mean())
-    return np.asarray(way * (way @ way) / max(float(way @ way) + doubt, 1e-300))
+    square, disagreement = float(way @ way), float(np.square((one - other) / 2.0).sum(axis=1).mean())
+    way = way * square / max(square + chosen.doubt * disagreement, 1e-300)
+    return np.asarray(way * min(1.0, chosen.farthest * radius / max(float(np.linalg.norm(way)), 1e-300)))
 
 
 def _of_halves(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings, hold: float = 0.0) -> Floats:
@@ -203,13 +207,13 @@ def _shift(pull: _Pull, sigma: float, chosen: SurfaceJointsSettings, hold: float
     """(xyz,) from the joint to the rotation centre of some frames, drawn to the joint; frames that stay off count less.
 
     sigma : standard deviation of the joint about its place, mesh unit; infinite: it is drawn there by `hold` alone
-    hold  : how firmly it is drawn there, share of how firmly the frames hold it in the firmest direction
+    hold  : stiffness that draws it there, share of the frames' stiffness in their firmest direction
     """
     w, way = pull.seen + 1e-3, np.zeros(3)
     for _ in range(chosen.rounds):
         A = np.einsum("f,fyx,fyz,fzw->xw", w, pull.M, pull.Q, pull.M)
         g = np.einsum("f,fyx,fyz,fz->x", w, pull.M, pull.Q, pull.d)
-        firm = hold * float(np.linalg.eigvalsh(A)[-1]) + 1.0 / sigma**2
+        firm = (hold * float(np.linalg.eigvalsh(A)[-1]) if hold > 0.0 else 0.0) + 1.0 / sigma**2
         way = np.asarray(np.linalg.solve(A + max(firm, 1e-300) * np.eye(3), g))
         e = pull.M @ way - pull.d
         off = np.sqrt(np.einsum("fx,fxy,fy->f", e, pull.Q, e))

@@ -12,7 +12,14 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.laid_parts import laid_parts
-from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, SurfaceJointsSettings, surface_joints, within_limbs
+from kinetree.tasks.numerics.structure.surface_joints import (
+    SurfaceJoints,
+    SurfaceJointsSettings,
+    _Pull,
+    _shortened_shift,
+    surface_joints,
+    within_limbs,
+)
 
 OFF = np.array([0.0, 0.0, 0.5])
 """How far off the joint is put, half a radius along the limb."""
@@ -26,6 +33,7 @@ def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
     mesh_at: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
     shift: Floats = HERE, hinged: bool = True, held: Flags | None = None, trunk_off: Floats = HERE,
+    shown: tuple[int, ...] = (),
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and that of the limb with the
     trunk too, and the body is shifted.
@@ -35,7 +43,7 @@ def on_surfaces(
     rest[1], rest[2] = scale * trunk_off, scale * (np.array([0.0, 0.0, END]) + off)
     meshes, size = mesh_at or Frames(turning(), 0.02, scale), surface.size
     tree = in_tree_order(found, 3)
-    tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift, rest=tree.rest + shift), rest + shift
+    tree, rest = tree._replace(t=tree.t + shift - tree.R @ shift, rest=tree.rest + shift, shown=shown), rest + shift
     surfaces = {f: Target.of(V + shift, F, size) for f, (V, F) in ((f, meshes(f)) for f in range(frames))}
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
     if not hinged:
@@ -96,7 +104,7 @@ def test_a_joint_of_a_limb_with_the_trunk_stays_where_it_lies_right() -> None:
 
 
 @pytest.mark.parametrize("off", [(0.0, 0.0, 0.5), (0.0, 0.0, -0.5), (0.0, 0.5, 0.0)])
-def test_a_joint_of_a_limb_with_the_trunk_that_lies_off_comes_half_of_the_way_back(off: tuple[float, ...]) -> None:
+def test_a_joint_of_a_limb_with_the_trunk_that_lies_off_comes_back_by_half_or_more(off: tuple[float, ...]) -> None:
     _, after = moved(0.0 * OFF, trunk_off=np.array(off), hinged=False)
     assert np.linalg.norm(after[1]) < 0.25
 
@@ -107,6 +115,47 @@ def test_a_joint_stays_along_the_line_that_it_turns_about_where_only_noise_would
     np.testing.assert_allclose(after[1], line, atol=0.02)
     _, free = moved(0.0 * OFF, trunk_off=line, settings=SurfaceJointsSettings(hold=0.0))
     assert free[1, 0] < 0.2
+
+
+def test_a_joint_that_agreement_or_a_hinge_moves_goes_no_further() -> None:
+    for off, agree in ((OFF, 0.5), (OFF, 0.0)):
+        (_, here), (_, held) = (
+            moved(off, trunk_off=OFF, settings=SurfaceJointsSettings(agree=agree, hold=hold)) for hold in (0.3, 1e9)
+        )
+        np.testing.assert_allclose(here, held, atol=1e-6)
+
+
+def test_joints_of_a_divided_trunk_come_back_too() -> None:
+    _, after = moved(trunk_off=OFF, hinged=False, shown=(2,))
+    assert np.linalg.norm(after[1]) < 0.25
+    assert abs(after[2, 2] - END) < 0.25
+
+
+def pull(at: Floats, firm: float = 1.0) -> _Pull:
+    """Frames that turn half of the body about x, each about its own centre (frame, xyz)."""
+    turn = np.tile(np.diag([0.0, 2.0, 2.0]), (len(at), 1, 1))
+    return _Pull(turn, 2.0 * at, np.tile(firm * np.eye(3), (len(at), 1, 1)), np.ones(len(at)))
+
+
+@pytest.mark.parametrize("firm", [1.0, 1e6])
+@pytest.mark.parametrize("period", [1, 6], ids=["each second frame", "each second quarter"])
+def test_the_way_is_shortened_by_what_halves_disagree(period: int, firm: float) -> None:
+    """The centres of two halves lie at c ± a; by the other way to halve, both halves have c."""
+    c, a = np.array([0.0, 0.5, 0.2]), np.array([0.0, 0.1, -0.05])
+    side = np.where(np.arange(24) // period % 2 == 0, 1.0, -1.0)
+    s, v = c / 1.3, (a @ a) / 1.3**2 / 2.0
+    way = _shortened_shift(pull(c + side[:, None] * a, firm), 10.0, SurfaceJointsSettings())
+    np.testing.assert_allclose(way, s * (s @ s) / (s @ s + 12.0 * v), atol=0.01)
+
+
+def test_the_way_is_half_a_radius_long_at_most() -> None:
+    c = np.tile([0.0, 3.0, 4.0], (24, 1))
+    np.testing.assert_allclose(_shortened_shift(pull(c), 2.0, SurfaceJointsSettings()), [0.0, 0.6, 0.8], atol=1e-9)
+
+
+def test_parts_that_do_not_turn_move_no_joint() -> None:
+    still = pull(np.zeros((24, 3)))._replace(M=np.zeros((24, 3, 3)))
+    np.testing.assert_array_equal(_shortened_shift(still, 1.0, SurfaceJointsSettings()), 0.0)
 
 
 def test_a_joint_of_a_limb_with_the_trunk_stays_where_no_frame_shows_its_parts() -> None:
