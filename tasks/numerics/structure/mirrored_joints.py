@@ -24,7 +24,7 @@ class MirroredJointsSettings(NamedTuple):
     least_pairs: int = 2
     """Pairs of limbs of the body that are found, at least: of a body without mirror images two ends may be alike by chance. Of
     random trees 0 to 9 three have one pair, none has two. All 28 mirrored joints of people and of recorded and rigged bodies
-    are on bodies with two pairs. Of quadrupeds one pair is found at most, so that they get none."""
+    stay with this. Of quadrupeds one pair is found at most, so that they get none."""
     alike: float = 1.6
     """Radius of the ring in that of the other limb's border, at most, and the inverse at least."""
     apart: float = 1.0
