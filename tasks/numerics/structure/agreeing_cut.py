@@ -23,8 +23,10 @@ def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int
     """The cut with most joints that another cut has too, less those that it has alone; of equals the first.
 
     Where the frames give the correspondence it has such a joint, and no fewer of them than the first cut, so that a cut which
-    shows little never wins. Elsewhere `symmetry` is added, see `joint_partners`; it must be more than the first cut's. Of two
-    cuts it is the first.
+    shows little never wins. Elsewhere `symmetry` is added, see `joint_partners`; it must be more than the first cut's. Of
+    equals it is there the one with fewest joints of its own, however symmetric: halves of a pelvis are mirror images of each
+    other, so that they count as much as the joint between them, which no other cut has, counts against them. Of two cuts it is
+    the first.
 
     trees    : of all cuts, in the reference, the first cut's first
     size     : root of the area, mesh unit
@@ -40,10 +42,12 @@ def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int
         least = max(shared[0].sum(), 1)
         return int(np.argmax([one if has.sum() >= least else -np.inf for one, has in zip(score, shared, strict=True)]))
     score += symmetry
-    score[np.array(symmetry) <= symmetry[0]] = -np.inf
-    best = int(np.argmax(score))
-    first = 2.0 * shared[0].sum() - len(shared[0]) + symmetry[0]
-    return best if score[best] > first + AHEAD else 0
+    is_more = np.array(symmetry) > symmetry[0]
+    if not is_more.any():
+        return 0
+    alone, equals = np.array([(~has).sum() for has in shared]), np.flatnonzero(score == score[is_more].max())
+    best = min(equals.tolist(), key=lambda k: (alone[k], not is_more[k], k))
+    return best if score[best] > score[0] + AHEAD else 0
 
 
 def in_other_cuts(X: Floats, others: Sequence[Floats], size: float) -> Flags:

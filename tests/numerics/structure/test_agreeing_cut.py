@@ -91,10 +91,17 @@ def test_it_shows_as_much_that_others_have_as_the_first(cuts: tuple[tuple[float,
         (((1.0, 5.0), (1.0, 3.0, 4.0), (1.0, 3.0, 4.0)), (2, 2, 2), 0),
         (((1.0, 5.0), (1.0, 3.0, 4.0), (1.0, 3.0, 4.0)), (2, 3, 2), 1),
         (((1.0, 3.0), (1.0, 3.0)), (0, 9), 0),
+        (((1.0, 3.0), (1.0, 3.0), (1.0, 3.0)), (0, 3, 3), 1),
+        (((1.0, 3.0), (1.0, 3.0, 5.0), (1.0, 3.0)), (0, 6, 5), 2),
+        (((1.0, 3.0), (1.0, 3.0, 5.0), (1.0, 3.0)), (0, 7, 5), 1),
+        (((1.0,), (1.0, 2.0, 3.0, 4.0, 9.0), (1.0, 2.0, 3.0, 4.0)), (3, 4, 3), 2),
+        (((1.0,), (1.0, 2.0, 3.0, 4.0, 9.0), (1.0, 2.0, 3.0, 4.0)), (3, 5, 3), 1),
+        (((1.0,), (1.0, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0)), (3, 3, 3), 0),
     ],
     ids=[
         "by three", "by two", "the best", "one joint of its own", "more than that", "without more symmetry", "with more",
-        "of two cuts",
+        "of two cuts", "of equals the first", "of equals that with fewest joints of its own", "of unequals the better",
+        "of equals also that with no more symmetry", "of unequals not", "no more symmetry in any",
     ],
 )  # fmt: skip
 def test_where_vertices_were_aligned_another_cut_must_be_more_symmetric_and_clearly_better(
