@@ -6,29 +6,23 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
 from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
-from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
 from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.limb_motion import Motion as LimbMotion
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
-from kinetree.tasks.numerics.structure.necks import Tube, necks, on_tubes, tubes
+from kinetree.tasks.numerics.structure.necks import necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.posed_tree import chains, posed, with_spine
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
-from kinetree.tasks.numerics.structure.shared_joints import shared_joints
 from kinetree.tasks.numerics.structure.skinning import heaviest
-from kinetree.tasks.numerics.structure.spine_joints import spine_shifts
 from kinetree.tasks.numerics.structure.still_joints import PosedTree, with_still_joints
-from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 
 RIGID_WEIGHT = 0.75
 """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
@@ -63,12 +57,6 @@ class KinematicTree(NamedTuple):
     label: Ints
     influence: Ints
     weight: Floats
-
-
-CERTAIN = 2.5
-"""How many times as much a joint must drift at its place on a tube as where motion has it to stay where it is; what the motions
-of its parts leave unexplained counts as drift there. Of 29 joints of recorded and generated people that would be moved three
-have more: 2.6, where motion was right, 3.4, where both were, and 3.8, where the shape was. With 5 these three move as well."""
 
 
 class Derivation(NamedTuple):
@@ -148,9 +136,9 @@ def kinematic_tree(
     if first.shown:
         body = first.with_ends(body)
     hanging = tubes(V, body.F, first.label, first.parents, first.radius) if has_necks else []
-    tree = _posed(body, first, confidence, further, laid, hanging)
+    tree = posed(body, first, confidence, further, laid, hanging)
     if up is not None:
-        tree = _with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
+        tree = with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):
         tree = with_still_joints(tree, found)
     if has_mirrored_joints:
@@ -174,105 +162,11 @@ def _with_mirrored_joints(body: MovingSurface, tree: PosedTree, leaves: Ints) ->
     return tree
 
 
-def _posed(
-    body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None,
-    hanging: Sequence[Tube],
-) -> PosedTree:  # fmt: skip
-    """The tree in every frame; its joints are where all cuts have them, moved to tubes and to the frames' surfaces."""
-    parts = len(first.parents)
-    consensus = _consensus(first, further, body.size)
-    shared = shared_joints(first, consensus.rest, body.size, body.takes)
-    rest, on_tube = _on_tubes(first, hanging, shared.rest)
-    on_surface = SurfaceJoints(rest, *np.full((2, parts), np.nan))
-    share = confident_share(first.label, body.area, confidence, len(body.x), parts)
-    if laid is not None:
-        on_surface = surface_joints(first, laid, rest, share, held=shared.is_shared | on_tube, takes=body.takes)
-    rest = on_surface.rest
-    start = Motion(rest, first.R, first.t[:, 0].copy())
-    poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)
-    return PosedTree(
-        parents=first.parents,
-        motion=poses.motion,
-        label=first.label,
-        W=first.W,
-        confidence=poses.confidence,
-        drift=first.drift if rest is first.rest else first.drift_at(rest),
-        support=(np.minimum(share, share[:, np.maximum(first.parents, 0)]) >= FramePosesSettings().seen).sum(axis=0),
-        residual=first.residual,
-        radius=first.radius,
-        offset=on_surface.offset,
-        hinge=on_surface.hinge,
-        spread=consensus.spread,
-        agreeing=consensus.agreeing,
-        place=first.place,
-        carrier=np.arange(parts),
-        is_neck=np.zeros(parts, np.bool_),
-        is_mirrored=np.zeros(parts, np.bool_),
-    )
-
-
-def _with_spine(
-    body: MovingSurface, first: FirstTree, tree: PosedTree, ends: Ints, confidence: Floats | None, up: Floats
-) -> PosedTree:
-    """The tree with the joints of a person's spine behind the middle of the trunk, in every frame; ends as in `_chains`."""
-    chains = _chains(body.V, tree, ends)
-    of_joint = np.where(chains.is_end, 0.0, tree.radius[chains.part])
-    moving = LimbMotion(chains.rest, chains.parents, chains.X, tree.motion.R[:, chains.part], up)
-    shift = spine_shifts(moving, of_joint)[: len(tree.parents)]
-    if not shift.any():
-        return tree
-    start = tree.motion._replace(rest=tree.motion.rest + shift)
-    poses = frame_poses(body.V, body.x, body.area, tree.label, tree.W, start, tree.parents, confidence, takes=body.takes)
-    return tree._replace(motion=poses.motion, confidence=poses.confidence, drift=first.drift_at(start.rest))
-
-
-class _Chains(NamedTuple):
-    """Parts, and beyond them ends of bones: part, is_end, parents (joint,), rest (joint, xyz), X (frame, joint, xyz)."""
-
-    part: Ints
-    is_end: Flags
-    parents: Ints
-    rest: Floats
-    X: Floats
-
-
-def _chains(V: Floats, tree: PosedTree, ends: Ints) -> _Chains:
-    """The joints of a tree and the ends of its bones (end, 2), see `end_effectors`."""
-    parts, motion, hanging = len(tree.parents), tree.motion, ends[:, 0]
-    part = np.concatenate([np.arange(parts), hanging])
-    rest = np.concatenate([motion.rest, V[ends[:, 1]]])
-    X = placed(motion, tree.parents)
-    tips = X[:, hanging] + np.einsum("texy,ey->tex", motion.R[:, hanging], rest[parts:] - motion.rest[hanging])
-    above = np.concatenate([tree.parents, hanging])
-    return _Chains(part, np.arange(len(part)) >= parts, above, rest, np.concatenate([X, tips], axis=1))
-
-
-def _on_tubes(first: FirstTree, hanging: Sequence[Tube], joints: Floats) -> tuple[Floats, Flags]:
-    """`on_tubes`; joints (part, xyz) stay where they are if motion leaves no doubt about them."""
-    rest, stays = on_tubes(hanging, joints, first.shown)
-    if not stays.any():
-        return joints, stays
-    doubt = np.hypot(first.drift_at(joints), first.residual) + np.finfo(float).tiny
-    certain = stays & (first.drift_at(rest) > CERTAIN * doubt)
-    return np.where(certain[:, None], joints, rest), stays & ~certain
-
-
-def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
-    """Joints of the tree as all cuts place them; the root as it is."""
-    count = len(first.rest)
-    if not further:
-        return JointConsensus(first.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))
-    mean = joint_consensus(first.rest[1:], first.motion, further, size)
-    return JointConsensus(
-        np.concatenate([first.rest[:1], mean.rest]), np.append(np.nan, mean.spread), np.append(0, mean.agreeing)
-    )
-
-
 def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[KinematicTree, Ints]:
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
     parents, motion, W, label = tree.parents, tree.motion, tree.W, tree.label
     parts = len(parents)
-    part, is_end, above, rest, X = _chains(V, tree, ends)
+    part, is_end, above, rest, X = chains(V, tree, ends)
     order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
     turns = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)

@@ -10,7 +10,7 @@ from limbs import bent, rotation
 from shipped import PARTS, TREE
 from whole_tree import whole_tree
 
-from kinetree.tasks.numerics.structure import kinematic_tree as module
+from kinetree.tasks.numerics.structure import posed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -296,7 +296,7 @@ def test_bones_of_one_joint_begin_in_one_place_in_every_frame(laid: bool, monkey
         asked["held"] = held
         return SurfaceJoints(args[2], *np.full((2, 4), np.nan))
 
-    monkeypatch.setattr(module, "surface_joints", stay)
+    monkeypatch.setattr(posed_tree, "surface_joints", stay)
     at = np.array([-3.0, 0.0, 0.0])
     surface, first, arms = forked(at, np.zeros((2, 3)), np.full(24, 0.3))
     rest = first.rest.copy()

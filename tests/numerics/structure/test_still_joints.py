@@ -13,7 +13,7 @@ from shipped import TREE
 from whole_tree import whole_tree
 
 from kinetree.tasks.numerics.geometry.surface import Surface
-from kinetree.tasks.numerics.structure import kinematic_tree as module
+from kinetree.tasks.numerics.structure import posed_tree
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
@@ -178,7 +178,7 @@ def test_motion_that_leaves_no_doubt_places_a_joint(here: float, unexplained: fl
         residual=np.array([0.0, unexplained]),
         drift_at=lambda rest: np.array([0.0, here if rest is joints else there]),
     )
-    rest, stays = module._on_tubes(first, hanging, joints)
+    rest, stays = posed_tree._on_tubes(first, hanging, joints)
     assert stays.tolist() == [False, moves]
     assert (rest[1, 2] != joints[1, 2]) == moves
 
@@ -193,7 +193,7 @@ def test_surfaces_do_not_move_a_joint_that_is_moved_to_a_tube(
         asked.update(held=held, rest=args[2])
         return SurfaceJoints(args[2], *np.full((2, 2), np.nan))
 
-    monkeypatch.setattr(module, "surface_joints", stay)
+    monkeypatch.setattr(posed_tree, "surface_joints", stay)
     surface, cut, tips = compound_cut() if astray else nodding_cut(BOTTOM)
     first = in_tree_order(tree_joints(surface, cut, tips, settings=TREE._replace(hidden_bones=False)), 2)
     laid: Any = object()
