@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import edge_lengths, ring_edges, rings
+from kinetree.tasks.numerics.structure.articulated_fit import beyond
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, EndCutsSettings, is_wide, ring_at
 
 
@@ -25,7 +26,8 @@ class TrunkCutsSettings(NamedTuple):
     """The same where these rings have shown no joint, or one that divides the part: between rings that lie twice as far apart
     chests of humans 3 and 63 score less than they need."""
     neighbours: int = 3
-    """Parts that hang on the part or that it hangs on, at least: a part of the trunk carries limbs."""
+    """Parts that hang on the part or that it hangs on, at least: a part of the trunk carries limbs. One that has two is of the
+    trunk as well where such a part lies on either side of it, as a belly between pelvis and chest."""
     on_one_side: float = 0.65
     """Share of the border with every other neighbour that lies on one side of the ring, at least. Rings that part a border,
     through shoulders, score up to 0.074 where nothing turns."""
@@ -84,13 +86,22 @@ def trunk_cuts(
 
 def _parts(edges: Ints, label: Ints, parents: Ints, rest: Floats, chosen: TrunkCutsSettings) -> Iterator[_Part]:
     """The parts with enough neighbours."""
-    for part in range(len(parents)):
+    for part in np.flatnonzero(_are_of_trunk(parents, chosen.neighbours)).tolist():
         joints = {int(k): rest[k] for k in np.flatnonzero(parents == part)}
         if parents[part] >= 0:
             joints[int(parents[part])] = rest[part]
         edge = edges[label[edges[:, 0]] == part]
-        if len(joints) >= chosen.neighbours and len(edge):
+        if len(edge):
             yield _Part(part, np.flatnonzero(label == part), edge, edge[label[edge[:, 1]] == part], joints)
+
+
+def _are_of_trunk(parents: Ints, neighbours: int) -> Flags:
+    """(part,) whether each has so many neighbours, or lies between two that have."""
+    below = beyond(parents) > 0
+    carries = np.bincount(parents[1:], minlength=len(parents)) + (parents >= 0) >= neighbours
+    downwards = [(below[parents == part] & carries).any(axis=1).sum() for part in range(len(parents))]
+    upwards = (~below & carries).any(axis=1)
+    return carries | (np.array(downwards) + upwards > 1)
 
 
 def _across(V: Floats, area: Floats, label: Ints, one: _Part, above: int, chosen: TrunkCutsSettings) -> Iterator[EndCut]:
@@ -106,9 +117,9 @@ def _across(V: Floats, area: Floats, label: Ints, one: _Part, above: int, chosen
         cut = ring_at(V, (one.part, above), one.own, distance, one.inside, float(level))
         if cut is None or not is_wide(cut, area, limits) or not _is_in_two(cut, one, chosen):
             continue
-        beyond = {k: float((distance[v] >= level).mean()) for k, v in others.items()}
-        is_parted = any(1.0 - chosen.on_one_side < share < chosen.on_one_side for share in beyond.values())
-        hung = tuple(k for k, share in beyond.items() if share >= chosen.on_one_side)
+        share_beyond = {k: float((distance[v] >= level).mean()) for k, v in others.items()}
+        is_parted = any(1.0 - chosen.on_one_side < share < chosen.on_one_side for share in share_beyond.values())
+        hung = tuple(k for k, share in share_beyond.items() if share >= chosen.on_one_side)
         if hung and not is_parted:
             nearest = min(float(np.linalg.norm(cut.centre - joint)) for joint in one.joints.values())
             yield cut._replace(hung=hung, apart=nearest / max(cut.radius, np.finfo(float).tiny))

@@ -7,7 +7,7 @@ from trunk import LIMBS, MIRRORED, trunk
 
 from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.structure.end_cuts import EndCut
-from kinetree.tasks.numerics.structure.trunk_cuts import trunk_cuts
+from kinetree.tasks.numerics.structure.trunk_cuts import _are_of_trunk, trunk_cuts
 
 BODY, TREE = trunk(turning(0.0))
 
@@ -48,6 +48,41 @@ def test_a_part_with_two_neighbours_and_limbs_have_none() -> None:
     assert cuts(merged, TREE.parents[:3]) == []
     assert cuts(mirrored=(0, 1, 2, 3)) == []
     assert cuts(mirrored=(1, 2, 3)) == []
+
+
+@pytest.mark.parametrize(
+    ("parents", "of_trunk"),
+    [
+        ([-1], []),
+        ([-1, 0, 1, 2], []),
+        ([-1, 0, 0, 0], [0]),
+        ([-1, 0, 0, 0, 1, 4, 4], [0, 1, 4]),
+        ([-1, 0, 0, 1, 1, 2, 2], [0, 1, 2]),
+        ([-1, 0, 0, 0, 1, 4, 5, 5], [0, 1, 4, 5]),
+        ([-1, 0, 0, 0, 1, 4, 5], [0]),
+        ([-1, 0, 1, 1, 1], [1]),
+    ],
+    ids=["one", "chain", "fork", "belly", "belly that is the root", "two bellies", "tail", "beyond the root's end"],
+)
+def test_of_the_trunk_is_what_has_three_neighbours_or_lies_between_such(parents: list[int], of_trunk: list[int]) -> None:
+    assert np.flatnonzero(_are_of_trunk(np.array(parents), 3)).tolist() == of_trunk
+
+
+def test_rings_across_a_belly_lie_between_pelvis_and_chest() -> None:
+    """Belly 0, chest 1 with limbs 5 and 6, pelvis 2 with limbs 3 and 4."""
+    z, right = BODY.V[:, 2], BODY.V[:, 0] > 0.0
+    low, high = (LIMBS + 1.0, END - 1.0)
+    limbs = np.where(z < LIMBS, np.where(right, 3, 4), np.where(right, 5, 6))
+    label = np.where((z < LIMBS) | (z > END), limbs, np.where(z < low, 2, np.where(z > high, 1, 0)))
+    parents, rest = np.array([-1, 0, 0, 2, 2, 1, 1]), np.zeros((7, 3))
+    rest[:, 2] = [0.0, high, low, LIMBS, LIMBS, END, END]
+    found = list(trunk_cuts(BODY.V, BODY.F, BODY.area, label, parents, rest, np.arange(7) > 2))
+    across = [cut for cut in found if cut.part == 0]
+    assert {(cut.above, cut.hung) for cut in across} == {(1, (2,)), (2, (1,))}
+    assert all(low < cut.centre[2] < high for cut in across)
+    fewer = np.where(label == 6, 5, label)
+    beside = list(trunk_cuts(BODY.V, BODY.F, BODY.area, fewer, parents[:6], rest[:6], np.arange(6) > 2))
+    assert not any(cut.part == 0 for cut in beside)
 
 
 def test_no_ring_parts_the_border_of_a_limb() -> None:
