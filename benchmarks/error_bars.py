@@ -62,7 +62,8 @@ KEEP = 0.89
 def fitted_law(
     anew: Sequence[Joints], others: Sequence[Joints], uncertain: float, without_surfaces: PowerLaw | None = None
 ) -> PowerLaw:
-    """The constants that fit the errors of these runs, all of one cut or all of several, but of joints that shape alone shows.
+    """The constants that fit the errors of these runs, all of one cut or all of several, but of joints that surfaces, shape
+    or mirror images alone show.
 
     The least error is the smallest with which the bound holds on both kinds of bodies.
 
@@ -73,7 +74,7 @@ def fitted_law(
     """
 
     def table(runs: Sequence[Joints]) -> tuple[Floats, Floats]:
-        moves = [np.isnan(r.features.tube) for r in runs]
+        moves = [~r.features.is_shown & np.isnan(r.features.tube) & np.isnan(r.features.mirrored) for r in runs]
         error = [r.mean / r.features.size / r.features.widening(uncertain).mean(axis=0) for r in runs]
         rows = np.concatenate([r.features.logarithms(r.cuts > 1)[k] for r, k in zip(runs, moves, strict=True)])
         if without_surfaces is None:

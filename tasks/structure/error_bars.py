@@ -72,14 +72,17 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     of_joints = (skeleton.drift, tree.spread, tree.joint_residual, skeleton.degrees, skeleton.lengths, tree.surface_offset)
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
     radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
-    is_still = np.isin(np.arange(len(skeleton.names)), (*tree.neck_joints, *tree.mirrored_joints))
-    tube = np.where(is_still, np.array(tree.border_radius), np.nan)
+    joints = np.arange(len(skeleton.names))
+    tube, mirrored = (
+        np.where(np.isin(joints, some), np.array(tree.border_radius), np.nan)
+        for some in (tree.neck_joints, tree.mirrored_joints)
+    )
     confidence = np.array(skeleton.confidence)
     below = np.zeros_like(degrees)
     np.maximum.at(below, parents[parents >= 0], degrees[parents >= 0])
     return numerics.JointFeatures(
         drift, spread, residual, degrees, length, offset, resistance, np.array(tree.hinge_offset), below, softness,
-        radius, tube, confidence, size,
+        radius, np.isin(joints, tree.end_joints), tube, mirrored, confidence, size,
     )  # fmt: skip
 
 

@@ -96,10 +96,12 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
 
 
 @pytest.mark.parametrize(
-    ("field", "kind", "words"),
-    [("neck_joints", "shape", "by the shape alone"), ("mirrored_joints", "mirror", "by the other side alone")],
+    ("field", "kind", "words", "share"),
+    [("neck_joints", "shape", "by the shape alone", 0.4), ("mirrored_joints", "mirror", "by the other side alone", 0.55)],
 )
-def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(field: str, kind: str, words: str) -> None:
+def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(
+    field: str, kind: str, words: str, share: float
+) -> None:
     body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
     tree = tree.model_copy(update={"border_radius": np.full(5, 2.0)})
     bars = error_bars(body, tree.model_copy(update={field: (3,)}))
@@ -108,6 +110,13 @@ def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(field
     lines = views.text(body, lambda cls: bars if cls is ErrorBars else None)
     assert [j for j, line in enumerate(lines) if f"{words}, no turn measured" in line] == [3]
     moving = error_bars(body, tree)
-    assert bars.expected[3] == pytest.approx(0.4 * 2.0), "it goes by the radius alone"
+    assert bars.expected[3] == pytest.approx(share * 2.0), "it goes by the radius alone"
     assert bars.expected[1] == moving.expected[1] != bars.expected[3]
     assert unknown_error_bars(body).evidence == (None,) * 5
+
+
+def test_a_joint_that_surfaces_alone_show_is_expected_at_half_the_error_of_another() -> None:
+    body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
+    plain, shown = error_bars(body, tree), error_bars(body, tree.model_copy(update={"end_joints": (3,)}))
+    np.testing.assert_allclose(shown.expected[[1, 3, 4]], plain.expected[[1, 3, 4]] * [1.0, 0.5, 1.0])
+    assert shown.evidence[3] == "motion"

@@ -10,7 +10,9 @@ SETTINGS = ErrorBarsSettings(
     PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.3, -0.1, 0.4, 0.0, 2.5),
     PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
     along_axis=0.1,
+    shown=0.25,
     across_tube=0.3,
+    across_mirrored=0.7,
     uncertain=2.0,
 )
 
@@ -20,10 +22,10 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
         "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "hinge": np.full(3, np.nan),
-        "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "tube": np.full(3, np.nan),
-        "confidence": np.ones((5, 3)), **changed,
+        "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "is_shown": np.zeros(3, np.bool_),
+        "tube": np.full(3, np.nan), "mirrored": np.full(3, np.nan), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
-    unscaled = ("degrees", "resistance", "below", "softness", "confidence")
+    unscaled = ("degrees", "resistance", "below", "softness", "is_shown", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
 
 
@@ -146,12 +148,26 @@ def test_no_error_is_below_the_least() -> None:
     )
 
 
-def test_a_joint_that_the_shape_alone_shows_is_off_by_a_share_of_its_tube_whatever_the_motion_says() -> None:
-    tube = np.array([np.nan, 0.05, np.nan])
-    bars, plain = error_bars(features(tube=tube), 4, SETTINGS), error_bars(features(), 4, SETTINGS)
-    assert bars.expected[1] == pytest.approx(0.3 * 0.05)
+@pytest.mark.parametrize(("field", "share"), [("tube", 0.3), ("mirrored", 0.7)])
+def test_a_joint_that_no_motion_shows_is_off_by_a_share_of_its_radius_whatever_the_motion_says(
+    field: str, share: float
+) -> None:
+    radius = np.array([np.nan, 0.05, np.nan])
+    bars, plain = error_bars(features(**{field: radius}), 4, SETTINGS), error_bars(features(), 4, SETTINGS)
+    assert bars.expected[1] == pytest.approx(share * 0.05)
     assert bars.bound[1] == pytest.approx(2.0 * bars.expected[1])
     np.testing.assert_array_equal(bars.expected[[0, 2]], plain.expected[[0, 2]])
+
+
+@pytest.mark.parametrize("offset", [np.nan, 0.002])
+def test_a_joint_that_surfaces_alone_show_is_better_than_its_missing_cuts_say(offset: float) -> None:
+    """No cut can have it; of one cut no joint is in others."""
+    known = {"offset": np.full(3, offset), "spread": np.full(3, np.nan)}
+    shown = features(is_shown=np.array([False, True, False]), **known)
+    for cuts, share in ((4, 0.25), (1, 1.0)):
+        bars, plain = error_bars(shown, cuts, SETTINGS), error_bars(features(**known), cuts, SETTINGS)
+        np.testing.assert_allclose(bars.expected, plain.expected * [1.0, share, 1.0])
+        np.testing.assert_allclose(bars.bound, plain.bound * [1.0, share, 1.0])
 
 
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
@@ -161,7 +177,7 @@ def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
     known = (drift, spread, residual, degrees, length, offset, resistance, hinge, below, softness)
-    rows = JointFeatures(*known, drift, drift, sure, 1.0).logarithms(True)
+    rows = JointFeatures(*known, drift, drift > 0.0, drift, drift, sure, 1.0).logarithms(True)
     law = [5.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2, 0.2, -0.1, 0.3]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3), (8, -0.3), (9, 0.3), (10, -0.3)):
