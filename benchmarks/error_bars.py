@@ -59,11 +59,18 @@ KEEP = 0.89
 """Share that keeps it at least among bodies surfaced anew, and among those of fixed connectivity or of more frames."""
 
 
+def _is_by_law(run: Joints) -> Flags:
+    """(joint,) whether the law gives the whole error of each joint."""
+    known = run.features
+    is_share = known.is_end_joint & (run.cuts > 1)
+    return np.asarray(~is_share & np.isnan(known.tube) & np.isnan(known.mirrored))
+
+
 def fitted_law(
     anew: Sequence[Joints], others: Sequence[Joints], uncertain: float, without_surfaces: PowerLaw | None = None
 ) -> PowerLaw:
-    """The constants that fit the errors of these runs, all of one cut or all of several, but of joints that surfaces, shape
-    or mirror images alone show.
+    """The constants that fit the errors of these runs, all of one cut or all of several, for joints whose whole
+    error the law gives (`_is_by_law`).
 
     The least error is the smallest with which the bound holds on both kinds of bodies.
 
@@ -74,7 +81,7 @@ def fitted_law(
     """
 
     def table(runs: Sequence[Joints]) -> tuple[Floats, Floats]:
-        moves = [~r.features.is_shown & np.isnan(r.features.tube) & np.isnan(r.features.mirrored) for r in runs]
+        moves = [_is_by_law(r) for r in runs]
         error = [r.mean / r.features.size / r.features.widening(uncertain).mean(axis=0) for r in runs]
         rows = np.concatenate([r.features.logarithms(r.cuts > 1)[k] for r, k in zip(runs, moves, strict=True)])
         if without_surfaces is None:

@@ -84,8 +84,8 @@ class KinematicTree(ArticulatedBody):
     uncertain: Annotated[Bools, Array("bool", FRAME)]
     """Frames in which some part has so little confidence that the body is fitted to the surface."""
     cut_frame: int | None = None
-    """Source frame of the cut whose tree this is, if another than that in the reference: it has more joints that other cuts
-    have too. Where vertices were aligned its limbs are mirror images of each other more than those of the first cut."""
+    """Source frame of the cut whose tree this is, if another than that in the reference, with which other cuts agree more.
+    Where vertices were aligned, how far its limbs are mirror images of each other counts, too."""
     part: Annotated[Ints, Array("int32", VERTEX)]
     """Part of each vertex, before any was dropped."""
     pair: Annotated[Ints, Array("int32", PAIR, END)]

@@ -115,7 +115,7 @@ def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(
     assert unknown_error_bars(body).evidence == (None,) * 5
 
 
-def test_a_joint_that_surfaces_alone_show_is_expected_at_half_the_error_of_another() -> None:
+def test_a_joint_that_surfaces_show_is_expected_at_half_the_error_of_another() -> None:
     body, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
     plain, shown = error_bars(body, tree), error_bars(body, tree.model_copy(update={"end_joints": (3,)}))
     np.testing.assert_allclose(shown.expected[[1, 3, 4]], plain.expected[[1, 3, 4]] * [1.0, 0.5, 1.0])

@@ -2,8 +2,8 @@
 
 Which joints a cut shows depends on where its rings and patches fall. A joint that two cuts have is likely one, a joint that one
 cut has alone is likely flesh; of two cuts neither is in the majority. Where vertices were aligned all cuts err alike, so that
-their agreement alone does not say: another cut's tree is used there only if its limbs are mirror images of each other more than
-those of the first.
+their agreement alone does not say: another cut's tree is used there only if limbs of some cut are mirror images of each other
+more than those of the first, and if it is no worse than that cut.
 """
 
 from collections.abc import Sequence
@@ -20,13 +20,14 @@ bodies are found, with 3 fewer."""
 
 
 def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int] | None = None) -> int:
-    """The cut with most joints that another cut has too, less those that it has alone; of equals the first.
+    """The cut with most joints that another cut has too, less those that it has alone.
 
     Where the frames give the correspondence it has such a joint, and no fewer of them than the first cut, so that a cut which
-    shows little never wins. Elsewhere `symmetry` is added, see `joint_partners`; it must be more than the first cut's. Of
-    equals it is there the one with fewest joints of its own, however symmetric: halves of a pelvis are mirror images of each
-    other, so that they count as much as the joint between them, which no other cut has, counts against them. Of two cuts it is
-    the first.
+    shows little never wins; of equals it is the first. Elsewhere `symmetry` is added, see `joint_partners`. Only if the best
+    cut with more symmetry than the first is clearly better (`AHEAD`), another one is used: of those that are as good as that
+    cut and no less symmetric than the first the one with fewest joints of its own, of equals the best. For halves of a pelvis
+    are mirror images of each other, which counts as much as the joint between them, that no other cut has, counts against
+    them. Of two cuts it is the first.
 
     trees    : of all cuts, in the reference, the first cut's first
     size     : root of the area, mesh unit
@@ -42,12 +43,11 @@ def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int
         least = max(shared[0].sum(), 1)
         return int(np.argmax([one if has.sum() >= least else -np.inf for one, has in zip(score, shared, strict=True)]))
     score += symmetry
-    is_more = np.array(symmetry) > symmetry[0]
-    if not is_more.any():
+    is_more, is_less = (np.array(symmetry) > symmetry[0], np.array(symmetry) < symmetry[0])
+    if not is_more.any() or score[is_more].max() <= score[0] + AHEAD:
         return 0
-    alone, equals = np.array([(~has).sum() for has in shared]), np.flatnonzero(score == score[is_more].max())
-    best = min(equals.tolist(), key=lambda k: (alone[k], not is_more[k], k))
-    return best if score[best] > score[0] + AHEAD else 0
+    as_good = np.flatnonzero((score >= score[is_more].max()) & ~is_less)
+    return min(as_good.tolist(), key=lambda k: (int((~shared[k]).sum()), -score[k]))
 
 
 def in_other_cuts(X: Floats, others: Sequence[Floats], size: float) -> Flags:

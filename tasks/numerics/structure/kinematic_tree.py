@@ -17,7 +17,7 @@ from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.necks import necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.posed_tree import chains, posed, with_spine
+from kinetree.tasks.numerics.structure.posed_tree import joints_and_ends, posed_tree, with_spine
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
@@ -136,7 +136,7 @@ def kinematic_tree(
     if first.shown:
         body = first.with_ends(body)
     hanging = tubes(V, body.F, first.label, first.parents, first.radius) if has_necks else []
-    tree = posed(body, first, confidence, further, laid, hanging)
+    tree = posed_tree(body, first, confidence, further, laid, hanging)
     if up is not None:
         tree = with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):
@@ -166,7 +166,7 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
     """Parts and end effectors as one list of joints, named and in the order of their names · (joint,) that order."""
     parents, motion, W, label = tree.parents, tree.motion, tree.W, tree.label
     parts = len(parents)
-    part, is_end, above, rest, X = chains(V, tree, ends)
+    part, is_end, above, rest, X = joints_and_ends(V, tree, ends)
     order, names = joint_names(rest, above, is_end)
     place = np.argsort(order)
     turns = np.einsum("tpxy,tpxz->tpyz", motion.R[:, parents], motion.R)

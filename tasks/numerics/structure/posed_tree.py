@@ -28,8 +28,15 @@ of its parts leave unexplained counts as drift there. Of 29 joints of recorded a
 have more: 2.6, where motion was right, 3.4, where both were, and 3.8, where the shape was. With 5 these three move as well."""
 
 
-class Chains(NamedTuple):
-    """Parts, and beyond them ends of bones: part, is_end, parents (joint,), rest (joint, xyz), X (frame, joint, xyz)."""
+class JointsAndEnds(NamedTuple):
+    """The joints of all parts, in their order, and after them the ends of bones.
+
+    part    : (joint,) the part that turns about each joint; of an end, the part that it ends
+    is_end  : (joint,)
+    parents : (joint,) −1 for the root
+    rest    : (joint, xyz) in the reference, mesh unit
+    X       : (frame, joint, xyz) mesh unit
+    """
 
     part: Ints
     is_end: Flags
@@ -38,7 +45,7 @@ class Chains(NamedTuple):
     X: Floats
 
 
-def chains(V: Floats, tree: PosedTree, ends: Ints) -> Chains:
+def joints_and_ends(V: Floats, tree: PosedTree, ends: Ints) -> JointsAndEnds:
     """The joints of a tree and the ends of its bones (end, 2), see `end_effectors`."""
     parts, motion, hanging = len(tree.parents), tree.motion, ends[:, 0]
     part = np.concatenate([np.arange(parts), hanging])
@@ -46,10 +53,10 @@ def chains(V: Floats, tree: PosedTree, ends: Ints) -> Chains:
     X = placed(motion, tree.parents)
     tips = X[:, hanging] + np.einsum("texy,ey->tex", motion.R[:, hanging], rest[parts:] - motion.rest[hanging])
     above = np.concatenate([tree.parents, hanging])
-    return Chains(part, np.arange(len(part)) >= parts, above, rest, np.concatenate([X, tips], axis=1))
+    return JointsAndEnds(part, np.arange(len(part)) >= parts, above, rest, np.concatenate([X, tips], axis=1))
 
 
-def posed(
+def posed_tree(
     body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None,
     hanging: Sequence[Tube],
 ) -> PosedTree:  # fmt: skip
@@ -101,7 +108,7 @@ def with_spine(
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
     up         : (xyz,) unit vector
     """
-    found = chains(body.V, tree, ends)
+    found = joints_and_ends(body.V, tree, ends)
     of_joint = np.where(found.is_end, 0.0, tree.radius[found.part])
     moving = LimbMotion(found.rest, found.parents, found.X, tree.motion.R[:, found.part], up)
     shift = spine_shifts(moving, of_joint)[: len(tree.parents)]

@@ -70,23 +70,25 @@ def trunk_cuts(
     V, F     : (vertex, xyz) reference, mesh unit · (face, corner)
     area     : (vertex,) mesh unit²
     label    : (vertex,) part
-    parents  : (part,) −1 for the root
+    parents  : (part,) −1 for the root, which is the first; a part comes after its parent
     rest     : (part, xyz) joints in the reference, mesh unit
     mirrored : (part,) whether each is of a limb with a mirror image, so that it is not of the trunk
     """
     chosen = settings or TrunkCutsSettings()
     start, ring = rings(F, len(V))
     edges = ring_edges(start, ring)
-    for one in _parts(edges, label, parents, rest, chosen):
+    for one in _parts(edges, label, parents, rest, mirrored, chosen):
         is_root = parents[one.part] < 0
         for above in sorted(one.joints) if is_root else [int(parents[one.part])]:
             if not mirrored[one.part] and not mirrored[above]:
                 yield from _across(V, area, label, one, above, chosen)
 
 
-def _parts(edges: Ints, label: Ints, parents: Ints, rest: Floats, chosen: TrunkCutsSettings) -> Iterator[_Part]:
-    """The parts with enough neighbours."""
-    for part in np.flatnonzero(_are_of_trunk(parents, chosen.neighbours)).tolist():
+def _parts(
+    edges: Ints, label: Ints, parents: Ints, rest: Floats, mirrored: Flags, chosen: TrunkCutsSettings
+) -> Iterator[_Part]:
+    """The parts of the trunk, see `_are_of_trunk`."""
+    for part in np.flatnonzero(_are_of_trunk(parents, mirrored, chosen.neighbours)).tolist():
         joints = {int(k): rest[k] for k in np.flatnonzero(parents == part)}
         if parents[part] >= 0:
             joints[int(parents[part])] = rest[part]
@@ -95,10 +97,11 @@ def _parts(edges: Ints, label: Ints, parents: Ints, rest: Floats, chosen: TrunkC
             yield _Part(part, np.flatnonzero(label == part), edge, edge[label[edge[:, 1]] == part], joints)
 
 
-def _are_of_trunk(parents: Ints, neighbours: int) -> Flags:
-    """(part,) whether each has so many neighbours, or lies between two that have."""
+def _are_of_trunk(parents: Ints, mirrored: Flags, neighbours: int) -> Flags:
+    """(part,) whether each has so many neighbours, or lies between two that have; parts of mirrored limbs do not count."""
     below = beyond(parents) > 0
-    carries = np.bincount(parents[1:], minlength=len(parents)) + (parents >= 0) >= neighbours
+    carries = np.bincount(parents[parents >= 0], minlength=len(parents)) + (parents >= 0) >= neighbours
+    carries &= ~mirrored
     downwards = [(below[parents == part] & carries).any(axis=1).sum() for part in range(len(parents))]
     upwards = (~below & carries).any(axis=1)
     return carries | (np.array(downwards) + upwards > 1)

@@ -119,7 +119,9 @@ def elimination_words(parts: RigidParts) -> str:
 def structure_words(body: ArticulatedBody, tree: KinematicTree) -> str:
     """Parts, borders, and how many of them are joints."""
     parts = f"{len(tree.joint_of_part)} parts with {len(tree.pair)} borders, {len(tree.dropped)} of the parts dropped"
-    why = "with which other cuts agree most" if tree.is_given else "whose limbs are mirror images of each other more"
+    why = (
+        "with which other cuts agree most" if tree.is_given else "with which other cuts, and both sides of the body, agree more"
+    )
     cut = "" if tree.cut_frame is None else f" It is of the cut in frame {tree.cut_frame}, {why}."
     return f"The graph of {parts}; beside it the tree with {body.kinds.count('joint')} joints.{cut}"
 

@@ -10,7 +10,7 @@ SETTINGS = ErrorBarsSettings(
     PowerLaw(1.5, 0.2, 0.3, 0.1, -0.5, -0.3, 0.5, 0.2, 0.3, -0.1, 0.4, 0.0, 2.5),
     PowerLaw(0.3, 0.8, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
     along_axis=0.1,
-    shown=0.25,
+    end_joint=0.25,
     across_tube=0.3,
     across_mirrored=0.7,
     uncertain=2.0,
@@ -22,10 +22,10 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
         "drift": np.array([0.01, 0.02, 0.01]), "spread": np.array([0.004, 0.004, 0.008]),
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
         "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "hinge": np.full(3, np.nan),
-        "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "is_shown": np.zeros(3, np.bool_),
+        "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "is_end_joint": np.zeros(3, np.bool_),
         "tube": np.full(3, np.nan), "mirrored": np.full(3, np.nan), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
-    unscaled = ("degrees", "resistance", "below", "softness", "is_shown", "confidence")
+    unscaled = ("degrees", "resistance", "below", "softness", "is_end_joint", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
 
 
@@ -160,10 +160,10 @@ def test_a_joint_that_no_motion_shows_is_off_by_a_share_of_its_radius_whatever_t
 
 
 @pytest.mark.parametrize("offset", [np.nan, 0.002])
-def test_a_joint_that_surfaces_alone_show_is_better_than_its_missing_cuts_say(offset: float) -> None:
-    """No cut can have it; of one cut no joint is in others."""
+def test_a_joint_that_surfaces_show_is_better_than_its_missing_cuts_say(offset: float) -> None:
+    """Of one cut no joint is in others."""
     known = {"offset": np.full(3, offset), "spread": np.full(3, np.nan)}
-    shown = features(is_shown=np.array([False, True, False]), **known)
+    shown = features(is_end_joint=np.array([False, True, False]), **known)
     for cuts, share in ((4, 0.25), (1, 1.0)):
         bars, plain = error_bars(shown, cuts, SETTINGS), error_bars(features(**known), cuts, SETTINGS)
         np.testing.assert_allclose(bars.expected, plain.expected * [1.0, share, 1.0])

@@ -7,7 +7,7 @@ from trunk import LIMBS, MIRRORED, trunk
 
 from kinetree.tasks.numerics.arrays import Ints
 from kinetree.tasks.numerics.structure.end_cuts import EndCut
-from kinetree.tasks.numerics.structure.trunk_cuts import _are_of_trunk, trunk_cuts
+from kinetree.tasks.numerics.structure.trunk_cuts import TrunkCutsSettings, _are_of_trunk, trunk_cuts
 
 BODY, TREE = trunk(turning(0.0))
 
@@ -43,7 +43,7 @@ def test_seen_from_the_part_above_they_are_the_same() -> None:
     assert [cut.centre[2] for cut in found] == pytest.approx([cut.centre[2] for cut in cuts()])
 
 
-def test_a_part_with_two_neighbours_and_limbs_have_none() -> None:
+def test_a_part_with_two_neighbours_at_the_end_of_the_trunk_and_limbs_have_none() -> None:
     merged = np.where(TREE.label == 3, 2, TREE.label)
     assert cuts(merged, TREE.parents[:3]) == []
     assert cuts(mirrored=(0, 1, 2, 3)) == []
@@ -61,11 +61,37 @@ def test_a_part_with_two_neighbours_and_limbs_have_none() -> None:
         ([-1, 0, 0, 0, 1, 4, 5, 5], [0, 1, 4, 5]),
         ([-1, 0, 0, 0, 1, 4, 5], [0]),
         ([-1, 0, 1, 1, 1], [1]),
+        ([-1, 0, 1, 2, 3, 3], [3]),
+        ([-1, 0, 0, 0, 1, 4, 5, 6, 6], [0, 1, 4, 5, 6]),
     ],
-    ids=["one", "chain", "fork", "belly", "belly that is the root", "two bellies", "tail", "beyond the root's end"],
+    ids=[
+        "one",
+        "chain",
+        "fork",
+        "belly",
+        "belly that is the root",
+        "two bellies",
+        "tail",
+        "beyond the root's end",
+        "at the end of a chain",
+        "three bellies",
+    ],
 )
 def test_of_the_trunk_is_what_has_three_neighbours_or_lies_between_such(parents: list[int], of_trunk: list[int]) -> None:
-    assert np.flatnonzero(_are_of_trunk(np.array(parents), 3)).tolist() == of_trunk
+    assert np.flatnonzero(_are_of_trunk(np.array(parents), np.zeros(len(parents), np.bool_), 3)).tolist() == of_trunk
+
+
+def test_toes_of_a_limb_with_a_mirror_image_do_not_make_it_trunk() -> None:
+    parents, limb = np.array([-1, 0, 0, 0, 3, 4, 5, 6, 6]), np.arange(9) >= 5
+    assert np.flatnonzero(_are_of_trunk(parents, limb, 3)).tolist() == [0]
+    assert np.flatnonzero(_are_of_trunk(parents, ~limb & limb, 3)).tolist() == [0, 3, 4, 5, 6]
+
+
+def test_with_more_neighbours_asked_for_fewer_parts_are_of_the_trunk() -> None:
+    label, parents, rest = TREE.label, TREE.parents, TREE.rest
+    of = (BODY.V, BODY.F, BODY.area, label, parents, rest, np.isin(np.arange(4), MIRRORED))
+    assert not list(trunk_cuts(*of, TrunkCutsSettings(neighbours=4)))
+    assert list(trunk_cuts(*of, TrunkCutsSettings(neighbours=3)))
 
 
 def test_rings_across_a_belly_lie_between_pelvis_and_chest() -> None:

@@ -57,7 +57,7 @@ def test_a_tree_of_another_cut_than_the_first_says_whose_it_is() -> None:
     assert own.endswith(f"beside it the tree with {body.kinds.count('joint')} joints.")
     for is_given, why in (
         (True, "with which other cuts agree most"),
-        (False, "whose limbs are mirror images of each other more"),
+        (False, "with which other cuts, and both sides of the body, agree more"),
     ):
         other = structure_words(body, SimpleNamespace(**{**vars(tree), "cut_frame": 9, "is_given": is_given}))
         assert other == f"{own} It is of the cut in frame 9, {why}."
