@@ -306,6 +306,10 @@ def test_bones_of_one_joint_begin_in_one_place_in_every_frame(laid: bool, monkey
     assert not laid or set(np.flatnonzero(asked["held"])) == set(arms)
     one, other = near(found, at)
     np.testing.assert_array_equal(found.positions[:, one], found.positions[:, other])
+    rest[arms] = found.rest[[one, other]]
+    drift = first.drift_at(rest)[arms]
+    np.testing.assert_allclose(sorted(found.drift[[one, other]]), sorted(drift), err_msg="drift where the joints were moved to")
+    assert not np.isclose(sorted(drift), sorted(first.drift[arms])).all()
 
 
 def test_bones_whose_joints_one_take_tells_apart_do_not_begin_in_one_place() -> None:
