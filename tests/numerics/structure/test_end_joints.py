@@ -12,6 +12,7 @@ from trunk import trunk
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.structure import end_joints as module
 from kinetree.tasks.numerics.structure.end_joints import (
     EndJoint,
     EndJointsSettings,
@@ -21,6 +22,7 @@ from kinetree.tasks.numerics.structure.end_joints import (
     judged_runs,
 )
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
+from kinetree.tasks.numerics.structure.ring_evidence import RingEvidence
 
 
 def joints_at(
@@ -73,7 +75,7 @@ def test_the_piece_beyond_moves_as_in_the_frames() -> None:
 def test_where_frames_are_far_apart_both_halves_of_what_lies_beyond_show_the_joint(noise: float) -> None:
     (joint,) = joints_at(to_and_fro(15.0), noise)
     np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
-    for refused in ({"least_in_halves": 10.0}, {"goes_on": -2.0}, {"nearer": 60.0}):
+    for refused in ({"least_in_halves": 10.0}, {"halves_below": -2.0}, {"nearer": 60.0}):
         assert joints_at(to_and_fro(15.0), noise, EndJointsSettings(**refused)) == []
 
 
@@ -92,6 +94,30 @@ def test_where_frames_are_far_apart_a_turn_that_goes_on_is_found_too() -> None:
     turn = to_and_fro(0.0)
     turn[:, 2] = turning(25.0)[:, 2]
     assert len(joints_at(turn)) == 1
+
+
+@pytest.mark.parametrize(
+    ("goes_on", "lasting", "halves"), [(0.69, True, True), (0.71, True, False), (0.51, True, True), (0.49, False, True)]
+)
+def test_how_much_turns_go_on_says_what_is_asked(
+    goes_on: float, lasting: bool, halves: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: dict[str, set[bool]] = {"lasting": set(), "halves": set()}
+    by_neighbours, by_halves = module.ring_evidence, module.evidence_of_halves
+
+    def neighbours(*of: Any, lasting: bool) -> RingEvidence:
+        asked["lasting"].add(lasting)
+        return by_neighbours(*of, lasting=lasting)
+
+    def in_halves(*of: Any) -> RingEvidence:
+        asked["halves"].add(True)
+        return by_halves(*of)
+
+    monkeypatch.setattr(module, "going_on", lambda *of: goes_on)
+    monkeypatch.setattr(module, "ring_evidence", neighbours)
+    monkeypatch.setattr(module, "evidence_of_halves", in_halves)
+    assert len(joints_at(25.0)) == 1
+    assert asked == {"lasting": {lasting}, "halves": {True} if halves else set()}
 
 
 def test_whether_frames_are_far_apart_is_judged_take_by_take() -> None:
