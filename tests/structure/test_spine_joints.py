@@ -44,6 +44,9 @@ def test_joints_of_the_spine_go_back_and_no_other_joint_moves(trees: tuple[Kinem
     assert {after.names[j].split("_")[0] for j in moved} == {"spine"}
     np.testing.assert_allclose(np.linalg.norm(way[moved], axis=1), 0.25 * after.border_radius[moved], rtol=1e-9)
     assert (way[moved, 1] > 0.8 * np.linalg.norm(way[moved], axis=1)).all()
+    stays = np.setdiff1d(np.arange(len(way)), moved)
+    np.testing.assert_allclose(after.drift[stays], before.drift[stays])
+    assert not np.isclose(after.drift[moved], before.drift[moved]).any(), "drift is that of where a joint lies"
 
 
 def test_bones_keep_their_lengths_about_the_moved_joints(trees: tuple[KinematicTree, KinematicTree]) -> None:

@@ -43,10 +43,11 @@ def agreeing_cut(trees: Sequence[FirstTree], size: float, symmetry: Sequence[int
         least = max(shared[0].sum(), 1)
         return int(np.argmax([one if has.sum() >= least else -np.inf for one, has in zip(score, shared, strict=True)]))
     score += symmetry
-    is_more, is_less = (np.array(symmetry) > symmetry[0], np.array(symmetry) < symmetry[0])
-    if not is_more.any() or score[is_more].max() <= score[0] + AHEAD:
+    more = np.array(symmetry) - symmetry[0]
+    best = score[more > 0].max(initial=-np.inf)
+    if best <= score[0] + AHEAD:
         return 0
-    as_good = np.flatnonzero((score >= score[is_more].max()) & ~is_less)
+    as_good = np.flatnonzero((score >= best) & (more >= 0))
     return min(as_good.tolist(), key=lambda k: (int((~shared[k]).sum()), -score[k]))
 
 

@@ -47,8 +47,8 @@ class EndJointsSettings(NamedTuple):
     to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads, of people 86 to 99 too, and beside a foot of
     four-legged 0 have 0.0130 at most."""
     least_score_in_trunk: float = 0.05
-    """The same across the trunk. Of 0.04, 0.05 and 0.06 chosen on 132 bodies (RESULTS, "Bellies"): against 0.06 four more
-    joints are found with 0.05 and none is false, with 0.04 three more yet, and five are false."""
+    """The same across the trunk. Of 0.04, 0.05 and 0.06 chosen on 132 bodies (RESULTS, "The limit of rings across the trunk"):
+    against 0.06 four more joints are found with 0.05 and none is false, with 0.04 three more yet, and five are false."""
     least_apart: float = 0.6
     """Distance of a ring across the trunk from the nearest of the part's joints, in radii of the ring, at least: the likeliest
     ring of a part that lies nearer says that the joint that is there is a little off."""

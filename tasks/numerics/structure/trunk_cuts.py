@@ -27,7 +27,7 @@ class TrunkCutsSettings(NamedTuple):
     chests of humans 3 and 63 score less than they need."""
     neighbours: int = 3
     """Parts that hang on the part or that it hangs on, at least: a part of the trunk carries limbs. One that has two is of the
-    trunk as well where such a part lies on either side of it, as a belly between pelvis and chest."""
+    trunk as well where such a part lies on either side of it, as an abdomen between pelvis and chest."""
     on_one_side: float = 0.65
     """Share of the border with every other neighbour that lies on one side of the ring, at least. Rings that part a border,
     through shoulders, score up to 0.074 where nothing turns."""

@@ -68,13 +68,13 @@ def test_a_part_with_two_neighbours_at_the_end_of_the_trunk_and_limbs_have_none(
         "one",
         "chain",
         "fork",
-        "belly",
-        "belly that is the root",
-        "two bellies",
+        "abdomen",
+        "abdomen that is the root",
+        "two between",
         "tail",
         "beyond the root's end",
         "at the end of a chain",
-        "three bellies",
+        "three between",
     ],
 )
 def test_of_the_trunk_is_what_has_three_neighbours_or_lies_between_such(parents: list[int], of_trunk: list[int]) -> None:
@@ -94,8 +94,8 @@ def test_with_more_neighbours_asked_for_fewer_parts_are_of_the_trunk() -> None:
     assert list(trunk_cuts(*of, TrunkCutsSettings(neighbours=3)))
 
 
-def test_rings_across_a_belly_lie_between_pelvis_and_chest() -> None:
-    """Belly 0, chest 1 with limbs 5 and 6, pelvis 2 with limbs 3 and 4."""
+def test_rings_across_an_abdomen_lie_between_pelvis_and_chest() -> None:
+    """Abdomen 0, chest 1 with limbs 5 and 6, pelvis 2 with limbs 3 and 4."""
     z, right = BODY.V[:, 2], BODY.V[:, 0] > 0.0
     low, high = (LIMBS + 1.0, END - 1.0)
     limbs = np.where(z < LIMBS, np.where(right, 3, 4), np.where(right, 5, 6))
