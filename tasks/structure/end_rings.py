@@ -33,7 +33,7 @@ def end_rings(
     tree, frame = restored(agreed_tree), np.array([agreed_tree.frames.index(f) for f in mesh])
     pairs = limb_pairs(V, F, tips_of(reference, leaves))
     inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
-    rings = numerics.end_rings(V, F, area, tree, inside)
+    rings = numerics.end_rings(V, F, area, tree, inside, pairs)
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
     surface = cache(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
     fits: list[numerics.Fits] = [{} for _ in rings]

@@ -39,6 +39,7 @@ class EndCut(NamedTuple):
     beyond : (own,) how far each lies beyond the ring along the surface, negative before it, mesh unit
     hung   : parts that hang on the piece beyond the ring; none at the end of a limb
     apart  : distance of the ring from the nearest of the part's joints, in radii of the ring; of rings across the trunk alone
+    level  : which of the part's levels a ring across one of two limbs lies at, see `limb_cuts`; −1 of all other rings
     """
 
     part: int
@@ -49,6 +50,12 @@ class EndCut(NamedTuple):
     beyond: Floats
     hung: tuple[int, ...] = ()
     apart: float = np.inf
+    level: int = -1
+
+    @property
+    def is_across_limb(self) -> bool:
+        """Whether it lies across one of both limbs of a pair, and the piece before it goes on in the part above."""
+        return self.level >= 0
 
     @property
     def far(self) -> Flags:

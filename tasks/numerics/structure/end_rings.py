@@ -12,6 +12,8 @@ from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, sampled_piece
+from kinetree.tasks.numerics.structure.limb_cuts import limb_cuts
+from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs
 from kinetree.tasks.numerics.structure.piece_fit import Piece, PieceFit, PiecePose
 from kinetree.tasks.numerics.structure.trunk_cuts import TrunkCutsSettings, trunk_cuts
 
@@ -119,23 +121,33 @@ class EndFrames(NamedTuple):
                 yield f, self.surface(f), there
 
 
-def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags) -> list[EndRing]:
-    """All rings across the last parts of limbs and across the trunk, part by part.
+def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, pairs: LimbPairs = NO_PAIRS) -> list[EndRing]:
+    """All rings across the last parts of limbs, across the trunk, and across limbs that one part holds, part by part.
 
     V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
     mirrored   : (part,) whether each is of a limb with a mirror image
+    pairs      : limbs that are mirror images
     """
     N = smoothed_normals(V, F)
     of = (V, F, area, tree.label, tree.parents, tree.rest)
     at_ends = [_ring(V, N, tree, cut)._replace(is_bent=bool(mirrored[cut.part])) for cut in end_cuts(*of)]
-    return [*at_ends, *(_ring(V, N, tree, cut) for cut in trunk_cuts(*of, mirrored))]
+    return [*at_ends, *(_ring(V, N, tree, cut) for cut in (*trunk_cuts(*of, mirrored), *limb_cuts(*of, pairs)))]
 
 
-def closer_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags, parts: Collection[int]) -> list[EndRing]:
-    """Rings across some parts of the trunk that lie closer together; arguments as in `end_rings`."""
+def closer_rings(
+    V: Floats,
+    F: Ints,
+    area: Floats,
+    tree: FirstTree,
+    mirrored: Flags,
+    parts: Collection[int],
+    pairs: LimbPairs = NO_PAIRS,
+) -> list[EndRing]:
+    """Rings across some parts of the trunk that lie closer together, and across limbs that these hold; as in `end_rings`."""
     N, chosen = smoothed_normals(V, F), TrunkCutsSettings()
     chosen = chosen._replace(levels=chosen.closer_levels)
-    cuts = trunk_cuts(V, F, area, tree.label, tree.parents, tree.rest, mirrored, chosen)
+    of = (V, F, area, tree.label, tree.parents, tree.rest)
+    cuts = (*trunk_cuts(*of, mirrored, chosen), *limb_cuts(*of, pairs))
     return [_ring(V, N, tree, cut) for cut in cuts if cut.part in parts]
 
 
@@ -169,10 +181,10 @@ def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Se
     """
     R, t = frames.tree.R, frames.tree.t
     for f, target, there in frames.showing(which, rings):
-        whole: dict[tuple[int, int], PieceFit] = {}
+        whole: dict[tuple[int, ...], PieceFit] = {}
         for k in there:
             (cut, piece, is_bent), goal = rings[k], frames.goal(f, rings[k])
-            of = (cut.part, cut.above)
+            of = (cut.part, cut.above, k) if cut.is_across_limb else (cut.part, cut.above)
             if of not in whole:
                 start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
                 whole[of] = laid_as_one(piece, start, goal, target)

@@ -8,12 +8,14 @@ from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import EndFrames, Fits, closer_rings, end_rings, laid_in_runs
+from kinetree.tasks.numerics.structure.evident_rings import joint_inwards
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
 
 NEAREST = 20
@@ -43,16 +45,17 @@ def with_end_joints(
     """
     chosen, pairs = EndJointsSettings(), limb_pairs(body.V, body.F, leaves)
     mirrored, ends = _in_mirrored_limbs(tree, pairs), np.unique(tree.label[pairs.tip])
-    rings, frames = end_rings(body.V, body.F, body.area, tree, mirrored), _frames(body, tree, surface, confidence)
+    rings, frames = end_rings(body.V, body.F, body.area, tree, mirrored, pairs), _frames(body, tree, surface, confidence)
     found = end_joints(frames, rings, fits, body.takes, ends[mirrored[ends]].tolist(), chosen)
-    runs, closer = judged_runs(len(body.x), body.takes, chosen), chosen._replace(least_apart=chosen.least_apart_if_closer)
+    closer = chosen._replace(evident=chosen.evident._replace(least_apart=chosen.evident.least_apart_if_closer))
+    runs = judged_runs(len(body.x), body.takes, chosen)
     asked = np.arange(len(body.V))
     while True:
         if found:
             tree = extended_tree(body, tree, found, confidence, noise)
             body = tree.with_ends(body)
         mirrored, frames = _in_mirrored_limbs(tree, pairs), _frames(body, tree, surface, confidence)
-        rings = closer_rings(body.V, body.F, body.area, tree, mirrored, _with_neighbours(tree, tree.label[asked]))
+        rings = closer_rings(body.V, body.F, body.area, tree, mirrored, _with_neighbours(tree, tree.label[asked]), pairs)
         found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=closer)
         if not found:
             return tree
@@ -92,7 +95,7 @@ def extended_tree(
     for k, (one, is_beyond) in enumerate(zip(found, stays, strict=True), start=count):
         label[one.cut.own[one.cut.far ^ is_beyond]] = k
         hung = np.isin(np.arange(len(parents)), one.cut.hung)
-        parents[(hung ^ is_beyond) & (parents == one.cut.part) & (np.arange(len(parents)) != k)] = k
+        parents[(hung ^ is_beyond) & (parents == one.cut.part) & (np.arange(len(parents)) < count)] = k
     order = _parts_after_parents(parents, [k for k, one in enumerate(found, start=count) if not one.cut.hung])
     place = np.argsort(order)
     nearer = [one.cut.part for one in found]
@@ -121,6 +124,8 @@ def extended_tree(
         unexplained=unexplained[:, order],
         radius=np.append(tree.radius, [one.cut.radius for one in found])[order],
     )
+    beside = np.array(sorted({place[joint_inwards(tree, one.cut)] for one in found if one.cut.is_across_limb}), np.int64)
+    new.rest[beside] = _turning_about(new, beside)
     moved = {*new.shown, *parents[list(new.shown)].tolist()}
     changed = np.array([k for k in range(1, len(parents)) if k in moved or parents[k] in moved])
     drifts = new.drift.copy()
@@ -128,11 +133,17 @@ def extended_tree(
     return new._replace(drift=drifts, end_x=x[:, new.at_ends])
 
 
+def _turning_about(tree: FirstTree, joints: Ints) -> Floats:
+    """(joint, xyz) where the motions of both parts have some joints, mesh unit."""
+    pair, radius = np.stack([joints, tree.parents[joints]], axis=1), tree.radius[joints]
+    return rotation_centres(tree.R, tree.t, pair, tree.rest[joints], radius, tree.unexplained, tree.certain_share).rest
+
+
 def _keeps_root(V: Floats, tree: FirstTree, one: EndJoint) -> bool:
     """Whether the root's place lies beyond a ring, so that the piece beyond it is the root and the other one hangs on it."""
     cut = one.cut
-    if tree.parents[cut.part] >= 0:
-        return False
+    if cut.is_across_limb or tree.parents[cut.part] >= 0:
+        return cut.is_across_limb
     away = np.linalg.norm(V[cut.own] - tree.rest[cut.part], axis=1)
     nearest = np.argsort(away, kind="stable")[: max(len(away) // NEAREST, 1)]
     return bool(cut.far[nearest].mean() > 0.5)

@@ -38,6 +38,10 @@ class LimbPairs(NamedTuple):
     distance: Floats
 
 
+NO_PAIRS = LimbPairs(np.zeros((0, 2), np.int64), np.zeros((0, 2, 0)))
+"""Of a body without mirror images."""
+
+
 def limb_pairs(V: Floats, F: Ints, leaves: Ints) -> LimbPairs:
     """Ends that are clearly each other's best partner; of the largest connected piece of the surface alone.
 

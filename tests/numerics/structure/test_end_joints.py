@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from limbs import rotation
 from smeared import END, Frames, aligned, found_in, turning
-from trunk import trunk
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
@@ -16,11 +15,11 @@ from kinetree.tasks.numerics.structure import end_joints as module
 from kinetree.tasks.numerics.structure.end_joints import (
     EndJoint,
     EndJointsSettings,
-    _one_beside_each_joint,
     _RingFits,
     _usual,
     judged_runs,
 )
+from kinetree.tasks.numerics.structure.evident_rings import EvidentRingsSettings
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
 from kinetree.tasks.numerics.structure.ring_evidence import RingEvidence
 
@@ -75,7 +74,8 @@ def test_the_piece_beyond_moves_as_in_the_frames() -> None:
 def test_where_frames_are_far_apart_both_halves_of_what_lies_beyond_show_the_joint(noise: float) -> None:
     (joint,) = joints_at(to_and_fro(15.0), noise)
     np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
-    for refused in ({"least_in_halves": 10.0}, {"halves_below": -2.0}, {"nearer": 60.0}):
+    still = EvidentRingsSettings(nearer=60.0)
+    for refused in ({"least_in_halves": 10.0}, {"halves_below": -2.0}, {"evident": still}):
         assert joints_at(to_and_fro(15.0), noise, EndJointsSettings(**refused)) == []
 
 
@@ -127,15 +127,15 @@ def test_whether_frames_are_far_apart_is_judged_take_by_take() -> None:
 @pytest.mark.parametrize(("below", "joints"), [(0.9, 1), (1.1, 0)])
 def test_scores_by_halves_count_by_their_own_limit(below: float, joints: int) -> None:
     (joint,), chosen = joints_at(to_and_fro(15.0)), EndJointsSettings()
-    limit = joint.score * chosen.least_in_halves / chosen.least_score
+    limit = joint.score * chosen.least_in_halves / chosen.evident.least_score
     assert len(joints_at(to_and_fro(15.0), settings=EndJointsSettings(least_in_halves=below * limit))) == joints
 
 
 def test_halves_that_agree_more_never_lose_a_joint() -> None:
     turn = to_and_fro(0.0)
     turn[:, 2] = turning(25.0)[:, 2]
-    strict = {"slice_length": 10.0, "least_score_if_short": 0.02}
-    found = [joints_at(turn, settings=EndJointsSettings(least_in_halves=limit, **strict)) for limit in (0.01, 0.04)]
+    strict = EvidentRingsSettings(slice_length=10.0, least_score_if_short=0.02)
+    found = [joints_at(turn, settings=EndJointsSettings(strict, least_in_halves=limit)) for limit in (0.01, 0.04)]
     assert [len(joints) for joints in found] == [1, 1]
 
 
@@ -186,21 +186,21 @@ def test_a_reference_that_is_bent_beyond_the_ring_is_no_evidence() -> None:
 def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joint(
     degrees: float, slice_length: float, joints: int
 ) -> None:
-    assert len(joints_at(degrees, settings=EndJointsSettings(slice_length=slice_length))) == joints
+    assert len(joints_at(degrees, settings=EndJointsSettings(EvidentRingsSettings(slice_length=slice_length)))) == joints
 
 
 @pytest.mark.parametrize(("slice_length", "mirrored", "joints"), [(10.0, (1,), 0), (10.0, (0,), 1), (1.0, (1,), 1)])
 def test_a_short_piece_of_a_limb_with_a_mirror_image_is_a_slice_however_it_turns(
     slice_length: float, mirrored: tuple[int, ...], joints: int
 ) -> None:
-    settings = EndJointsSettings(slice_length=slice_length)
+    settings = EndJointsSettings(EvidentRingsSettings(slice_length=slice_length))
     assert len(joints_at(8.0, settings=settings, mirrored=mirrored)) == joints
 
 
 @pytest.mark.parametrize(("slice_length", "below", "joints"), [(10.0, 0.9, 1), (10.0, 1.1, 0), (1.0, 1.1, 1)])
 def test_a_short_piece_must_show_more_clearly(slice_length: float, below: float, joints: int) -> None:
     (joint,) = joints_at(8.0, 0.03)
-    settings = EndJointsSettings(slice_length=slice_length, least_score_if_short=below * joint.score)
+    settings = EndJointsSettings(EvidentRingsSettings(slice_length=slice_length, least_score_if_short=below * joint.score))
     assert len(joints_at(8.0, 0.03, settings)) == joints
 
 
@@ -254,30 +254,3 @@ def test_frames_are_judged_in_runs_of_a_few_that_follow_each_other_within_a_take
     assert {len(run) for run in long} == {4}
     assert all((np.diff(run) == 1).all() for run in long)
     assert judged_runs(1, None) == []
-
-
-@pytest.mark.parametrize(
-    ("rings", "kept"),
-    [
-        ([(0, 2.2, 0.24), (1, 3.5, 0.23)], [0]),
-        ([(0, 2.2, 0.23), (1, 3.5, 0.24)], [1]),
-        ([(1, 3.5, 0.24), (0, 2.2, 0.24)], [0]),
-        ([(0, -2.5, 0.24), (1, 3.5, 0.23)], [0, 1]),
-        ([], []),
-    ],
-    ids=["the first is better", "the second", "alike", "at two joints", "none"],
-)
-def test_of_rings_on_both_sides_of_a_joint_the_better_one_is_a_joint(
-    rings: list[tuple[int, float, float]], kept: list[int]
-) -> None:
-    """Of the trunk; one across the last part of a limb has no other side."""
-    _, tree = trunk(turning())
-    evident: list[Any] = [(at(part, height, (2,)), score) for part, height, score in rings]
-    end: Any = (at(1, 3.2, ()), 0.01)
-    assert _one_beside_each_joint(tree, [*evident, end]) == [*(evident[k] for k in kept), end]
-
-
-def at(part: int, height: float, hung: tuple[int, ...]) -> SimpleNamespace:
-    """A ring across a part of the trunk, of which no more is known."""
-    cut = SimpleNamespace(part=part, hung=hung, centre=np.array([0.0, 0.0, height]))
-    return SimpleNamespace(ring=SimpleNamespace(cut=cut))

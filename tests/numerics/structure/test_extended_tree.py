@@ -14,6 +14,7 @@ from whole_tree import fits_of_rings, joints_at_ends, whole_tree
 
 from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
+from kinetree.tasks.numerics.structure.evident_rings import EvidentRingsSettings
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends, with_end_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
@@ -174,12 +175,12 @@ def test_what_is_known_of_a_part_goes_with_it_where_the_order_changes() -> None:
     assert [bool(after._replace(label=np.array([k])).at_ends[0]) for k in range(5)] == [True, False, True, False, False]
 
 
-@pytest.mark.parametrize("settings", [EndJointsSettings(least_score_in_trunk=9.0), EndJointsSettings(least_apart=9.0)])
-def test_a_ring_across_the_trunk_must_be_clear_and_far_from_joints(settings: EndJointsSettings) -> None:
+@pytest.mark.parametrize("settings", [EvidentRingsSettings(least_score_in_trunk=9.0), EvidentRingsSettings(least_apart=9.0)])
+def test_a_ring_across_the_trunk_must_be_clear_and_far_from_joints(settings: EvidentRingsSettings) -> None:
     turn = turning()
     body, tree = trunk(turn)
     shown = Frames(turn, 0.02).prepared(body.size)
-    assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, settings, mirrored=MIRRORED) == []
+    assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, EndJointsSettings(settings), mirrored=MIRRORED) == []
 
 
 def test_a_root_that_a_frame_shows_counts_only_with_the_part_above_the_ring() -> None:
@@ -251,12 +252,12 @@ def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside
     monkeypatch.setattr(
         numerics,
         "end_joints",
-        lambda *of, **more: apart.append((more or {"settings": of[5]})["settings"].least_apart) or judged(*of, **more),
+        lambda *of, **more: apart.append((more or {"settings": of[5]})["settings"].evident.least_apart) or judged(*of, **more),
     )
     _, after = of_bent_trunk((-1.6, 1.1))
     assert [count for count, _ in asked] == [5, 6]
     assert asked[0][1] == [0, 1, 2, 3, 4]
-    assert apart == [EndJointsSettings().least_apart, *2 * [EndJointsSettings().least_apart_if_closer]]
+    assert apart == [EvidentRingsSettings().least_apart, *2 * [EvidentRingsSettings().least_apart_if_closer]]
     assert set(after.shown) <= set(asked[1][1])
     tree = after._replace(parents=np.array([-1, 0, 1, 2, 3, 4]))
     assert numerics._with_neighbours(tree, np.array([2, 3])) == {1, 2, 3, 4}
