@@ -63,7 +63,7 @@ def _is_by_law(run: Joints) -> Flags:
     """(joint,) whether the law gives the whole error of each joint."""
     known = run.features
     is_share = known.is_end_joint & (run.cuts > 1)
-    return np.asarray(~is_share & np.isnan(known.tube) & np.isnan(known.mirrored))
+    return np.asarray(~is_share & np.isnan(known.tube) & np.isnan(known.narrowing) & np.isnan(known.mirrored))
 
 
 def fitted_law(

@@ -1,4 +1,4 @@
-"""A surface of revolution: a wide trunk, a neck of radius 1 and a head."""
+"""Surfaces of revolution: a wide trunk, a neck of radius 1 and a head; and others."""
 
 from itertools import pairwise
 
@@ -12,7 +12,11 @@ AROUND = 48
 def bottle(trunk: float, head: float) -> tuple[np.ndarray, np.ndarray]:
     """(vertex, xyz) · (face, corner) of radii trunk, 1 and head, with short slopes between them, closed at both ends."""
     height = [0.0, 0.5, BOTTOM - 0.3, BOTTOM, TOP, TOP + 0.3, TOP + 3.0, TOP + 3.5]
-    radius = [0.3 * trunk, trunk, trunk, 1.0, 1.0, head, head, 0.3 * head]
+    return revolution(height, [0.3 * trunk, trunk, trunk, 1.0, 1.0, head, head, 0.3 * head])
+
+
+def revolution(height: list[float], radius: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """(vertex, xyz) · (face, corner) with these radii at these heights, ascending, closed at both ends."""
     z = np.concatenate([np.linspace(a, b, max(int((b - a) / 0.12), 4), endpoint=False) for a, b in pairwise(height)])
     r, angle = np.interp(z, height, radius), np.arange(AROUND) * 2.0 * np.pi / AROUND
     ring = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), np.tile(z[:, None], AROUND)], axis=2)

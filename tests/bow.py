@@ -26,8 +26,8 @@ TRUNK, PELVIS, SHANKS = 0, 1, (2, 3)
 
 
 def pairs() -> LimbPairs:
-    """Both legs."""
-    return LimbPairs(TIPS[None], geodesic_distance(Surface.of(V, F), TIPS)[None])
+    """Both legs; twice, since a single pair of limbs says nothing of a body."""
+    return LimbPairs(np.stack([TIPS, TIPS]), np.stack(2 * [geodesic_distance(Surface.of(V, F), TIPS)]))
 
 
 def motions(of_pelvis: float) -> tuple[Floats, Floats]:

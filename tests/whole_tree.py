@@ -29,6 +29,7 @@ def whole_tree(
     surface: Callable[[int], Target] | None = None,
     has_second_ends: bool = False,
     has_necks: bool = False,
+    has_narrowings: bool = False,
     has_mirrored_joints: bool = False,
 ) -> tuple[KinematicTree, Derivation]:
     """The body, and how it came about; joints at ends are looked for where the frames' surfaces are given."""
@@ -41,7 +42,7 @@ def whole_tree(
     carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]
     return kinematic_tree(
         body, first, leaves, confidence, further=carried, has_second_ends=has_second_ends, has_necks=has_necks,
-        has_mirrored_joints=has_mirrored_joints,
+        has_narrowings=has_narrowings, has_mirrored_joints=has_mirrored_joints,
     )  # fmt: skip
 
 

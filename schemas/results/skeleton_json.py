@@ -75,9 +75,9 @@ class Joint(_FileObject):
     rest: Rest
     """Where it is in the reference pose, and how its axes lie."""
     evidence: EvidenceKind | None = None
-    """motion: its parts turn against each other; shape: the body's shape alone shows it; mirror: the mirror image of its limb
-    alone shows it; no turn was measured at these. null for root and leaves, for assumed joints, and where the method does
-    not know."""
+    """motion: its parts turn against each other; shape: the body's shape alone shows it; narrowing: a narrowing of its limb
+    alone shows it; mirror: the mirror image of its limb alone shows it; no turn was measured at these. null for root and
+    leaves, for assumed joints, and where the method does not know."""
     error: JointError | None = None
     """How far off it is expected to be; null for root and leaves, for assumed joints, and where the method does not know."""
 

@@ -18,6 +18,7 @@ Kind = Literal[
     "asymmetric",
     "small",
     "shape",
+    "narrowing",
     "mirror",
     "close",
     "short",
@@ -46,6 +47,7 @@ class Finding(Params):
     unpaired    : joints found on one side alone
     small       : joints that turn little
     shape       : joints that the body's shape alone shows, so that no turn was measured there
+    narrowing   : joints that a narrowing of their limb alone shows, and no motion
     mirror      : joints that the mirror image of their limb alone shows, and no motion
     close       : joints very near the one that they hang on.
     """

@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import FRAME, JOINT
 
-EvidenceKind = Literal["motion", "shape", "mirror"]
-"""How a joint is known: its parts turn against each other; by the body's shape alone; or by the mirror image of its limb alone.
-The last two turn only in frames in which uncertain parts were fitted to the surface."""
+EvidenceKind = Literal["motion", "shape", "narrowing", "mirror"]
+"""How a joint is known: its parts turn against each other; by the body's shape alone; by a narrowing of its limb alone; or by
+the mirror image of its limb alone. The last three turn only in frames in which uncertain parts were fitted to the surface."""
 
 
 class ErrorBars(Artifact):

@@ -62,6 +62,9 @@ class ShapeParams(Params):
     necks: bool = True
     """Whether a tube between the last part of a limb and what carries it, as a neck, has a joint at its lower end and one
     beyond its upper end though motion shows one alone; a joint far from both places is moved to the nearer one."""
+    narrowings: bool = True
+    """Whether both limbs of a pair have a joint where a hand or foot begins, at a narrowing of the limb, though motion shows
+    none there; not where connectivity is fixed, nor on a body with a single pair of such limbs."""
     mirrored_joints: bool = True
     """Whether a limb has the joints at its end that its mirror image has, though they show no turn; not where connectivity is
     fixed, nor on a body with a single pair of such limbs."""
@@ -130,6 +133,8 @@ class KinematicTree(ArticulatedBody):
     turn of theirs."""
     mirrored_joints: tuple[int, ...] = ()
     """Joints that their mirror images alone show, at the same distance from the end of the limb. They turn by nothing."""
+    narrowing_joints: tuple[int, ...] = ()
+    """Joints that narrowings of limbs alone show, as wrists that turn about the forearm's axis. They turn by nothing."""
 
     @property
     def length_variation(self) -> Floats:

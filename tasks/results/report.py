@@ -145,7 +145,7 @@ def _joint_table(
         del columns[VARIATION]
     if not bars.cuts:
         del columns[ERROR]
-    if not {"shape", "mirror"} & {*bars.evidence}:
+    if not {"shape", "narrowing", "mirror"} & {*bars.evidence}:
         del columns[EVIDENCE]
     if not np.isfinite(bars.surface_offset).any():
         del columns[OFFSET]

@@ -27,7 +27,8 @@ def tables(
     named: dict[str, bytes] = {}
     counts: list[int] = []
     bars = bars_of_takes(error_bars, skeleton)
-    still = {name for name, known in zip(joint_names.anatomy, error_bars.evidence, strict=False) if known == "mirror"}
+    known = zip(joint_names.anatomy, error_bars.evidence, strict=False)
+    still = {name for name, evidence in known if evidence in ("narrowing", "mirror")}
     for take, body in of_takes(renamed(skeleton, joint_names)).items():
         found = motion_derivatives(body, params.window, params.degree)
         counts += [] if found is None else [found.samples]

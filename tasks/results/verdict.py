@@ -46,6 +46,7 @@ def verdict(
             expected=np.array(error_bars.expected) / side,
             bound=np.array(error_bars.bound) / side,
             by_shape=np.array([known == "shape" for known in error_bars.evidence]),
+            by_narrowing=np.array([known == "narrowing" for known in error_bars.evidence]),
             by_mirror=np.array([known == "mirror" for known in error_bars.evidence]),
             pairs=pairs,
             unpaired=unpaired,

@@ -73,24 +73,28 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     drift, spread, residual, degrees, length, offset = (np.array(a) for a in of_joints)
     radius = np.where(tree.is_given, np.array(tree.border_radius), np.nan)
     joints = np.arange(len(skeleton.names))
-    tube, mirrored = (
+    tube, narrowing, mirrored = (
         np.where(np.isin(joints, some), np.array(tree.border_radius), np.nan)
-        for some in (tree.neck_joints, tree.mirrored_joints)
+        for some in (tree.neck_joints, tree.narrowing_joints, tree.mirrored_joints)
     )
     confidence = np.array(skeleton.confidence)
     below = np.zeros_like(degrees)
     np.maximum.at(below, parents[parents >= 0], degrees[parents >= 0])
     return numerics.JointFeatures(
         drift, spread, residual, degrees, length, offset, resistance, np.array(tree.hinge_offset), below, softness,
-        radius, np.isin(joints, tree.end_joints), tube, mirrored, confidence, size,
+        radius, np.isin(joints, tree.end_joints), tube, narrowing, mirrored, confidence, size,
     )  # fmt: skip
 
 
 def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[EvidenceKind | None, ...]:
     """How each joint is known; None for root and leaves."""
     known: list[EvidenceKind | None] = ["motion" if kind == "joint" else None for kind in skeleton.kinds]
-    for j in kinematic_tree.neck_joints:
-        known[j] = "shape"
-    for j in kinematic_tree.mirrored_joints:
-        known[j] = "mirror"
+    still: tuple[tuple[EvidenceKind, tuple[int, ...]], ...] = (
+        ("shape", kinematic_tree.neck_joints),
+        ("narrowing", kinematic_tree.narrowing_joints),
+        ("mirror", kinematic_tree.mirrored_joints),
+    )
+    for kind, joints in still:
+        for j in joints:
+            known[j] = kind
     return tuple(known)

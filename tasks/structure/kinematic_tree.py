@@ -50,6 +50,7 @@ def kinematic_tree(
         ],
         laid=joined(laid_parts),
         has_necks=params.necks,
+        has_narrowings=params.narrowings and not body.is_given,
         has_mirrored_joints=params.mirrored_joints and not body.is_given,
         up=signed_axis(up_direction.up) if params.spine and not body.is_given else None,
     )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kinetree.tasks.numerics.structure.anatomical_names import Named
 
 
-STILL = {"shape": "by the shape alone", "mirror": "by the other side alone"}
+STILL = {"shape": "by the shape alone", "narrowing": "by a narrowing of the limb alone", "mirror": "by the other side alone"}
 """In words how joints are known at which no turn was measured."""
 NAMED_ONE_BY_ONE = 5
 """Joints to rename that are not called as it was set, of each kind."""

@@ -50,6 +50,7 @@ def subject(found: Finding, verdict: Verdict) -> str:
         "unpaired": joints,
         "small": joints,
         "shape": joints,
+        "narrowing": joints,
         "mirror": joints,
         "close": joints,
     }
@@ -91,6 +92,7 @@ _SENTENCES: dict[str, Callable[[Finding, str, str], str]] = {
         f"{joints}: turning by at most {f.amount:.0f}°, which may be no joint, or one whose place is known badly"
     ),
     "shape": lambda f, joints, frames: f"{joints}: placed by the body's shape alone, no turn was measured there",
+    "narrowing": lambda f, joints, frames: f"{joints}: not found by motion, placed at a narrowing of the limb",
     "mirror": lambda f, joints, frames: f"{joints}: not found by motion, placed where the other side has it",
     "close": lambda f, joints, frames: (
         f"{joints}: only {_percent(f.amount)} from the joint before it, so that the two may be one"

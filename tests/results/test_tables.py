@@ -177,10 +177,11 @@ def test_knees_of_a_walker_only_bend_backwards(walker):
         assert knee.max() > 50.0
 
 
-def test_a_joint_that_the_other_side_alone_shows_has_no_angles(walker):
+@pytest.mark.parametrize("known", ["mirror", "narrowing"])
+def test_a_joint_that_the_other_side_or_a_narrowing_alone_shows_has_no_angles(walker, known):
     """They would be those of the reference pose in every frame."""
     body, names = walker
-    evidence = tuple("mirror" if name == "hip_l" else "motion" for name in names.anatomy)
+    evidence = tuple(known if name == "hip_l" else "motion" for name in names.anatomy)
     bars = unknown_error_bars(body).model_copy(update={"evidence": evidence})
     written = views.files(tables(body, names, UP, bars, TablesParams()), ())["tables/joint_angles.csv"].decode()
     before, after = list(table(walker, "joint_angles")[0]), next(csv.reader(io.StringIO(written, newline="")))

@@ -97,7 +97,11 @@ def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known
 
 @pytest.mark.parametrize(
     ("field", "kind", "words", "share"),
-    [("neck_joints", "shape", "by the shape alone", 0.4), ("mirrored_joints", "mirror", "by the other side alone", 0.55)],
+    [
+        ("neck_joints", "shape", "by the shape alone", 0.4),
+        ("narrowing_joints", "narrowing", "by a narrowing of the limb alone", 0.5),
+        ("mirrored_joints", "mirror", "by the other side alone", 0.55),
+    ],
 )
 def test_a_joint_that_no_motion_shows_says_so_wherever_its_evidence_stands(
     field: str, kind: str, words: str, share: float

@@ -7,7 +7,7 @@ the rotations of the parts count. For the pelvis the places of the hips and of a
 the hips moves with the thighs. Signs are those of a right limb: left limbs are mirrored.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -65,6 +65,7 @@ def joint_angles(
     front: Floats,
     up: Floats,
     takes: Sequence[slice] | None = None,
+    still: Collection[str] = (),
 ) -> JointAngles:
     """Three angles of each named joint: hip, knee, ankle and elbow by Z–X–Y, shoulder by Y–X–Y (thorax to humerus).
 
@@ -75,6 +76,7 @@ def joint_angles(
     R         : (frame, joint, 3, 3) from the reference pose to each frame
     front, up : (xyz,) of the body in the reference pose, unit vectors
     takes     : positions of the frames of each take; None takes all as one
+    still     : names of joints at which no turn was measured: a wrist among them moves as the forearm, and says nothing of it
     returns   : flexion, adduction, internal rotation, dorsiflexion, inversion, pronation and elevation are positive; 0° of the
                 plane of elevation is sideways, 90° ahead; pronation is against the reference pose
     """
@@ -97,7 +99,7 @@ def joint_angles(
             before = frames.get(p, trunk["shoulder" if station in ("shoulder", "elbow") else "hip"])
             frames[j] = _least(before, joint.along, rest[end] - rest[j])
             moving[j] = R[:, j] @ frames[j]
-            axial = _axial(station, side, at, X, R, moving[j], frames[j], takes)
+            axial = _axial(station, side, at, still, X, R, moving[j], frames[j], takes)
             if axial is not None:
                 moving[j] = turned(moving[j], axial.turn)
             if station != "ankle":
@@ -113,6 +115,7 @@ def _axial(
     station: str,
     side: str,
     at: Mapping[str, int],
+    still: Collection[str],
     X: Floats,
     R: Floats,
     axes: Floats,
@@ -133,7 +136,7 @@ def _axial(
     if station == "knee":
         ankle, toes = beyond("ankle"), beyond("toe", "foot_end")
         return None if ankle is None or toes is None else turn_of_direction(axes, X[:, toes] - X[:, ankle], takes)
-    wrist = beyond("wrist") if station == "elbow" else None
+    wrist = beyond("wrist") if station == "elbow" and f"wrist_{side}" not in still else None
     return None if wrist is None else turn_of_part(axes, R[:, wrist], rest, takes)
 
 

@@ -61,6 +61,7 @@ class Evidence(NamedTuple):
     expected   : (joint,) expected error, share of the longest side of the body's box; NaN where it is not known
     bound      : (joint,) the distance that the mean error of nine joints of ten keeps, the same share; NaN where not known
     by_shape   : (joint,) whether the body's shape alone shows the joint, so that it turns by nothing
+    by_narrowing   : (joint,) the same of a narrowing of its limb
     by_mirror  : (joint,) the same of the mirror image of its limb
     pairs      : pairs of joints, left and right, whose bones should be equally long
     unpaired   : joints that have a side, and no partner
@@ -79,6 +80,7 @@ class Evidence(NamedTuple):
     expected: Floats
     bound: Floats
     by_shape: Flags
+    by_narrowing: Flags
     by_mirror: Flags
     pairs: Sequence[tuple[int, int]]
     unpaired: Sequence[int]
@@ -201,12 +203,14 @@ def _of_joints(e: Evidence, state: Ints, s: VerdictSettings) -> Iterator[Finding
     small = e.turning & (e.degrees < s.degrees)
     close = e.turning & (e.length < s.length) & ~small
     yield from _asymmetric(e, weak | small | close, s)
-    is_measured = ~e.by_shape & ~e.by_mirror
+    is_measured = ~e.by_shape & ~e.by_narrowing & ~e.by_mirror
     little = small & is_measured
     if little.any() and not little[e.turning & is_measured].all():
         yield Finding("small", "fault", (), _at(little), float(e.degrees[little].max()))
     if e.by_shape.any():
         yield Finding("shape", "fault", (), _at(e.by_shape))
+    if e.by_narrowing.any():
+        yield Finding("narrowing", "note", (), _at(e.by_narrowing))
     if e.by_mirror.any():
         yield Finding("mirror", "note", (), _at(e.by_mirror))
     if close.any():

@@ -32,13 +32,14 @@ class EndCut(NamedTuple):
     """A ring across a part.
 
     part   : in the tree's order
-    above  : the part that hangs together with the piece before the ring: that above, or of the root one below
+    above  : the part that hangs together with the piece before the ring: that above; of the root, and of rings across limbs
+             that the part holds, one below
     centre : (xyz,) of the ring in the reference, mesh unit
     radius : of the ring, mesh unit
     own    : (own,) vertices of the part
     beyond : (own,) how far each lies beyond the ring along the surface, negative before it, mesh unit
     hung   : parts that hang on the piece beyond the ring; none at the end of a limb
-    apart  : distance of the ring from the nearest of the part's joints, in radii of the ring; of rings across the trunk alone
+    apart  : distance of the ring from the nearest of the part's joints, in radii of the ring; not of rings at ends
     level  : which of the part's levels a ring across one of two limbs lies at, see `limb_cuts`; −1 of all other rings
     """
 
@@ -54,7 +55,7 @@ class EndCut(NamedTuple):
 
     @property
     def is_across_limb(self) -> bool:
-        """Whether it lies across one of both limbs of a pair, and the piece before it goes on in the part above."""
+        """Whether it lies across one of two limbs that the part holds, see `limb_cuts`."""
         return self.level >= 0
 
     @property
@@ -65,8 +66,13 @@ class EndCut(NamedTuple):
     @property
     def share(self) -> Floats:
         """(own,) of each vertex that the piece beyond carries: skin blends over half a radius on either side of the ring."""
-        s = np.clip(0.5 + self.beyond / self.radius, 0.0, 1.0)
-        return np.asarray(s * s * (3.0 - 2.0 * s))
+        return share_beyond(self.beyond, self.radius)
+
+
+def share_beyond(beyond: Floats, radius: float) -> Floats:
+    """(vertex,) how much each vertex follows the piece beyond a ring; beyond (vertex,) how far it lies beyond, mesh unit."""
+    s = np.clip(0.5 + beyond / radius, 0.0, 1.0)
+    return np.asarray(s * s * (3.0 - 2.0 * s))
 
 
 def end_cuts(

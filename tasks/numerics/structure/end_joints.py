@@ -34,10 +34,7 @@ TOGETHER = 5
 
 
 class EndJointsSettings(NamedTuple):
-    """What makes a joint.
-
-    Turns were chosen on wave, dance, ballet, wolf, people 0, 1, 5, 6, 7, four-legged 5, 6 and random trees 1, 6.
-    """
+    """What makes a joint."""
 
     evident: EvidentRingsSettings = EvidentRingsSettings()
     """Which rings are joints."""
@@ -101,7 +98,8 @@ def end_joints(
     mirrored: Collection[int] = (),
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
-    """The joints that the frames show within the last parts of limbs and within the trunk, at most one in a part.
+    """The joints that the frames show within the last parts of limbs and within the trunk: at most one in a part, but two in
+    one that holds both limbs of a pair.
 
     judged : by ring, how its part lies in the frames of `judged_frames`
     takes  : positions of the frames of each take, in order; None takes all as one
@@ -114,7 +112,8 @@ def end_joints(
     evident = evident_rings(frames.tree, rings, table, mirrored, chosen.evident)
     own = [laid[k] for k in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
-    return [_joint(frames.tree, _usual(laid[k], chosen), score) for k, score in evident.items()]
+    joints = [_joint(frames.tree, _usual(laid[k], chosen), score) for k, score in evident.items()]
+    return _with_common_pieces(joints)
 
 
 def judged_runs(count: int, takes: Sequence[slice] | None, settings: EndJointsSettings | None = None) -> list[Ints]:
@@ -213,3 +212,23 @@ def _joint(tree: FirstTree, laid: _RingFits, score: float) -> EndJoint:
         visible[f], residual[f] = True, np.sqrt(hinged.two)
         R[f], t[f] = motions(hinged.pose, cut.centre)
     return EndJoint(cut, R, t, residual, visible, score)
+
+
+def _with_common_pieces(joints: Sequence[EndJoint]) -> list[EndJoint]:
+    """The same, where rings across both limbs of a pair agree how the piece between them moves.
+
+    In every frame it moves as the clearer ring has it, the later one, or the other where the frame does not show that one.
+    """
+    out = list(joints)
+    for k in range(1, len(out)):
+        one, other = out[k - 1], out[k]
+        if one.cut.is_across_limb and other.cut.is_across_limb and one.cut.part == other.cut.part:
+            by_one = one.visible & ~other.visible
+            R = np.where(by_one[:, None, None], one.R[:, 1], other.R[:, 1])
+            t = np.where(by_one[:, None], one.t[:, 1], other.t[:, 1])
+            residual = np.where(by_one, one.residual, other.residual)
+            for place, joint in ((k - 1, one), (k, other)):
+                new_R, new_t = joint.R.copy(), joint.t.copy()
+                new_R[:, 1], new_t[:, 1] = R, t
+                out[place] = joint._replace(R=new_R, t=new_t, residual=residual)
+    return out

@@ -104,8 +104,9 @@ def _across_parts(
 
 
 def _across_limbs(rings: Sequence[EndRing], shown: Sequence[Sequence[RingEvidence]], chosen: EvidentRingsSettings) -> Scores:
-    """Of each part that holds both limbs of a pair the two rings that show most together, the clearer one last, if it shows
-    enough: where one limb moves against the part the other one does too, since both moved alike.
+    """Of each part that holds both limbs of a pair the two rings that show most together, the clearer one last.
+
+    The clearer one must show enough; both must turn enough, for the limbs moved alike.
     """
     twins: dict[int, dict[int, list[int]]] = {}
     for k, ring in enumerate(rings):
@@ -117,7 +118,8 @@ def _across_limbs(rings: Sequence[EndRing], shown: Sequence[Sequence[RingEvidenc
             ((row, two) for row in shown for two in levels.values()), key=lambda one: sum(one[0][k].score for k in one[1])
         )
         two = sorted(two, key=lambda k: row[k].score)
-        if row[two[-1]].score >= chosen.least_score_in_trunk and _is_joint(rings[two[-1]], row[two[-1]], False, chosen):
+        turn = all(_is_joint(rings[k], row[k], False, chosen) for k in two)
+        if turn and row[two[-1]].score >= chosen.least_score_in_trunk:
             evident |= {k: row[k].score for k in two}
     return evident
 

@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
-from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
@@ -55,7 +55,9 @@ def with_end_joints(
             tree = extended_tree(body, tree, found, confidence, noise)
             body = tree.with_ends(body)
         mirrored, frames = _in_mirrored_limbs(tree, pairs), _frames(body, tree, surface, confidence)
-        rings = closer_rings(body.V, body.F, body.area, tree, mirrored, _with_neighbours(tree, tree.label[asked]), pairs)
+        rings = closer_rings(
+            body.V, body.F, body.area, tree, mirrored, _with_neighbours(tree, tree.label[asked]), pairs if found else NO_PAIRS
+        )
         found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=closer)
         if not found:
             return tree
@@ -140,7 +142,9 @@ def _turning_about(tree: FirstTree, joints: Ints) -> Floats:
 
 
 def _keeps_root(V: Floats, tree: FirstTree, one: EndJoint) -> bool:
-    """Whether the root's place lies beyond a ring, so that the piece beyond it is the root and the other one hangs on it."""
+    """Whether the piece beyond a ring stays the part, and the other one hangs on it: where the root's place lies beyond, and
+    where a limb is cut off.
+    """
     cut = one.cut
     if cut.is_across_limb or tree.parents[cut.part] >= 0:
         return cut.is_across_limb
@@ -165,11 +169,15 @@ def _parts_after_parents(parents: Ints, last: Sequence[int]) -> Ints:
 
 def moved_ends(body: MovingSurface, tree: FirstTree, ends: Sequence[EndJoint]) -> Floats:
     """(frame, vertex, xyz) the aligned vertices, those of parts with a ring that is a joint where the frames have them."""
-    x = body.x.copy()
+    x, is_moved = body.x.copy(), np.zeros(body.x.shape[:2], np.bool_)
     for end in ends:
-        v, weight = end.cut.own, tree.W[end.cut.own, end.cut.part]
+        v, share = end.cut.own, end.cut.share
+        weight, V = tree.W[v, end.cut.part], body.V[v]
         for f in np.flatnonzero(end.visible):
-            x[f, v] = on_pieces(body.V[v], x[f, v], weight, end.cut.share, end.R[f], end.t[f])
+            near, far = (V @ R.T + t for R, t in zip(end.R[f], end.t[f], strict=True))
+            both = x[f, v] + (weight * (1.0 - share))[:, None] * (near - far)  # the ring across the other limb moved it
+            x[f, v] = np.where(is_moved[f, v, None], both, on_pieces(V, x[f, v], weight, share, end.R[f], end.t[f]))
+            is_moved[f, v] = True
     return x
 
 

@@ -87,7 +87,7 @@ class FirstTree(NamedTuple):
 
     @property
     def in_divided_trunk(self) -> Flags:
-        """(part,) whether a part's joint is at a piece of the trunk that the frames' surfaces alone show."""
+        """(part,) whether a part's joint is at a piece of the trunk, or of a limb cut off it, that surfaces alone show."""
         carrying = np.intersect1d(np.array(self.shown, np.int64), self.parents)
         return np.isin(np.arange(len(self.parents)), carrying) | np.isin(self.parents, carrying)
 

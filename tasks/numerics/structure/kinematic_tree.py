@@ -13,8 +13,9 @@ from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
+from kinetree.tasks.numerics.structure.narrowings import narrowings
 from kinetree.tasks.numerics.structure.necks import necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.posed_tree import joints_and_ends, posed_tree, with_spine
@@ -22,7 +23,7 @@ from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
-from kinetree.tasks.numerics.structure.still_joints import PosedTree, with_still_joints
+from kinetree.tasks.numerics.structure.still_joints import PosedTree, Still, with_still_joints
 
 RIGID_WEIGHT = 0.75
 """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
@@ -83,6 +84,7 @@ class Derivation(NamedTuple):
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
     mirrored_joints : joints that their mirror images alone show, see `mirrored_joints`
+    narrowing_joints   : joints that narrowings of limbs alone show, see `narrowings`
     """
 
     part: Ints
@@ -103,6 +105,7 @@ class Derivation(NamedTuple):
     end_joints: tuple[int, ...] = ()
     neck_joints: tuple[int, ...] = ()
     mirrored_joints: tuple[int, ...] = ()
+    narrowing_joints: tuple[int, ...] = ()
 
 
 def kinematic_tree(
@@ -115,6 +118,7 @@ def kinematic_tree(
     laid: LaidParts | None = None,
     has_second_ends: bool = False,
     has_necks: bool = False,
+    has_narrowings: bool = False,
     has_mirrored_joints: bool = False,
     up: Floats | None = None,
 ) -> tuple[KinematicTree, Derivation]:
@@ -128,6 +132,7 @@ def kinematic_tree(
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
+    has_narrowings      : whether both limbs of a pair have a joint beyond a narrowing, see `narrowings`
     has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
     up         : (xyz,) unit vector, by which a person is told, whose spine lies behind the middle, see `spine_joints`; None
                  leaves spines where motion has them
@@ -140,9 +145,13 @@ def kinematic_tree(
     if up is not None:
         tree = with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):
-        tree = with_still_joints(tree, found)
-    if has_mirrored_joints:
-        tree = _with_mirrored_joints(body, tree, leaves)
+        tree = with_still_joints(tree, found, Still.NECK)
+    if has_narrowings or has_mirrored_joints:
+        pairs = limb_pairs(V, body.F, leaves)
+        if has_narrowings:
+            tree = _with_narrowings(body, tree, pairs)
+        if has_mirrored_joints:
+            tree = _with_mirrored_joints(body, tree, pairs)
     if has_second_ends:
         leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
     ends = end_effectors(V, body.F, tree.label, tree.parents, leaves)
@@ -150,15 +159,20 @@ def kinematic_tree(
     return made, _derivation(first, tree, made, order)
 
 
-def _with_mirrored_joints(body: MovingSurface, tree: PosedTree, leaves: Ints) -> PosedTree:
+def _with_narrowings(body: MovingSurface, tree: PosedTree, pairs: LimbPairs) -> PosedTree:
+    """The tree with the joints at the narrowings of limbs."""
+    found = narrowings(body.V, body.F, RootedParts(tree.label, tree.parents, tree.radius), tree.motion.rest, pairs)
+    return with_still_joints(tree, found, Still.NARROWING) if found else tree
+
+
+def _with_mirrored_joints(body: MovingSurface, tree: PosedTree, pairs: LimbPairs) -> PosedTree:
     """The tree with the joints that mirror images of limbs have, one after the other from the trunk outwards."""
-    pairs = limb_pairs(body.V, body.F, leaves)
     for _ in range(len(tree.parents)):
         parts = RootedParts(tree.label, tree.parents, tree.radius)
-        found = mirrored_joints(body.V, body.F, parts, tree.motion.rest, pairs, tree.is_neck | tree.is_mirrored)
+        found = mirrored_joints(body.V, body.F, parts, tree.motion.rest, pairs, tree.still != Still.NO)
         if not found:
             break
-        tree = with_still_joints(tree, found, are_mirrored=True)
+        tree = with_still_joints(tree, found, Still.MIRRORED)
     return tree
 
 
@@ -180,7 +194,7 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
         positions=X[:, order],
         rotation=motion.R[:, part[order]],
         confidence=tree.confidence[:, part[order]],
-        degrees=np.where(is_end | (tree.is_neck | tree.is_mirrored)[part], 0.0, degrees[part])[order],
+        degrees=np.where(is_end | (tree.still != Still.NO)[part], 0.0, degrees[part])[order],
         drift=np.where(is_end, 0.0, tree.drift[part])[order],
         support=tree.support[part[order]],
         label=np.where(W[np.arange(len(V)), label] >= RIGID_WEIGHT, place[label], -1),
@@ -210,9 +224,10 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
         hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
-        end_joints=_joints(joint, np.isin(tree.carrier, first.shown) & ~tree.is_neck & ~tree.is_mirrored),
-        neck_joints=_joints(joint, tree.is_neck),
-        mirrored_joints=_joints(joint, tree.is_mirrored),
+        end_joints=_joints(joint, np.isin(tree.carrier, first.shown) & (tree.still == Still.NO)),
+        neck_joints=_joints(joint, tree.still == Still.NECK),
+        mirrored_joints=_joints(joint, tree.still == Still.MIRRORED),
+        narrowing_joints=_joints(joint, tree.still == Still.NARROWING),
     )
 
 

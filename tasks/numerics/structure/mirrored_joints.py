@@ -12,7 +12,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.geometry.neighbours import ring_edges, rings
 from kinetree.tasks.numerics.structure.articulated_fit import beyond
-from kinetree.tasks.numerics.structure.end_cuts import EndCut, ring_at
+from kinetree.tasks.numerics.structure.end_cuts import EndCut, ring_at, share_beyond
 from kinetree.tasks.numerics.structure.joint_partners import Limb, RootedParts, mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.still_joints import StillJoint
@@ -113,5 +113,4 @@ def _is_alike(cut: EndCut, radius: float, joint: Floats, chosen: MirroredJointsS
 
 def _nearer(cut: EndCut, away: Floats, level: float) -> Floats:
     """(vertex,) how much each vertex follows the piece before a ring."""
-    beyond = np.where(np.isfinite(away), level - away, -np.inf)
-    return 1.0 - cut._replace(beyond=beyond).share
+    return 1.0 - share_beyond(np.where(np.isfinite(away), level - away, -np.inf), cut.radius)

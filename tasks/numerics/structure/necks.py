@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.geometry.girths import Girths, girths
 from kinetree.tasks.numerics.geometry.neighbours import edge_lengths
 from kinetree.tasks.numerics.structure.still_joints import StillJoint
 
@@ -73,14 +74,6 @@ class Tube(NamedTuple):
     joint: Floats
     radius: float
     share: Floats
-
-
-class _Rings(NamedTuple):
-    """Rings about a border: level (ring,) signed distance from it, girth (ring,) mesh unit, centre (ring, xyz)."""
-
-    level: Floats
-    girth: Floats
-    centre: Floats
 
 
 def tubes(V: Floats, F: Ints, label: Ints, parents: Ints, border: Floats, settings: NecksSettings | None = None) -> list[Tube]:
@@ -182,7 +175,7 @@ def _place(tube: Tube, rest: Floats, shown: Collection[int], chosen: NecksSettin
 
 def _tube(V: Floats, F: Ints, beyond: Floats, part: int, border: float, chosen: NecksSettings) -> Tube | None:
     """The tube of a part; None where there is none."""
-    rings = _rings(V, F, beyond, border, chosen)
+    rings = girths(V, F, beyond, chosen.step * border)
     ends = _ends(rings, border, chosen)
     if ends is None:
         return None
@@ -215,36 +208,7 @@ def _places(middle: Floats, is_narrow: Flags, base: float, oblique: float) -> Fl
     return np.asarray(mean + np.outer([low, high + base], axis))
 
 
-def _rings(V: Floats, F: Ints, beyond: Floats, border: float, chosen: NecksSettings) -> _Rings:
-    """Rings at equal distances as far as the surface goes on both sides, without those that cross no face."""
-    near = F[np.isfinite(beyond[F]).all(axis=1)]
-    order = np.argsort(beyond[near], axis=1)
-    corner = np.take_along_axis(near, order, axis=1)
-    d, step = beyond[corner], chosen.step * border
-    low = np.ceil(d[:, 0] / step).astype(np.int64)
-    count = np.maximum(np.ceil(d[:, 2] / step).astype(np.int64) - low, 0)
-    face = np.repeat(np.arange(len(near)), count)
-    level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count) + low[face]
-    P, s, d = V[corner[face]], level * step, d[face]
-    first = _crossing(P[:, 0], P[:, 2], d[:, 0], d[:, 2], s)
-    lower = s < d[:, 1]
-    second = np.where(
-        lower[:, None], _crossing(P[:, 0], P[:, 1], d[:, 0], d[:, 1], s), _crossing(P[:, 1], P[:, 2], d[:, 1], d[:, 2], s)
-    )
-    length = np.linalg.norm(second - first, axis=1)
-    used, row = np.unique(level, return_inverse=True)
-    girth = np.maximum(np.bincount(row, length, len(used)), 1e-300)
-    sums = np.stack([np.bincount(row, length * x, len(used)) for x in ((first + second) / 2.0).T], axis=1)
-    return _Rings(used * step, girth, sums / girth[:, None])
-
-
-def _crossing(a: Floats, b: Floats, da: Floats, db: Floats, s: Floats) -> Floats:
-    """(row, xyz) where edges from a to b reach a distance s."""
-    share = (s - da) / np.where(db > da, db - da, 1.0)
-    return np.asarray(a + share[:, None] * (b - a))
-
-
-def _ends(rings: _Rings, border: float, chosen: NecksSettings) -> Ints | None:
+def _ends(rings: Girths, border: float, chosen: NecksSettings) -> Ints | None:
     """(2,) rings at which the tube ends, towards the part above and beyond; None where it is no neck."""
     level, girth = rings.level, rings.girth
     middle = np.flatnonzero(np.abs(level) <= chosen.near * border)

@@ -19,7 +19,7 @@ from kinetree.tasks.numerics.structure.necks import Tube, on_tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.shared_joints import shared_joints
 from kinetree.tasks.numerics.structure.spine_joints import spine_shifts
-from kinetree.tasks.numerics.structure.still_joints import PosedTree
+from kinetree.tasks.numerics.structure.still_joints import PosedTree, Still
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints, surface_joints
 
 CERTAIN = 2.5
@@ -94,8 +94,7 @@ def posed_tree(
         agreeing=consensus.agreeing,
         place=first.place,
         carrier=np.arange(parts),
-        is_neck=np.zeros(parts, np.bool_),
-        is_mirrored=np.zeros(parts, np.bool_),
+        still=np.full(parts, Still.NO),
     )
 
 

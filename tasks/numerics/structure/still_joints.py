@@ -1,14 +1,25 @@
-"""The posed tree with joints that turn by nothing, since no motion shows them (ours, see `necks` and `mirrored_joints`)."""
+"""The posed tree with joints that no motion shows: they turn by nothing (ours: `necks`, `narrowings`, `mirrored_joints`)."""
 
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 
 A = TypeVar("A", bound=np.ndarray[Any, Any])
+
+
+class Still(IntEnum):
+    """What shows a joint that no motion shows."""
+
+    NO = 0
+    """It is no such joint: motion shows it."""
+    NECK = 1
+    MIRRORED = 2
+    NARROWING = 3
 
 
 class StillJoint(NamedTuple):
@@ -47,8 +58,7 @@ class PosedTree(NamedTuple):
     agreeing   : (part,) cuts that have each
     place      : (first part,) part, −1 where it was dropped
     carrier    : (part,) part of the first tree whose motion it has: itself but for the piece before a joint that is added
-    is_neck     : (part,) whether the shape alone shows its joint
-    is_mirrored : (part,) whether its mirror image alone shows its joint
+    still      : (part,) what shows its joint, a `Still`
     """
 
     parents: Ints
@@ -66,18 +76,16 @@ class PosedTree(NamedTuple):
     agreeing: Ints
     place: Ints
     carrier: Ints
-    is_neck: Flags
-    is_mirrored: Flags
+    still: Ints
 
 
-def with_still_joints(tree: PosedTree, joints: Sequence[StillJoint], are_mirrored: bool = False) -> PosedTree:
+def with_still_joints(tree: PosedTree, joints: Sequence[StillJoint], shown_by: Still) -> PosedTree:
     """The tree with one joint more in every part given, and the piece between both joints right before what is beyond it.
 
     That piece moves as it did. So the new joint turns by nothing, and the other joint and the skin stay as they were. No motion
     says where the new joint is: it has no drift, spread or offset. Frames show it as they show the other joint.
 
-    joints       : one at least, by part, at most one in a part
-    are_mirrored : whether their mirror images show them, and not their own shape
+    joints : one at least, by part, at most one in a part
     """
     below = np.array([one.part for one in joints])
     above = tree.parents[below]
@@ -88,7 +96,6 @@ def with_still_joints(tree: PosedTree, joints: Sequence[StillJoint], are_mirrore
     parents = np.insert(np.where(tree.parents < 0, -1, place[tree.parents]), below, 0)
     parents[own], parents[own + 1] = parents[own + 1], own
     label, W = _skinned(tree, joints, place, moved_by)
-    yes, no = np.ones(len(below), np.bool_), np.zeros(len(below), np.bool_)
     motion = tree.motion._replace(
         rest=_with(tree.motion.rest, below, new, np.stack([one.centre for one in joints])),
         R=np.insert(tree.motion.R, below, tree.motion.R[:, moved_by], axis=1),
@@ -109,8 +116,7 @@ def with_still_joints(tree: PosedTree, joints: Sequence[StillJoint], are_mirrore
         agreeing=_with(tree.agreeing, below, new, np.ones(len(below), np.int64)),
         place=np.where(tree.place < 0, -1, place[tree.place]),
         carrier=np.insert(tree.carrier, below, tree.carrier[moved_by]),
-        is_neck=_with(tree.is_neck, below, new, no if are_mirrored else yes),
-        is_mirrored=_with(tree.is_mirrored, below, new, yes if are_mirrored else no),
+        still=_with(tree.still, below, new, np.full(len(below), shown_by)),
     )
 
 

@@ -52,7 +52,7 @@ def anatomical_table(skeleton: Skeleton, names: JointNames, up: str, still: Coll
     s = skeleton
     moving = np.array(s.rest), np.array(s.positions), np.array(s.rotation)
     takes = take_spans(s.frames)
-    angles = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes)
+    angles = joint_angles(names.anatomy, s.parents, *moving, np.array(names.front), _upwards(up), takes, still)
     name_of = dict(zip(names.anatomy, s.names, strict=True))
     degrees = {name: a for name, a in angles.degrees.items() if name.partition(".")[0] not in still}
     seen = {joint: a for joint, a in angles.rotation_seen.items() if joint not in still}

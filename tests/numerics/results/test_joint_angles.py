@@ -163,6 +163,8 @@ def test_pronation_is_that_of_the_hand_without_its_flexion():
     result = joint_angles(names, parents, rest, places(parents, rest, R), R, FRONT, UP)
     np.testing.assert_allclose(result.degrees["elbow_r.pronation"], [0, 40, 40], atol=1e-6)
     assert result.rotation_seen["elbow_r"].all()
+    still = joint_angles(names, parents, rest, places(parents, rest, R), R, FRONT, UP, still={"wrist_r"})
+    assert not still.rotation_seen["elbow_r"].any(), "a wrist at which no turn was measured moves as the forearm"
 
 
 def test_straight_limbs_do_not_show_how_they_are_turned():

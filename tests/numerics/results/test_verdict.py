@@ -19,7 +19,8 @@ def evidence(**changes: Any) -> Evidence:
         "confidence": np.full((FRAMES, JOINTS), 0.9), "support": np.full(JOINTS, FRAMES), "degrees": np.full(JOINTS, 40.0),
         "turning": np.array([False, True, True, True, False]), "length": np.full(JOINTS, 0.2), "pairs": [(1, 2)],
         "expected": np.array([np.nan, 0.006, 0.006, 0.006, np.nan]), "bound": np.array([np.nan, 0.02, 0.02, 0.02, np.nan]),
-        "by_shape": np.zeros(JOINTS, bool), "by_mirror": np.zeros(JOINTS, bool), "unpaired": [], **changes,
+        "by_shape": np.zeros(JOINTS, bool), "by_narrowing": np.zeros(JOINTS, bool),
+        "by_mirror": np.zeros(JOINTS, bool), "unpaired": [], **changes,
     })  # fmt: skip
 
 
@@ -167,8 +168,10 @@ def test_a_joint_that_the_shape_alone_shows_is_named_for_that_and_not_for_turnin
     assert kinds(still) == ["still", "shape"]
 
 
-def test_a_joint_that_the_other_side_alone_shows_is_good_to_know_and_no_fault() -> None:
+@pytest.mark.parametrize("kind", ["narrowing", "mirror"])
+def test_a_joint_that_the_other_side_or_a_narrowing_alone_shows_is_good_to_know_and_no_fault(kind: str) -> None:
     toe = np.arange(JOINTS) == 3
-    found = verdict(evidence(by_mirror=toe, degrees=np.where(toe, 0.0, 40.0)))
-    assert (found.level, [(f.kind, f.severity, f.joints) for f in found.findings]) == ("good", [("mirror", "note", (3,))])
-    assert kinds(evidence(by_mirror=toe, degrees=np.where(toe, 0.0, 9.0))) == ["still", "mirror"]
+    known = {f"by_{kind}": toe}
+    found = verdict(evidence(**known, degrees=np.where(toe, 0.0, 40.0)))
+    assert (found.level, [(f.kind, f.severity, f.joints) for f in found.findings]) == ("good", [(kind, "note", (3,))])
+    assert kinds(evidence(**known, degrees=np.where(toe, 0.0, 9.0))) == ["still", kind]

@@ -101,10 +101,17 @@ def test_the_clearer_limb_comes_last() -> None:
 
 
 @pytest.mark.parametrize("still", [{"near": 1.0}, {"far": 1.0}])
-def test_the_clearer_limb_must_turn(still: dict[str, float]) -> None:
+def test_both_limbs_must_turn(still: dict[str, float]) -> None:
     rings = [one for one, _ in limbs((0.2, 0.1))]
-    assert len(evident_rings(TREE, rings, [[shows(0.2), shows(0.1, **still)]])) == 2
+    assert len(evident_rings(TREE, rings, [[shows(0.2), shows(0.1)]])) == 2
+    assert evident_rings(TREE, rings, [[shows(0.2), shows(0.1, **still)]]) == {}
     assert evident_rings(TREE, rings, [[shows(0.2, **still), shows(0.1)]]) == {}
+
+
+def test_rings_across_limbs_lie_apart_from_joints() -> None:
+    both = limbs((0.2, 0.1))
+    both[1][0].cut.apart = 0.5
+    assert found(both) == {}
 
 
 def test_both_limbs_are_judged_in_the_take_that_shows_most() -> None:
@@ -114,11 +121,11 @@ def test_both_limbs_are_judged_in_the_take_that_shows_most() -> None:
 
 def test_without_its_limbs_a_part_and_what_lies_beside_its_joint_are_asked_again() -> None:
     """Rings across the part itself, and across the one above it near the joint of both, which is elsewhere then."""
-    both, across, beside = limbs((0.1, 0.1)), (ring(0, 0.0, (2, 3)), 0.5), (ring(1, 3.5, (2,)), 0.5)
+    both, across, beside = limbs((0.1, 0.1)), (ring(0, -2.0, (2, 3)), 0.5), (ring(1, 3.5, (2,)), 0.5)
     assert found([*both, across, beside]) == {0: 0.1, 1: 0.1}
     elsewhere, end = (ring(2, -4.0, (3,)), 0.5), (ring(1, 3.5), 0.5)
     assert found([*both, elsewhere, end]) == {2: 0.5, 3: 0.5, 0: 0.1, 1: 0.1}
-    assert found([*limbs((0.01, 0.01)), across, beside]) == {2: 0.5}
+    assert found([*limbs((0.01, 0.01)), across, beside]) == {2: 0.5, 3: 0.5}
 
 
 def test_two_parts_may_hold_limbs() -> None:

@@ -9,7 +9,7 @@ from bow import FRAMES, HIP, KNEE, LEGS, PELVIS, SHANKS, SPINE, TIPS, TRUNK, bow
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure.end_cuts import EndCut
-from kinetree.tasks.numerics.structure.end_joints import judged_runs
+from kinetree.tasks.numerics.structure.end_joints import EndJoint, _with_common_pieces, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import EndFrames, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.limb_cuts import LimbCutsSettings, limb_cuts
@@ -99,13 +99,36 @@ def test_limbs_that_end_in_the_part_or_have_no_mirror_image_are_not_held() -> No
 def test_a_limb_with_two_ends_is_one_limb() -> None:
     """As a foot with heel and toe, both of which have a mirror image."""
     twice = LimbPairs(np.repeat(PAIRS.tip, 2, axis=0), np.repeat(PAIRS.distance, 2, axis=0))
-    assert len(cuts(both=twice)) == len(cuts())
+    assert len(cuts(both=twice)) == len(cuts()) > 0
 
 
-def test_a_limb_that_no_path_reaches_is_not_held() -> None:
-    far = PAIRS.distance.copy()
-    far[:, :, np.flatnonzero(TREE.label == PELVIS)[0]] = np.inf
-    assert cuts(both=LimbPairs(PAIRS.tip, far)) == []
+def test_a_body_with_a_single_pair_of_limbs_has_none() -> None:
+    assert cuts(both=LimbPairs(PAIRS.tip[:1], PAIRS.distance[:1])) == []
+
+
+def test_vertices_that_no_path_reaches_do_not_count() -> None:
+    far, lost = PAIRS.distance.copy(), np.flatnonzero(TREE.label == PELVIS)[:3]
+    far[:, :, lost] = np.inf
+    found = cuts(both=LimbPairs(PAIRS.tip, far))
+    assert len(found) == len(cuts())
+    assert not any(np.isin(lost, cut.own).any() for cut in found)
+    assert cuts(both=LimbPairs(PAIRS.tip, np.full_like(far, np.inf))) == []
+
+
+def test_a_part_without_vertices_or_with_one_neighbour_less_holds_none() -> None:
+    assert cuts(np.where(TREE.label == PELVIS, TRUNK, TREE.label)) == []
+    only_legs = np.where(TREE.label == TRUNK, PELVIS, TREE.label) - 1
+    assert cuts(only_legs, np.array([-1, 0, 0]), rest=TREE.rest[1:]) == []
+
+
+def test_hips_that_lie_unequally_far_from_their_ends_get_rings_beyond_both() -> None:
+    """The second knee lies four farther up."""
+    along = BODY.V @ LEGS[1]
+    label = np.where((TREE.label == PELVIS) & (along > KNEE - 4.0), SHANKS[1], TREE.label)
+    found = cuts(label)
+    assert len(found) >= 8
+    assert max(float(cut.centre @ LEGS.T[:, 0]) for cut in found[::2]) < KNEE - 4.0
+    assert all((~cut.far).any() and cut.far.any() for cut in found)
 
 
 def extended(of_pelvis: float, monkeypatch: pytest.MonkeyPatch) -> tuple[MovingSurface, FirstTree]:
@@ -144,6 +167,81 @@ def test_the_pelvis_moves_as_in_the_frames_then_and_its_joint_is_the_spine(monke
     off = np.einsum("tyx,tyz->txz", R[:, 1], tree.R[:, pelvis])
     angles = np.degrees(np.arccos(np.clip((np.trace(off, axis1=1, axis2=2) - 1) / 2, -1, 1)))
     assert angles.mean() < 2.0
+
+
+def test_both_thighs_get_skin_that_is_a_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What lies beyond both rings is moved once: moved twice, skin at one hip would follow the pelvis alone."""
+    body, tree = extended(18.0, monkeypatch)
+    for distance in (-1.0, 0.0, 0.5, 1.0):
+        near = [np.abs(body.V @ leg - (HIP - distance)) < 0.3 for leg in LEGS]
+        weight = [float(tree.W[v, part].mean()) for v, part in zip(near, tree.shown[::-1], strict=True)]
+        assert weight[0] == pytest.approx(weight[1], abs=0.1)
+
+
+def test_a_vertex_that_follows_the_part_by_half_goes_half_of_the_way() -> None:
+    body, tree = bow()
+    tree = tree._replace(W=np.where(tree.W > 0.0, 0.5, 0.0))
+    both = legs_of(body, tree)
+    moved = numerics.moved_ends(body, tree, both)
+    shared = np.intersect1d(both[0].cut.own[both[0].cut.share == 1.0], both[1].cut.own[both[1].cut.share == 1.0])
+    assert len(shared) > 20
+    for f in (3, 9):
+        carried = body.V[shared] @ both[0].R[f, 1].T + both[0].t[f, 1]
+        np.testing.assert_allclose(moved[f, shared], (body.x[f, shared] + carried) / 2.0, atol=1e-9)
+
+
+def legs_of(body: MovingSurface, tree: FirstTree) -> list[EndJoint]:
+    """Both legs of a body that bows."""
+    ones, surface = np.ones(body.x.shape[:2]), cache(shown(18.0))
+    rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(4), SHANKS), PAIRS)
+    frames = EndFrames.of(tree, body.area, np.arange(FRAMES), ones, surface)
+    fits = laid_in_runs(frames, judged_runs(FRAMES, None), rings)
+    return [one for one in end_joints(frames, rings, fits) if one.cut.is_across_limb]
+
+
+def test_the_pelvis_moves_as_the_clearer_ring_has_it_or_as_the_other_where_that_is_hidden() -> None:
+    both = legs_of(*bow())
+    one, other = (joint._replace(R=joint.R.copy(), t=joint.t.copy()) for joint in both)
+    one.R[:, 1], other.R[:, 1], other.t[:, 1] = np.eye(3), -np.eye(3), 7.0
+    hidden = np.arange(FRAMES) == 9
+    again = _with_common_pieces([one, other._replace(visible=~hidden)])
+    for joint, before in zip(again, (one, other), strict=True):
+        np.testing.assert_array_equal(joint.R[hidden, 1], one.R[hidden, 1])
+        np.testing.assert_array_equal(joint.R[~hidden, 1], other.R[~hidden, 1])
+        np.testing.assert_array_equal(joint.t[hidden, 1], one.t[hidden, 1])
+        np.testing.assert_array_equal(joint.t[~hidden, 1], other.t[~hidden, 1])
+        np.testing.assert_array_equal(joint.residual, np.where(hidden, one.residual, other.residual))
+        np.testing.assert_array_equal(joint.R[:, 0], before.R[:, 0])
+    apart = [one, other._replace(cut=other.cut._replace(level=-1)), one._replace(cut=one.cut._replace(part=9))]
+    for joint, before in zip(_with_common_pieces(apart), apart, strict=True):
+        np.testing.assert_array_equal(joint.R, before.R)
+
+
+def test_legs_are_cut_off_a_pelvis_that_is_the_root_and_other_parts_are_divided_with_it() -> None:
+    body, tree = bow()
+    both, order = legs_of(body, tree), np.array([1, 0, 2, 3])
+    label = order[tree.label]
+    turned = tree._replace(
+        parents=np.array([-1, 0, 0, 0]), label=label, W=tree.W[:, order], R=tree.R[:, order], t=tree.t[:, order],
+        rest=tree.rest[[1, 1, 2, 3]], unexplained=tree.unexplained[:, order],
+        radius=np.array([0.0, 3.0, 3.0, 3.0]),
+    )  # fmt: skip
+    legs = [one._replace(cut=one.cut._replace(part=0, hung=(one.cut.hung[0], 1))) for one in both]
+    foot = np.flatnonzero(label == 2)
+    beyond = (body.V[foot] @ LEGS[0]) - 22.0
+    toe = EndCut(2, 0, 22.0 * LEGS[0], 3.0, foot, beyond)
+    pose = np.tile(np.eye(3), (FRAMES, 2, 1, 1)), np.zeros((FRAMES, 2, 3))
+    end = EndJoint(toe, *pose, np.zeros(FRAMES), np.zeros(FRAMES, np.bool_), 0.1)
+    after = numerics.extended_tree(body, turned, [end, *legs], np.ones(body.x.shape[:2]), 0.01)
+    trunk, shanks = after.place[1], after.place[2:4]
+    thighs = after.parents[shanks]
+    assert after.parents.tolist().count(0) == 3
+    assert after.parents[[trunk, *thighs]].tolist() == [0, 0, 0]
+    toes = next(k for k in after.shown if k not in thighs)
+    assert after.parents[toes] == shanks[0]
+    assert sorted(after.shown) == sorted([*thighs.tolist(), toes])
+    np.testing.assert_allclose(after.rest[trunk], [SPINE, 0.0, 0.0], atol=0.8)
+    assert {*np.unique(after.label).tolist()} == {*range(7)}
 
 
 def test_legs_that_do_not_turn_against_the_pelvis_stay_with_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,20 +6,23 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bottles import BOTTOM, TOP, bottle
+from bottles import BOTTOM, TOP, bottle, revolution
 from scipy.spatial.transform import Rotation
 from shapes import y_pipe
 from shipped import TREE
 from whole_tree import whole_tree
 
+from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface
+from kinetree.tasks.numerics.structure import kinematic_tree as module
 from kinetree.tasks.numerics.structure import posed_tree
 from kinetree.tasks.numerics.structure.articulated_fit import Motion
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.necks import NecksSettings, necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.still_joints import PosedTree, StillJoint, with_still_joints
+from kinetree.tasks.numerics.structure.still_joints import PosedTree, Still, StillJoint, with_still_joints
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
@@ -67,7 +70,7 @@ def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedT
     return PosedTree(
         np.array(parents), Motion(rest, R, np.zeros((2, 3))), label, np.eye(len(k))[label], np.tile(known, (2, 1)),
         known, k, known,
-        np.where(k > 0, 1.0, 0.0), known, known, known, k, k, k, *np.zeros((2, len(k)), np.bool_),
+        np.where(k > 0, 1.0, 0.0), known, known, known, k, k, k, np.full(len(k), Still.NO),
     )  # fmt: skip
 
 
@@ -75,10 +78,10 @@ def posed(parents: list[int], heights: list[float], label: np.ndarray) -> PosedT
 def test_a_neck_moves_as_the_tube_did_and_what_is_known_stays_with_its_joint(joint: float, new: int, moved_by: int) -> None:
     V, F = bottle(3.0, 1.8)
     before = posed([-1, 0], [0.0, joint], (V[:, 2] > joint).astype(np.int64))
-    after = with_still_joints(before, hanging_necks(V, F, before))
+    after = with_still_joints(before, hanging_necks(V, F, before), Still.NECK)
     old = 3 - new
-    assert (after.parents.tolist(), np.flatnonzero(after.is_neck).tolist()) == ([-1, 0, 1], [new])
-    assert not after.is_mirrored.any()
+    assert after.parents.tolist() == [-1, 0, 1]
+    assert after.still.tolist() == [Still.NECK if k == new else Still.NO for k in range(3)]
     np.testing.assert_allclose(after.motion.rest[old], before.motion.rest[1])
     np.testing.assert_array_equal(after.motion.R[:, 1], before.motion.R[:, moved_by])
     np.testing.assert_array_equal(after.motion.R[:, [0, 2]], before.motion.R)
@@ -103,7 +106,7 @@ def test_two_necks_on_one_body_each_get_their_skin() -> None:
     before = posed([-1, 0, 0], [0.0, TOP, TOP], label)
     before.motion.rest[2] += aside
     hanging = hanging_necks(both, faces, before)
-    after = with_still_joints(before, hanging)
+    after = with_still_joints(before, hanging, Still.NECK)
     assert after.parents.tolist() == [-1, 0, 1, 0, 3]
     assert after.place.tolist() == [0, 2, 4]
     assert after.carrier.tolist() == [0, 0, 1, 0, 2]
@@ -244,12 +247,11 @@ def test_necks_stay_necks_when_mirrored_joints_follow() -> None:
     V, F = bottle(3.0, 1.8)
     before = posed([-1, 0], [0.0, TOP], (V[:, 2] > TOP).astype(np.int64))
     neck = hanging_necks(V, F, before)
-    once = with_still_joints(before, neck)
+    once = with_still_joints(before, neck, Still.NECK)
     toe = StillJoint(2, False, np.array([0.0, 0.0, 9.0]), 0.5, (V[:, 2] < 9.0).astype(np.float64))
-    both = with_still_joints(once, [toe], are_mirrored=True)
+    both = with_still_joints(once, [toe], Still.MIRRORED)
     assert both.parents.tolist() == [-1, 0, 1, 2]
-    assert np.flatnonzero(both.is_neck).tolist() == np.flatnonzero(once.is_neck).tolist()
-    assert np.flatnonzero(both.is_mirrored).tolist() == [3]
+    assert both.still.tolist() == [*once.still.tolist(), Still.MIRRORED]
     np.testing.assert_allclose(both.motion.rest[3], toe.centre)
     np.testing.assert_array_equal(both.motion.R[:, 3], once.motion.R[:, 2])
     np.testing.assert_allclose(both.W.sum(axis=1), 1.0)
@@ -289,6 +291,44 @@ def test_a_leg_gets_the_ankle_that_the_other_one_has_and_the_derivation_says_so(
     assert ankle != joint
     np.testing.assert_allclose(body.rest[joint], ANKLE * [1.0, -1.0, 1.0], atol=1.5)
     assert np.isnan(derivation.spread[joint])
+    np.testing.assert_allclose(body.weight.sum(axis=1), 1.0)
+
+
+def dumbbell(frames: int = 12) -> tuple[MovingSurface, Cut, np.ndarray]:
+    """A trunk with a limb above and one below that narrow beyond their joints, both of which swing; and their ends."""
+    limb = [(4.0, 3.0), (5.0, 2.0), (15.0, 1.0), (17.0, 1.7), (20.0, 1.7), (21.0, 0.4)]
+    profile = [*((-z, r) for z, r in reversed(limb)), *limb]
+    V, F = revolution([z for z, _ in profile], [r for _, r in profile])
+    label = np.where(V[:, 2] > 5.0, 1, np.where(V[:, 2] < -5.0, 2, 0))
+    R, t = np.tile(np.eye(3), (frames, 3, 1, 1)), np.zeros((frames, 3, 3))
+    for part, (sign, phase) in enumerate(((1.0, 0.0), (-1.0, 1.0)), start=1):
+        angle = np.radians(25.0) * np.sin(np.arange(frames) + phase)
+        R[:, part] = Rotation.from_rotvec(np.outer(angle, [1.0, 0.0, 0.0])).as_matrix()
+        t[:, part] = [0.0, 0.0, 5.0 * sign] - R[:, part] @ [0.0, 0.0, 5.0 * sign]
+    surface, cut, _ = moving(V, F, label, R, t)
+    return surface, cut, np.array([len(V) - 1, len(V) - 2])
+
+
+def test_narrowings_of_both_limbs_are_joints_that_turn_by_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    surface, cut, tips = dumbbell()
+    away = geodesic_distance(Surface.of(surface.V, surface.F), tips)
+    both = LimbPairs(np.stack([tips, tips]), np.stack([away, away]))
+    monkeypatch.setattr(module, "limb_pairs", lambda *of: both)
+    trust = np.full(surface.x.shape[:2], 0.99)
+    made = {
+        has: whole_tree(surface, cut, tips, trust, settings=TREE, has_narrowings=has, has_mirrored_joints=True)
+        for has in (False, True)
+    }
+    (plain, before), (body, derivation) = made[False], made[True]
+    assert (before.narrowing_joints, len(derivation.narrowing_joints)) == ((), 2)
+    assert derivation.mirrored_joints == derivation.neck_joints == before.mirrored_joints == ()
+    assert len(body.names) == len(plain.names) + 2
+    wrists = list(derivation.narrowing_joints)
+    np.testing.assert_allclose(np.sort(body.rest[wrists, 2]), [-15.75, 15.75], atol=0.3)
+    np.testing.assert_array_equal(body.degrees[wrists], 0.0)
+    assert np.isnan(derivation.spread[wrists]).all()
+    forearm = body.parents[wrists]
+    np.testing.assert_array_equal(body.rotation[:, wrists], body.rotation[:, forearm])
     np.testing.assert_allclose(body.weight.sum(axis=1), 1.0)
 
 
