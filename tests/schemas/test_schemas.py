@@ -3,6 +3,7 @@
 import importlib
 import json
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pydantic import BaseModel
@@ -13,6 +14,9 @@ from kinetree.schemas import dims
 from kinetree.schemas.array import Artifact, Params
 from kinetree.schemas.dims import Dim
 from kinetree.schemas.results.comparison import Comparison
+from kinetree.schemas.results.skeleton_json import Joint
+from kinetree.schemas.results.verdict import Finding, Kind
+from kinetree.schemas.structure.error_bars import EvidenceKind
 from kinetree.tasks import METHODS
 from kinetree.tasks.methods import DATA_SETS
 
@@ -120,3 +124,13 @@ def test_defaults_make_a_configuration():
     for method, graph in METHODS.items():
         params = Pipeline.of({"method": method}).config.params
         assert set(params) == {task.block for task in graph.tasks if task.params or task.sets}
+
+
+@pytest.mark.parametrize(
+    ("model", "field", "words"),
+    [(Finding, "kind", get_args(Kind)), (Joint, "evidence", get_args(EvidenceKind))],
+    ids=["finding", "evidence"],
+)
+def test_what_a_kind_means_is_said_of_each(model, field, words):
+    sentence = sentences(model)[field]
+    assert [word for word in words if f"{word} " not in sentence and f"{word}:" not in sentence] == []
