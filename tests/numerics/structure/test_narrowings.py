@@ -76,9 +76,17 @@ def test_a_narrowing_near_a_joint_is_that_joint() -> None:
     assert found(*BAR, joint=11.5) == []
 
 
-def test_a_narrowing_near_the_end_is_of_a_finger() -> None:
-    assert len(found(*BAR, settings=NarrowingsSettings(from_end=6.0))) == 2
-    assert found(*BAR, settings=NarrowingsSettings(from_end=9.0)) == []
+@pytest.mark.parametrize(("from_end", "count"), [((6.0, 9.0), 2), ((8.0, 9.0), 0), ((3.0, 6.0), 0)])
+def test_a_narrowing_near_the_end_is_of_a_finger_and_one_far_from_it_amid_a_bone(
+    from_end: tuple[float, float], count: int
+) -> None:
+    """It lies 7.3 radii from the end."""
+    assert len(found(*BAR, settings=NarrowingsSettings(from_end=from_end))) == count
+
+
+def test_beyond_a_long_bone_is_no_hand() -> None:
+    assert len(found(*bar(narrowing=13.0, below=13.0))) == 2
+    assert found(*bar(narrowing=11.0, below=11.0)) == []
 
 
 @pytest.mark.parametrize(("below", "count"), [(NARROWING - 1.0, 2), (NARROWING - 2.5, 0)])
@@ -149,6 +157,7 @@ def test_rings_that_shrink_to_nothing_are_no_narrowing() -> None:
     dented = V.copy()
     at = np.abs(np.abs(V[:, 2]) - 18.5) < 0.3
     dented[at, :2] *= 0.1
-    joints = found(dented, F)
-    assert [abs(joint.centre[2]) < 17.0 for joint in joints] == [True, True]
-    assert [abs(joint.centre[2]) > 18.0 for joint in found(dented, F, settings=NarrowingsSettings(least=0.0))] == [True, True]
+    chosen = NarrowingsSettings(from_end=(1.0, 60.0))  # the dent makes the way to the end longer
+    assert [abs(joint.centre[2]) < 17.0 for joint in found(dented, F, settings=chosen)] == [True, True]
+    any_radius = chosen._replace(least=0.0)
+    assert [abs(joint.centre[2]) > 18.0 for joint in found(dented, F, settings=any_radius)] == [True, True]
