@@ -15,6 +15,7 @@ from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
 from kinetree.tasks.numerics.structure.skinning import skinning
 
@@ -126,8 +127,11 @@ def extended_tree(
         unexplained=unexplained[:, order],
         radius=np.append(tree.radius, [one.cut.radius for one in found])[order],
     )
-    beside = np.array(sorted({place[joint_inwards(tree, one.cut)] for one in found if one.cut.is_across_limb}), np.int64)
+    limbs = [one.cut for one in found if one.cut.is_across_limb]
+    beside = np.array(sorted({place[joint_inwards(tree, cut)] for cut in limbs}), np.int64)
     new.rest[beside] = _turning_about(new, beside)
+    if any(tree.parents[cut.part] < 0 for cut in limbs):
+        new.rest[0] = root_amid_limbs(new.rest, new.parents, new.rest[0])
     moved = {*new.shown, *parents[list(new.shown)].tolist()}
     changed = np.array([k for k in range(1, len(parents)) if k in moved or parents[k] in moved])
     drifts = new.drift.copy()

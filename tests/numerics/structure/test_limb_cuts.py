@@ -218,30 +218,34 @@ def test_the_pelvis_moves_as_the_clearer_ring_has_it_or_as_the_other_where_that_
 
 
 def test_legs_are_cut_off_a_pelvis_that_is_the_root_and_other_parts_are_divided_with_it() -> None:
+    """The trunk, part 1, carries two parts more, 4 and 5."""
     body, tree = bow()
     both, order = legs_of(body, tree), np.array([1, 0, 2, 3])
     label = order[tree.label]
+    label = np.where((label == 1) & (body.V[:, 0] > 18.0), np.where(body.V[:, 1] > 0.0, 4, 5), label)
+    of = np.array([1, 0, 2, 3, 0, 0])
     turned = tree._replace(
-        parents=np.array([-1, 0, 0, 0]), label=label, W=tree.W[:, order], R=tree.R[:, order], t=tree.t[:, order],
-        rest=tree.rest[[1, 1, 2, 3]], unexplained=tree.unexplained[:, order],
-        radius=np.array([0.0, 3.0, 3.0, 3.0]),
+        parents=np.array([-1, 0, 0, 0, 1, 1]), place=np.arange(6), label=label, W=np.eye(6)[label], R=tree.R[:, of],
+        t=tree.t[:, of], rest=np.concatenate([tree.rest[[1, 1, 2, 3]], [[18.0, 2.0, 0.0], [18.0, -2.0, 0.0]]]),
+        certain_share=np.ones((FRAMES, 6)), drift=np.zeros(6), unexplained=np.full((FRAMES, 6), 0.05),
+        radius=np.array([0.0, 3.0, 3.0, 3.0, 2.0, 2.0]),
     )  # fmt: skip
     legs = [one._replace(cut=one.cut._replace(part=0, hung=(one.cut.hung[0], 1))) for one in both]
     foot = np.flatnonzero(label == 2)
-    beyond = (body.V[foot] @ LEGS[0]) - 22.0
-    toe = EndCut(2, 0, 22.0 * LEGS[0], 3.0, foot, beyond)
+    toe = EndCut(2, 0, 22.0 * LEGS[0], 3.0, foot, (body.V[foot] @ LEGS[0]) - 22.0)
     pose = np.tile(np.eye(3), (FRAMES, 2, 1, 1)), np.zeros((FRAMES, 2, 3))
     end = EndJoint(toe, *pose, np.zeros(FRAMES), np.zeros(FRAMES, np.bool_), 0.1)
     after = numerics.extended_tree(body, turned, [end, *legs], np.ones(body.x.shape[:2]), 0.01)
-    trunk, shanks = after.place[1], after.place[2:4]
+    trunk, shanks, others = after.place[1], after.place[2:4], after.place[4:]
     thighs = after.parents[shanks]
-    assert after.parents.tolist().count(0) == 3
-    assert after.parents[[trunk, *thighs]].tolist() == [0, 0, 0]
+    assert np.flatnonzero(after.parents == 0).tolist() == sorted([trunk, *thighs])
+    assert after.parents[others].tolist() == [trunk, trunk]
     toes = next(k for k in after.shown if k not in thighs)
     assert after.parents[toes] == shanks[0]
     assert sorted(after.shown) == sorted([*thighs.tolist(), toes])
     np.testing.assert_allclose(after.rest[trunk], [SPINE, 0.0, 0.0], atol=0.8)
-    assert {*np.unique(after.label).tolist()} == {*range(7)}
+    np.testing.assert_allclose(after.rest[0], after.rest[thighs].mean(axis=0), err_msg="the root lies amid both hips")
+    assert {*np.unique(after.label).tolist()} == {*range(9)}
 
 
 def test_legs_that_do_not_turn_against_the_pelvis_stay_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
