@@ -12,6 +12,7 @@ SETTINGS = ErrorBarsSettings(
     along_axis=0.1,
     end_joint=0.25,
     across_tube=0.3,
+    across_narrowing=0.45,
     across_mirrored=0.7,
     uncertain=2.0,
 )
@@ -23,7 +24,8 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
         "residual": np.array([0.003, 0.003, 0.003]), "length": np.full(3, 0.2), "size": 1.0, "offset": np.full(3, np.nan),
         "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "hinge": np.full(3, np.nan),
         "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "is_end_joint": np.zeros(3, np.bool_),
-        "tube": np.full(3, np.nan), "mirrored": np.full(3, np.nan), "confidence": np.ones((5, 3)), **changed,
+        "tube": np.full(3, np.nan), "narrowing": np.full(3, np.nan), "mirrored": np.full(3, np.nan),
+            "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
     unscaled = ("degrees", "resistance", "below", "softness", "is_end_joint", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
@@ -148,7 +150,7 @@ def test_no_error_is_below_the_least() -> None:
     )
 
 
-@pytest.mark.parametrize(("field", "share"), [("tube", 0.3), ("mirrored", 0.7)])
+@pytest.mark.parametrize(("field", "share"), [("tube", 0.3), ("narrowing", 0.45), ("mirrored", 0.7)])
 def test_a_joint_that_no_motion_shows_is_off_by_a_share_of_its_radius_whatever_the_motion_says(
     field: str, share: float
 ) -> None:
@@ -177,7 +179,7 @@ def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
     known = (drift, spread, residual, degrees, length, offset, resistance, hinge, below, softness)
-    rows = JointFeatures(*known, drift, drift > 0.0, drift, drift, sure, 1.0).logarithms(True)
+    rows = JointFeatures(*known, drift, drift > 0.0, drift, drift, drift, sure, 1.0).logarithms(True)
     law = [5.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2, 0.2, -0.1, 0.3]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3), (8, -0.3), (9, 0.3), (10, -0.3)):
