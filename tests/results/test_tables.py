@@ -189,6 +189,18 @@ def test_a_joint_that_the_other_side_or_a_narrowing_alone_shows_has_no_angles(wa
     assert after == [column for column in before if not column.startswith("hip_l.")]
 
 
+@pytest.mark.parametrize("known", ["mirror", "narrowing"])
+def test_a_wrist_at_which_no_turn_was_measured_shows_no_pronation(walker, known):
+    body, names = walker
+    evidence = tuple(known if name == "wrist_l" else "motion" for name in names.anatomy)
+    bars = unknown_error_bars(body).model_copy(update={"evidence": evidence})
+    written = views.files(tables(body, names, UP, bars, TablesParams()), ())["tables/joint_angles.csv"].decode()
+    rows = list(csv.DictReader(io.StringIO(written, newline="")))
+    assert {row["elbow_l.rotation_seen"] for row in rows} == {"0"}
+    assert {row["elbow_r.rotation_seen"] for row in rows} == {"1"}
+    assert {row["elbow_l.rotation_seen"] for row in table(walker, "joint_angles")} == {"1"}
+
+
 def test_frames_in_which_a_knee_is_bent_show_how_the_thigh_is_turned(walker):
     rows = table(walker, "joint_angles")
     for side in "lr":

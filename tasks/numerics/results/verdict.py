@@ -61,7 +61,7 @@ class Evidence(NamedTuple):
     expected   : (joint,) expected error, share of the longest side of the body's box; NaN where it is not known
     bound      : (joint,) the distance that the mean error of nine joints of ten keeps, the same share; NaN where not known
     by_shape   : (joint,) whether the body's shape alone shows the joint, so that it turns by nothing
-    by_narrowing   : (joint,) the same of a narrowing of its limb
+    by_narrowing : (joint,) the same of a narrowing of its limb
     by_mirror  : (joint,) the same of the mirror image of its limb
     pairs      : pairs of joints, left and right, whose bones should be equally long
     unpaired   : joints that have a side, and no partner

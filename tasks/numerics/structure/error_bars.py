@@ -110,7 +110,7 @@ class JointFeatures(NamedTuple):
     radius     : (joint,) of the border at the joint where the frames give every vertex; NaN where they do not
     is_end_joint : (joint,) whether the frames' surfaces show the joint, see `extended_tree`
     tube       : (joint,) radius of the tube where its own shape alone shows the joint; NaN elsewhere
-    narrowing      : (joint,) radius of the narrowing where that alone shows the joint; NaN elsewhere
+    narrowing  : (joint,) radius of the narrowing where that alone shows the joint; NaN elsewhere
     mirrored   : (joint,) radius of the ring where its mirror image alone shows the joint; NaN elsewhere
     confidence : (frame, joint) 0 to 1
     size       : root of the area

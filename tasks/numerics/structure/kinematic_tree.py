@@ -84,7 +84,7 @@ class Derivation(NamedTuple):
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
     mirrored_joints : joints that their mirror images alone show, see `mirrored_joints`
-    narrowing_joints   : joints that narrowings of limbs alone show, see `narrowings`
+    narrowing_joints : joints that narrowings of limbs alone show, see `narrowings`
     """
 
     part: Ints
@@ -132,7 +132,7 @@ def kinematic_tree(
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
-    has_narrowings      : whether both limbs of a pair have a joint beyond a narrowing, see `narrowings`
+    has_narrowings  : whether both limbs of a pair have a joint beyond a narrowing, see `narrowings`
     has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
     up         : (xyz,) unit vector, by which a person is told, whose spine lies behind the middle, see `spine_joints`; None
                  leaves spines where motion has them
