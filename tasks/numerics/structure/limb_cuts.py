@@ -22,9 +22,9 @@ TINY = np.finfo(float).tiny
 class LimbCutsSettings(NamedTuple):
     """When a part holds both limbs of a pair, and which rings are proposed.
 
-    Chosen on people 6, 14, 62 and 102, who bow: their pelvises hold 0.25 to 0.35 of themselves on each limb, and the best ring of
-    each shows 0.059 to 0.223. Of 93 other bodies (people 0 to 14, 55 to 69, 100 to 114, humans, four-legged and random trees 0
-    to 9, recorded ones, eighteen clips of a rigged body) one has such a part, between the arms of person 8, whose rings show
+    Chosen on people 6, 14, 62 and 102, who bow: their pelvises hold 0.25 to 0.35 of themselves on each limb, and the best ring
+    of each shows 0.059 to 0.223. Of 93 other bodies (people 0 to 14, 55 to 69, 100 to 114, humans, four-legged and random trees
+    0 to 9, recorded ones, eighteen clips of a rigged body) one has such a part, between the arms of person 8, whose rings show
     0.032 at most. Levels were not varied.
     """
 
