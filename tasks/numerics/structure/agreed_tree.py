@@ -13,13 +13,16 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_other_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
+from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, joints_of, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
+from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
 
 RISE = 1.15
 """Without a part some joints go and others come in their place. The largest drift of those that come, in the largest of those
@@ -62,7 +65,8 @@ def agreed_tree(
 
     The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
     before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
-    mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too (`mirrored_slices`).
+    mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too (`mirrored_slices`), and
+    flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -80,7 +84,10 @@ def agreed_tree(
         which, tree = (which, shown) if still else (0, tree)
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
-    return AgreedTree(which, tree if confidence is None else _without_slices(body, tree, pairs, confidence, settings))
+    if confidence is not None:
+        tree = _without_slices(body, tree, pairs, confidence, settings)
+        tree = _without_flesh(body, tree, pairs, confidence, settings)
+    return AgreedTree(which, tree)
 
 
 def _best(body: MovingSurface, trees: Sequence[FirstTree], pairs: LimbPairs, settings: KinematicTreeSettings) -> int:
@@ -124,6 +131,24 @@ def _without_slices(
     if (first == first[0]).all():
         return _of_cut(tree, tried[first[0]])
     return _of_cut(tree, _joints_without(body, tree, start, slices, [chosen.shares[k] for k in first], confidence, settings))
+
+
+def _without_flesh(
+    body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
+) -> FirstTree:
+    """The tree with flesh of the trunk that one limb of a pair holds as part of the trunk; all joints stay."""
+    found = unlike_borders(body.V, body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    if not found:
+        return tree
+    left, label, changed = _pruned(body, tree), tree.label.copy(), set[int]()
+    for flesh in found:
+        trunk = int(tree.parents[flesh.part])
+        label[flesh.vertex], changed = trunk, changed | {flesh.part, trunk}
+    share = confident_share(label, body.area, confidence, len(body.x), len(tree.parents))
+    parts = left.parts._replace(label=label, confidence=share, joined=joints_of(left.part_tree))
+    parts = moving_by_themselves(body, parts, sorted(changed), confidence)
+    left = left._replace(parts=parts, part_tree=part_tree(body, parts))
+    return _of_cut(tree, _joints(body, tree, left, confidence, settings))
 
 
 def _joints_without(

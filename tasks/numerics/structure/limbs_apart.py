@@ -61,7 +61,7 @@ def _with_limb(body: MovingSurface, state: Pruned, one: LimbInTrunk, confidence:
     """
     new = state.parts.R.shape[1]
     parts = _cut_apart(body, state.parts, one.part, one.limb, confidence)
-    parts = _moving_by_themselves(body, parts, [one.part, new], confidence)
+    parts = moving_by_themselves(body, parts, [one.part, new], confidence)
     hip, knee = frozenset((one.part, new)), frozenset((new, one.below))
     joints = joints_of(state.part_tree) - {frozenset((one.part, one.below))} | {hip, knee}
     apart = _with_one_more(body, state, parts._replace(joined=joints, by_shape=parts.by_shape | {hip}))
@@ -83,8 +83,11 @@ def _cut_apart(body: MovingSurface, parts: MovingParts, part: int, other: Ints, 
     return parts._replace(label=label, R=R, t=t, residual=residual, confidence=share)
 
 
-def _moving_by_themselves(body: MovingSurface, parts: MovingParts, some: Sequence[int], confidence: Floats) -> MovingParts:
-    """The same parts, some of them fitted anew; of these, vertices count that follow them as half of their vertices do."""
+def moving_by_themselves(body: MovingSurface, parts: MovingParts, some: Sequence[int], confidence: Floats) -> MovingParts:
+    """The same parts, some of them fitted anew; of these, vertices count that follow them as half of their vertices do.
+
+    confidence : (frame, vertex) 0 to 1
+    """
     R, t, residual, label = parts.R.copy(), parts.t.copy(), parts.residual.copy(), parts.label
     V, x = (np.array(a, np.float64, order="C") for a in (body.V, body.x))
     weight = np.array(confidence, np.float64, order="F")

@@ -94,7 +94,7 @@ def mirrored_slices(
     for limbs in mirrored_limbs(body.F, parts, pairs, paired):
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
-        touch = _touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
+        touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
         limits = chosen.touching if touch else chosen.apart
         for short in (_both(tree, limbs, limits, chosen), [] if touch else _one(tree, limbs, limits, chosen)):
             slices = [_slice(body, tree, limb) for limb in short]
@@ -121,8 +121,8 @@ def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: Mir
     return [limb] if np.isin([last - 1, last], limbs.row[:, side]).sum() == 1 else []
 
 
-def _touch(F: Ints, label: Ints, one: int, other: int) -> bool:
-    """Whether an edge leads from one part to the other."""
+def parts_touch(F: Ints, label: Ints, one: int, other: int) -> bool:
+    """Whether an edge leads from one part to the other; F (face, corner), label (vertex,) part."""
     edge = label[np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])]
     return bool(((edge == one).any(axis=1) & (edge == other).any(axis=1)).any())
 

@@ -1,0 +1,179 @@
+"""Flesh of the trunk that one of two thighs holds goes back to the trunk."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+from legs import ALONG, FRAMES, HIP, LEAVES, LEGS, NAMES, F, Legs, V, of_legs
+from shipped import TREE
+
+from kinetree.tasks.numerics.arrays import Flags
+from kinetree.tasks.numerics.structure import agreed_tree
+from kinetree.tasks.numerics.structure import unlike_borders as numerics
+from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
+from kinetree.tasks.numerics.structure.frame_poses import confident_share
+from kinetree.tasks.numerics.structure.joint_partners import MirroredLimbs, RootedParts
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.pruning import Pruned
+from kinetree.tasks.numerics.structure.tree_joints import tree_of_parts
+from kinetree.tasks.numerics.structure.unlike_borders import Flesh, UnlikeBordersSettings, unlike_borders
+
+ONES = np.ones((FRAMES, len(V)))
+OUTSIDE = {side: V @ np.array([0.0, np.sign(leg[1]), 0.0]) for side, leg in LEGS.items()}
+
+
+def flesh_of(side: str) -> Flags:
+    """(vertex,) the side of pelvis and chest that one leg's thigh holds."""
+    return np.asarray((ALONG[side] <= HIP) & (OUTSIDE[side] > 0.0) & (V[:, 0] < 10.0))
+
+
+def seen(*sides: str, parts: dict[str, int] | None = None) -> tuple[MovingSurface, FirstTree]:
+    """The legs as a cut has them, with flesh of the trunk in the thighs of these sides."""
+    legs = Legs.of(parts)
+    label = legs.parts.label.copy()
+    for side in sides:
+        label[flesh_of(side)] = legs.parts.label[np.argmin(np.abs(ALONG[side] - 10.0))]
+    moved = moving_by_themselves(legs.body, legs.parts._replace(label=label), range(int(label.max()) + 1), ONES)
+    found = part_tree(legs.body, moved)
+    left, count = Pruned(moved, found, found, np.arange(int(label.max()) + 1), ()), int(label.max()) + 1
+    return legs.body, in_tree_order(tree_of_parts(legs.body, left, np.arange(count), label, ONES, TREE), count)
+
+
+def pairs() -> LimbPairs:
+    """Both legs; twice, since a single pair of limbs says nothing of a body."""
+    return LimbPairs(*(np.concatenate([a, a]) for a in of_legs()))
+
+
+def rooted(tree: FirstTree) -> RootedParts:
+    return RootedParts(tree.label, tree.parents, tree.radius)
+
+
+def found_in(tree: FirstTree, settings: UnlikeBordersSettings | None = None, of: LimbPairs | None = None) -> list[Flesh]:
+    return unlike_borders(V, F, rooted(tree), pairs() if of is None else of, settings)
+
+
+def hips(tree: FirstTree) -> list[float]:
+    """How far the joint of each thigh is from its true place."""
+    thighs = [int(np.bincount(tree.label[np.abs(along - 10.0) < 1.0]).argmax()) for along in ALONG.values()]
+    return [float(np.linalg.norm(tree.rest[k] - HIP * leg)) for k, leg in zip(thighs, LEGS.values(), strict=True)]
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_flesh_on_one_side_is_found(side: str) -> None:
+    _, tree = seen(side)
+    (one,) = found_in(tree)
+    assert set(tree.label[one.vertex]) == {one.part}
+    assert flesh_of(side)[one.vertex].all()
+    assert len(one.vertex) > 0.4 * flesh_of(side).sum()  # the rest widens the border by less than is asked for
+
+
+@pytest.mark.parametrize("sides", [(), ("left", "right")])
+def test_limbs_that_are_alike_have_none(sides: Sequence[str]) -> None:
+    assert found_in(seen(*sides)[1]) == []
+
+
+def test_a_single_pair_of_limbs_tells_nothing() -> None:
+    _, tree = seen("left")
+    assert found_in(tree, of=of_legs()) == []
+    assert len(found_in(tree, UnlikeBordersSettings(least_pairs=1), of_legs())) == 1
+
+
+def test_how_much_wider_the_border_is() -> None:
+    _, tree = seen("left")
+    (one,) = found_in(tree)
+    radius = sorted(tree.radius[[one.part, *np.setdiff1d(np.flatnonzero(tree.parents == tree.parents[one.part]), one.part)]])
+    ratio = radius[-1] / tree.radius[_other(tree, one.part)]
+    assert found_in(tree, UnlikeBordersSettings(wider=1.01 * ratio)) == []
+    assert len(found_in(tree, UnlikeBordersSettings(wider=0.99 * ratio))) == 1
+
+
+def _other(tree: FirstTree, part: int) -> int:
+    """The other thigh."""
+    along = min((ALONG[side] for side in LEGS if tree.label[np.argmin(np.abs(ALONG[side] - 10.0))] != part), key=len)
+    return int(tree.label[np.argmin(np.abs(along - 10.0))])
+
+
+def test_it_ends_where_the_border_is_as_wide_as_the_other_one() -> None:
+    _, tree = seen("left")
+    lost = [len(found_in(tree, UnlikeBordersSettings(alike=alike))[0].vertex) for alike in (1.4, 1.15, 1.05)]
+    assert lost[0] < lost[1] <= lost[2]
+    assert found_in(tree, UnlikeBordersSettings(alike=0.1)) == []
+
+
+def test_too_few_vertices_are_none() -> None:
+    _, tree = seen("left")
+    count = len(found_in(tree)[0].vertex)
+    assert len(found_in(tree, UnlikeBordersSettings(least_vertices=count))) == 1
+    assert found_in(tree, UnlikeBordersSettings(least_vertices=count + 1)) == []
+
+
+def test_something_is_left_of_the_part() -> None:
+    """The ring is as narrow as one likes at the end of a limb, beyond which nothing is left."""
+    whole = {"pelvis": 0, "left thigh": 1, "left shank": 1, "right thigh": 2, "right shank": 2, "chest": 3}
+    _, tree = seen("left", parts=whole)
+    assert len(found_in(tree)) == 1
+    assert len(found_in(tree, UnlikeBordersSettings(alike=0.3, least_vertices=1))) == 1
+    assert found_in(tree, UnlikeBordersSettings(alike=0.3, least_vertices=60)) == []
+
+
+def test_thighs_that_touch_share_their_flesh() -> None:
+    """Either may be the pelvis."""
+    hip = dict(zip(NAMES, range(len(NAMES)), strict=True))
+    _, tree = seen("left", parts=hip)
+    thigh = _other(tree, found_in(tree)[0].part)
+    near = np.flatnonzero((tree.label == 0) & (V[:, 0] < 3.0))
+    assert found_in(tree._replace(label=np.where(np.isin(np.arange(len(V)), near), thigh, tree.label))) == []
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda limbs: limbs._replace(row=limbs.row[:-1]),
+        lambda limbs: limbs._replace(row=limbs.row[::-1] * [1, 1] if len(limbs.row) < 2 else limbs.row[:, ::-1][::-1]),
+        lambda limbs: limbs._replace(one=limbs.one._replace(part=limbs.one.part[:1], level=limbs.one.level[:1])),
+        lambda limbs: limbs._replace(one=limbs.one._replace(part=limbs.one.part[[0, 0, 1]], level=limbs.one.level[[0, 0, 1]])),
+        lambda limbs: limbs._replace(other=limbs.other._replace(part=limbs.other.part[[0, 1, 1]])),
+        lambda limbs: limbs._replace(one=limbs.one._replace(part=limbs.one.part[:0], level=limbs.one.level[:0])),
+    ],
+)
+def test_all_joints_are_partners(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: pytest.MonkeyPatch) -> None:
+    _, tree = seen("left")
+    real = numerics.mirrored_limbs
+    monkeypatch.setattr(numerics, "mirrored_limbs", lambda *of: [changed(limbs) for limbs in real(*of)])
+    assert found_in(tree) == []
+
+
+def test_limb_that_carries_another_one_has_none() -> None:
+    _, tree = seen("left")
+    (one,) = found_in(tree)
+    chest = int(tree.label[np.argmax(V[:, 0])])
+    assert found_in(tree._replace(parents=np.where(np.arange(len(tree.parents)) == chest, one.part, tree.parents))) == []
+
+
+def test_its_joint_goes_where_the_limb_turns() -> None:
+    body, tree = seen("left")
+    left = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
+    (before, other), (after, same) = hips(tree), hips(left)
+    assert after < 0.5 * before
+    assert same == pytest.approx(other, abs=0.2)
+    assert len(left.parents) == len(tree.parents)
+    trust = np.random.default_rng(0).uniform(size=ONES.shape)
+    unsure = agreed_tree._without_flesh(body, tree, pairs(), trust, TREE)
+    share = confident_share(unsure.label, body.area, trust, FRAMES, len(unsure.parents))
+    assert unsure.certain_share == pytest.approx(share)
+
+
+def test_nothing_changes_where_there_is_none() -> None:
+    body, tree = seen()
+    assert agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE) is tree
+
+
+@pytest.mark.parametrize("is_aligned", [True, False])
+def test_agreed_tree_is_without_it_where_vertices_were_aligned(is_aligned: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    body, tree = seen("left")
+    monkeypatch.setattr(agreed_tree, "limb_pairs", lambda *_: pairs())
+    trust = ONES if is_aligned else None
+    left = agreed_tree.agreed_tree(body, [tree], LEAVES, trust, settings=TREE).tree
+    assert (hips(left)[0] < 0.5 * hips(tree)[0]) == is_aligned
