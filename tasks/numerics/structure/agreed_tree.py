@@ -136,8 +136,9 @@ def _without_slices(
 def _without_flesh(
     body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
-    """The tree with flesh of the trunk that one limb of a pair holds as part of the trunk; all joints stay."""
-    found = unlike_borders(body.V, body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    """The tree with flesh of the trunk that one limb of a pair holds as part of the trunk; as it is where a joint would go."""
+    parted = RootedParts(tree.label, tree.parents, tree.radius)
+    found = unlike_borders(body.V, body.F, parted, pairs, settings.pruning.unpaired.paired)
     if not found:
         return tree
     left, label, changed = _pruned(body, tree), tree.label.copy(), set[int]()
@@ -147,8 +148,10 @@ def _without_flesh(
     share = confident_share(label, body.area, confidence, len(body.x), len(tree.parents))
     parts = left.parts._replace(label=label, confidence=share, joined=joints_of(left.part_tree))
     parts = moving_by_themselves(body, parts, sorted(changed), confidence)
-    left = left._replace(parts=parts, part_tree=part_tree(body, parts))
-    return _of_cut(tree, _joints(body, tree, left, confidence, settings))
+    new = left._replace(parts=parts, part_tree=part_tree(body, parts))
+    if joints_of(new.part_tree) != joints_of(left.part_tree):
+        return tree
+    return _of_cut(tree, _joints(body, tree, new, confidence, settings))
 
 
 def _joints_without(

@@ -101,6 +101,12 @@ def in_mirrored_limbs(parts: RootedParts, pairs: LimbPairs) -> Flags:
     return inside
 
 
+def parts_touch(F: Ints, label: Ints, one: int, other: int) -> bool:
+    """Whether an edge leads from one part to the other; F (face, corner), label (vertex,) part."""
+    edge = label[np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])]
+    return bool(((edge == one).any(axis=1) & (edge == other).any(axis=1)).any())
+
+
 def _own(carrying: Flags) -> Flags:
     """(part, 2) which parts carry one of two ends alone; carrying (part, 2) whether each carries each of them."""
     return carrying & ~carrying.all(axis=1, keepdims=True)

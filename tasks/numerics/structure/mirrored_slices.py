@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.joint_partners import Limb, MirroredLimbs, RootedParts, mirrored_limbs
+from kinetree.tasks.numerics.structure.joint_partners import Limb, MirroredLimbs, RootedParts, mirrored_limbs, parts_touch
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
@@ -119,12 +119,6 @@ def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: Mir
     limb = (limbs.one, limbs.other)[side]
     last = len(limb.part) - 1
     return [limb] if np.isin([last - 1, last], limbs.row[:, side]).sum() == 1 else []
-
-
-def parts_touch(F: Ints, label: Ints, one: int, other: int) -> bool:
-    """Whether an edge leads from one part to the other; F (face, corner), label (vertex,) part."""
-    edge = label[np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])]
-    return bool(((edge == one).any(axis=1) & (edge == other).any(axis=1)).any())
 
 
 def _length(tree: FirstTree, limb: Limb) -> float:
