@@ -144,7 +144,8 @@ def _without_flesh(
     left, label, changed = _pruned(body, tree), tree.label.copy(), set[int]()
     for flesh in found:
         trunk = int(tree.parents[flesh.part])
-        label[flesh.vertex], changed = trunk, changed | {flesh.part, trunk}
+        label[flesh.vertex] = trunk
+        changed |= {flesh.part, trunk}
     share = confident_share(label, body.area, confidence, len(body.x), len(tree.parents))
     parts = left.parts._replace(label=label, confidence=share, joined=joints_of(left.part_tree))
     parts = moving_by_themselves(body, parts, sorted(changed), confidence)

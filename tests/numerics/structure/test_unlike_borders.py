@@ -36,9 +36,10 @@ def seen(*sides: str, parts: dict[str, int] | None = None) -> tuple[MovingSurfac
     label = legs.parts.label.copy()
     for side in sides:
         label[flesh_of(side)] = legs.parts.label[np.argmin(np.abs(ALONG[side] - 10.0))]
-    moved = moving_by_themselves(legs.body, legs.parts._replace(label=label), range(int(label.max()) + 1), ONES)
+    count = int(label.max()) + 1
+    moved = moving_by_themselves(legs.body, legs.parts._replace(label=label), range(count), ONES)
     found = part_tree(legs.body, moved)
-    left, count = Pruned(moved, found, found, np.arange(int(label.max()) + 1), ()), int(label.max()) + 1
+    left = Pruned(moved, found, found, np.arange(count), ())
     return legs.body, in_tree_order(tree_of_parts(legs.body, left, np.arange(count), label, ONES, TREE), count)
 
 
@@ -217,7 +218,7 @@ def test_its_joint_goes_where_the_limb_turns() -> None:
     assert unsure.certain_share == pytest.approx(share)
 
 
-def test_the_trunk_moves_as_without_a_thigh_that_holds_its_flesh() -> None:
+def test_the_trunk_is_fitted_anew() -> None:
     body, tree = seen("left")
     cut = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
     chest = [int(one.parents[thigh(one, "left")]) for one in (tree, cut)]
