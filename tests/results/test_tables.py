@@ -177,25 +177,26 @@ def test_knees_of_a_walker_only_bend_backwards(walker):
         assert knee.max() > 50.0
 
 
+def angles_if_shown(walker, joint, known):
+    """The rows of the joint angles if one joint is known by this, and all others by motion."""
+    body, names = walker
+    evidence = tuple(known if name == joint else "motion" for name in names.anatomy)
+    bars = unknown_error_bars(body).model_copy(update={"evidence": evidence})
+    written = views.files(tables(body, names, UP, bars, TablesParams()), ())["tables/joint_angles.csv"].decode()
+    return list(csv.DictReader(io.StringIO(written, newline="")))
+
+
 @pytest.mark.parametrize("known", ["mirror", "narrowing"])
 def test_a_joint_that_the_other_side_or_a_narrowing_alone_shows_has_no_angles(walker, known):
     """They would be those of the reference pose in every frame."""
-    body, names = walker
-    evidence = tuple(known if name == "hip_l" else "motion" for name in names.anatomy)
-    bars = unknown_error_bars(body).model_copy(update={"evidence": evidence})
-    written = views.files(tables(body, names, UP, bars, TablesParams()), ())["tables/joint_angles.csv"].decode()
-    before, after = list(table(walker, "joint_angles")[0]), next(csv.reader(io.StringIO(written, newline="")))
+    before, after = (list(rows[0]) for rows in (table(walker, "joint_angles"), angles_if_shown(walker, "hip_l", known)))
     assert "hip_l.rotation_seen" in before
     assert after == [column for column in before if not column.startswith("hip_l.")]
 
 
 @pytest.mark.parametrize("known", ["mirror", "narrowing"])
 def test_a_wrist_at_which_no_turn_was_measured_shows_no_pronation(walker, known):
-    body, names = walker
-    evidence = tuple(known if name == "wrist_l" else "motion" for name in names.anatomy)
-    bars = unknown_error_bars(body).model_copy(update={"evidence": evidence})
-    written = views.files(tables(body, names, UP, bars, TablesParams()), ())["tables/joint_angles.csv"].decode()
-    rows = list(csv.DictReader(io.StringIO(written, newline="")))
+    rows = angles_if_shown(walker, "wrist_l", known)
     assert {row["elbow_l.rotation_seen"] for row in rows} == {"0"}
     assert {row["elbow_r.rotation_seen"] for row in rows} == {"1"}
     assert {row["elbow_l.rotation_seen"] for row in table(walker, "joint_angles")} == {"1"}
