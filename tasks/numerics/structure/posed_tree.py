@@ -110,7 +110,7 @@ def with_spine(
     found = joints_and_ends(body.V, tree, ends)
     of_joint = np.where(found.is_end, 0.0, tree.radius[found.part])
     moving = LimbMotion(found.rest, found.parents, found.X, tree.motion.R[:, found.part], up)
-    shift = spine_shifts(moving, of_joint)[: len(tree.parents)]
+    shift = spine_shifts(body.V, body.F, moving, of_joint)[: len(tree.parents)]
     if not shift.any():
         return tree
     start = tree.motion._replace(rest=tree.motion.rest + shift)

@@ -2,7 +2,9 @@
 
 Rings across a trunk show where along it the spine bends, but hardly how deep inside: flesh before and behind it goes along.
 The bodies of vertebrae lie at a third to two fifths of the trunk's depth, from the back. So where the limbs say that a body is
-a person's, and which way it faces, the joints of its spine go that far back, against the direction that the trunk faces there.
+a person's, and which way it faces, two places say how deep a joint of its spine lies, along the direction that the trunk faces
+there: behind where motion has it, and at that share of the depth. It goes to their mean, since each errs on its own: motion by
+how rigid the flesh is, the share by how rigs and bodies differ.
 """
 
 from typing import NamedTuple
@@ -10,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.geometry.inside import depth_along
 from kinetree.tasks.numerics.structure.anatomy import anatomy
 from kinetree.tasks.numerics.structure.limb_motion import Motion
 from kinetree.tasks.numerics.structure.limbs import Limb
@@ -19,16 +22,23 @@ class SpineJointsSettings(NamedTuple):
     """How far the spine is behind the middle."""
 
     behind: float = 0.25
-    """Way back, in radii of the border at each joint. After anatomy: at a third of the depth a joint lies 0.33 of half the
-    depth behind the middle, at two fifths 0.2; the radius has the breadth too, so that half the depth is nine tenths of it.
-    Without it 0.23 to 0.42 are missing in three recordings, which share a rig."""
+    """Way back from where motion has a joint, in radii of its border. After anatomy: at a third of the depth a joint lies 0.33
+    of half the depth behind the middle, at two fifths 0.2; the radius has the breadth too, so that half the depth is nine
+    tenths of it. Without it 0.23 to 0.42 are missing in three recordings, which share a rig."""
+    from_back: float = 1 / 3
+    """Depth of the spine from the back, share of the trunk's depth at the joint. After anatomy: the third, since joints of
+    recordings lie at 0.13 to 0.29. See RESULTS."""
+    depth: tuple[float, float] = (1.0, 2.5)
+    """Depth of a trunk in radii of the border, at least and at most; else the line goes through an arm, or the border is not
+    one across the trunk, and motion alone counts. Trunks have 1.4 to 1.9. Not varied."""
     certainty: float = 0.5
     """Of the front, at least, see `Anatomy`: half of what both feet say when nothing speaks against them. Not varied."""
 
 
-def spine_shifts(body: Motion, radius: Floats, settings: SpineJointsSettings | None = None) -> Floats:
+def spine_shifts(V: Floats, F: Ints, body: Motion, radius: Floats, settings: SpineJointsSettings | None = None) -> Floats:
     """(joint, xyz) how far joints go in the reference, mesh unit; nothing but for joints of a person's spine.
 
+    V, F   : (vertex, xyz) reference, mesh unit · (face, corner)
     body   : with ends of bones
     radius : (joint,) of the border at every joint, mesh unit
     """
@@ -44,8 +54,23 @@ def spine_shifts(body: Motion, radius: Floats, settings: SpineJointsSettings | N
     for k, joint in enumerate(joints, start=1):
         share = k / (len(joints) + 1)
         left = (1.0 - share) * across[0] + share * across[1]
-        shift[joint] = -chosen.behind * radius[joint] * _unit(np.cross(left, way[k + 1] - way[k - 1]))
+        ahead = _unit(np.cross(left, way[k + 1] - way[k - 1]))
+        both_ways = np.stack([-ahead, ahead])
+        behind, before = depth_along(np.repeat(body.rest[joint][None], 2, axis=0), both_ways, V, F, 0.0)
+        shift[joint] = -_way_back(float(behind), float(before), float(radius[joint]), chosen) * ahead
     return shift
+
+
+def _way_back(behind: float, before: float, radius: float, chosen: SpineJointsSettings) -> float:
+    """How far a joint goes back, mesh unit; less than 0 where it goes towards the front.
+
+    behind, before : from the joint to the surface, mesh unit; infinite where the joint is outside
+    """
+    by_motion, depth = chosen.behind * radius, behind + before
+    least, most = chosen.depth
+    if not least * radius <= depth <= most * radius:
+        return by_motion
+    return (by_motion + behind - chosen.from_back * depth) / 2.0
 
 
 def spine(parents: Ints, legs: tuple[Limb, Limb], arms: tuple[Limb, Limb]) -> list[int]:

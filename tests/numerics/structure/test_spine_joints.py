@@ -2,10 +2,15 @@
 
 import numpy as np
 import pytest
+import trimesh
 from walkers import Walker, turned, walker
 
 from kinetree.tasks.numerics.structure.limbs import Limb
 from kinetree.tasks.numerics.structure.spine_joints import SpineJointsSettings, spine, spine_shifts
+
+RADIUS = 100.0
+DEPTH = 180.0
+"""Of the trunk, mm: of bodies' it is 1.4 to 1.9 radii of the borders."""
 
 
 @pytest.fixture(scope="module")
@@ -13,22 +18,74 @@ def person() -> Walker:
     return walker("human")
 
 
+def _trunk(depth: float = DEPTH, middle: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """A box about every spine, whose middle lies at a y; the person faces −y."""
+    box = trimesh.creation.box((4000.0, depth, 4000.0))
+    return np.array(box.vertices) + (0.0, middle, 0.0), np.array(box.faces)
+
+
+def _spine(body: Walker) -> list[int]:
+    return [body.names.index(name) for name in ("spine", "chest")]
+
+
+def _upright(body: Walker) -> Walker:
+    """With the joints of the trunk in one plane, so that it faces −y at each of them."""
+    rest = body.motion.rest.copy()
+    rest[:, 1] = 0.0
+    return body._replace(motion=body.motion._replace(rest=rest))
+
+
+NOWHERE = np.zeros((0, 3)), np.zeros((0, 3), np.int64)
+"""A surface that no line meets."""
+
+
 def _radius(body: Walker) -> np.ndarray:
-    return np.where(body.ends, 0.0, 100.0)
+    return np.where(body.ends, 0.0, RADIUS)
 
 
-def test_the_spine_of_a_person_goes_back_by_its_share_of_the_radius_and_nothing_else_moves(person):
-    shift = spine_shifts(person.motion, _radius(person))
-    spine_of = [person.names.index(name) for name in ("spine", "chest")]
-    np.testing.assert_allclose(np.linalg.norm(shift[spine_of], axis=1), 100.0 * SpineJointsSettings().behind)
-    assert (shift[spine_of, 1] > 0.95 * 25.0).all(), "it faces −y"
-    assert not np.delete(shift, spine_of, axis=0).any()
+def test_without_a_depth_the_spine_goes_back_by_its_share_of_the_radius_and_nothing_else_moves(person):
+    shift = spine_shifts(*NOWHERE, person.motion, _radius(person))
+    np.testing.assert_allclose(np.linalg.norm(shift[_spine(person)], axis=1), RADIUS * SpineJointsSettings().behind)
+    assert (shift[_spine(person), 1] > 0.95 * 25.0).all(), "it faces −y"
+    assert not np.delete(shift, _spine(person), axis=0).any()
+
+
+@pytest.mark.parametrize("middle", [-50.0, 0.0, 30.0])
+def test_it_goes_half_of_the_way_to_a_third_of_the_depth_and_half_of_that_by_its_radius(person, middle):
+    body, chosen = _upright(person), SpineJointsSettings()
+    shift = spine_shifts(*_trunk(middle=middle), body.motion, _radius(body))[_spine(body)]
+    at_third = middle + DEPTH / 2.0 - DEPTH / 3.0
+    np.testing.assert_allclose(shift[:, 1], (chosen.behind * RADIUS + at_third) / 2.0, rtol=1e-6)
+    np.testing.assert_allclose(shift[:, [0, 2]], 0.0, atol=1e-6)
+
+
+def test_too_far_back_it_comes_forwards(person):
+    body = _upright(person)
+    assert (spine_shifts(*_trunk(middle=-80.0), body.motion, _radius(body))[_spine(body), 1] < 0.0).all()
+
+
+@pytest.mark.parametrize(("radii", "counts"), [(0.98, False), (1.02, True), (2.48, True), (2.52, False)])
+def test_what_is_not_as_deep_as_a_trunk_says_nothing(person, radii, counts):
+    body = _upright(person)
+    shift = spine_shifts(*_trunk(radii * RADIUS, middle=10.0), body.motion, _radius(body))
+    without = spine_shifts(*NOWHERE, body.motion, _radius(body))
+    assert np.allclose(shift, without) is not counts
+
+
+def test_a_joint_outside_of_the_body_goes_back_by_its_radius(person):
+    body = _upright(person)
+    for middle in (-200.0, 200.0):
+        shift = spine_shifts(*_trunk(middle=middle), body.motion, _radius(body))
+        np.testing.assert_allclose(shift, spine_shifts(*NOWHERE, body.motion, _radius(body)))
 
 
 def test_it_goes_with_the_body_into_other_coordinates(person):
     Q = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
-    there = spine_shifts(turned(person.motion, Q, 0.01), 0.01 * _radius(person))
-    np.testing.assert_allclose(there, 0.01 * spine_shifts(person.motion, _radius(person)) @ Q.T, atol=1e-9)
+    V, F = _trunk(middle=10.0)
+    here = spine_shifts(V, F, person.motion, _radius(person))
+    there = spine_shifts(0.01 * V @ Q.T, F, turned(person.motion, Q, 0.01), 0.01 * _radius(person))
+    np.testing.assert_allclose(there, 0.01 * here @ Q.T, atol=1e-9)
+    assert not np.allclose(here, spine_shifts(*NOWHERE, person.motion, _radius(person))), "the surface counts"
 
 
 def test_in_a_bent_trunk_every_joint_goes_back_where_it_is(person):
@@ -37,15 +94,15 @@ def test_in_a_bent_trunk_every_joint_goes_back_where_it_is(person):
     rest, X = motion.rest.copy(), motion.X.copy()
     for points in (rest, *X):
         points[above] = (points[above] - points[chest]) @ _about_x(40.0).T + points[chest]
-    shift = spine_shifts(motion._replace(rest=rest, X=X), _radius(person))
+    shift = spine_shifts(*NOWHERE, motion._replace(rest=rest, X=X), _radius(person))
     low, high = shift[person.names.index("spine")], shift[chest]
     assert high[2] > low[2] + 3.0, "a chest that leans forwards goes back and up"
 
 
 def test_an_animal_and_a_person_whose_front_is_unknown_keep_their_spines(person):
     dog = walker("quadruped")
-    assert not spine_shifts(dog.motion, _radius(dog)).any()
-    assert not spine_shifts(person.motion, _radius(person), SpineJointsSettings(certainty=1.1)).any()
+    assert not spine_shifts(*NOWHERE, dog.motion, _radius(dog)).any()
+    assert not spine_shifts(*NOWHERE, person.motion, _radius(person), SpineJointsSettings(certainty=1.1)).any()
 
 
 @pytest.mark.parametrize(
