@@ -1,4 +1,4 @@
-"""A tube as a trunk: a joint amid it that no cut has found, a part above, and two limbs side by side below."""
+"""A tube as a trunk: joints amid it that no cut has found, a part above, and two limbs side by side below."""
 
 import numpy as np
 from articulated import chain
@@ -7,6 +7,7 @@ from smeared import END, moving
 from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, PartGraph
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 
 LIMBS = -3.2
@@ -41,3 +42,31 @@ def trunk(
         radius=np.array([0.0, 1.0, 0.5, 0.5]), end_x=np.zeros((frames, 0, 3)), graph=graph,
     )  # fmt: skip
     return moving(body), tree
+
+
+def trunk_with_joint_midway(turn: Floats, hidden: tuple[float, ...]) -> tuple[MovingSurface, FirstTree]:
+    """The tube as aligned, where a cut has one joint of the trunk, at height 0: its lower part is the root, its upper part 1.
+
+    Limbs 2 and 3 hang side by side on the lower one; 4 and 5, and a head between them, 6, on the upper one, beyond `END`.
+    """
+    body = chain((*hidden, END), turn, along=60)
+    x, y, z = body.V.T
+    on_lower, on_upper = np.where(x < 0.0, 3, 2), np.where(y > 0.5, 6, np.where(x < 0.0, 5, 4))
+    label = np.where(z > END, on_upper, np.where(z > 0.0, 1, np.where(z >= LIMBS, 0, on_lower)))
+    moved = [[rigid_motion(body.V[label == p], x[label == p], np.ones((label == p).sum())) for p in range(7)] for x in body.x]
+    R, t = (np.array([[one[k] for one in frame] for frame in moved]) for k in (0, 1))
+    places = [(0.0, LIMBS / 2.0), (0.0, 0.0), (0.5, LIMBS), (-0.5, LIMBS), (0.5, END), (-0.5, END), (0.0, END)]
+    none, frames = np.zeros(0), len(turn)
+    tree = FirstTree(
+        parents=np.array([-1, 0, 0, 0, 1, 1, 1]), place=np.arange(7), shown=(), label=label, W=np.eye(7)[label], R=R, t=t,
+        certain_share=np.ones((frames, 7)), rest=np.array([[x, 0.0, height] for x, height in places]), drift=np.zeros(7),
+        unexplained=np.full((frames, 7), 0.01), radius=np.array([0.0, 1.0, *5 * [0.5]]), end_x=np.zeros((frames, 0, 3)),
+        graph=PartGraph(label, np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ()),
+    )  # fmt: skip
+    return moving(body), tree
+
+
+def two_pairs(body: MovingSurface) -> LimbPairs:
+    """The ends of these limbs; how far the rest is from them is not known."""
+    tips = [[int(np.argmin(np.linalg.norm(body.V - [x, 0.0, z], axis=1))) for x in (1.0, -1.0)] for z in (-4.8, 4.8)]
+    return LimbPairs(np.array(tips), np.full((2, 2, len(body.V)), np.inf))

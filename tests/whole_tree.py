@@ -9,12 +9,12 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.cut_joints import cut_trees
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, Fits, end_rings, laid_in_runs
-from kinetree.tasks.numerics.structure.extended_tree import with_end_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.tree_joints import NOISE, Cut, KinematicTreeSettings
+from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
+from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
 
 
 def whole_tree(
@@ -36,7 +36,7 @@ def whole_tree(
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
     if surface is not None and confidence is not None:
         fits = fits_of_rings(body, first, confidence, surface)
-        first = with_end_joints(body, first, leaves, fits, cache(surface), confidence, NOISE * body.size)
+        first = with_end_joints(body, first, leaves, fits, cache(surface), confidence, settings=settings)
     cuts = [cut_trees(body, other, leaves, confidence, settings) for other in further]
     joints = [(cut.with_bones if first.has_bones else cut.bare) for cut in cuts]
     carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from kinetree.schemas.array import Array, Artifact, Floats, Ints
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XYZ
 
-Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired", "alone"]]
+Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no
 joint, the mirror image of its limb has none there, or no other cut has it and it is not needed."""
 

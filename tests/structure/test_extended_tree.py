@@ -6,7 +6,7 @@ from aligned_body import agreed, extended, tube
 
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.kinematic_tree import AgreedTreeParams, FirstTreeParams
-from kinetree.tasks.numerics.structure import extended_tree as numerics
+from kinetree.tasks.numerics.structure import shown_joints as numerics
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.first_tree import first_tree

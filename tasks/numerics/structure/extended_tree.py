@@ -1,19 +1,15 @@
 """A tree with the joints at ends of limbs and within the trunk that the frames' surfaces show (ours, see `end_joints`)."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
-from kinetree.tasks.numerics.structure.end_rings import EndFrames, Fits, closer_rings, end_rings, laid_in_runs
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.end_joints import EndJoint
 from kinetree.tasks.numerics.structure.evident_rings import joint_inwards
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.hinged_piece import on_pieces
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
-from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import rotation_centres
@@ -21,64 +17,6 @@ from kinetree.tasks.numerics.structure.skinning import skinning
 
 NEAREST = 20
 """One in so many of the root's vertices, those nearest to its place, says on which side of a ring it lies."""
-
-
-def with_end_joints(
-    body: MovingSurface,
-    tree: FirstTree,
-    leaves: Ints,
-    fits: Sequence[Fits],
-    surface: Callable[[int], Target],
-    confidence: Floats,
-    noise: float,
-) -> FirstTree:
-    """The tree with all joints that the frames' surfaces show.
-
-    The trunk is asked once more with rings that lie closer together: between those of `end_rings` a joint may be missed, and a
-    part that one joint divides may hold two. The pieces of what is divided then, and the parts beside them, are asked until
-    they show no other joint.
-
-    leaves     : (leaf,) vertices at the ends of limbs
-    fits       : by ring of `end_rings`, how its part lies in the frames of `end_joints.judged_runs`
-    surface    : gives a frame's surface, prepared, by its place among all frames
-    confidence : (frame, vertex) 0 to 1
-    noise      : see `extended_tree`
-    """
-    chosen, pairs = EndJointsSettings(), limb_pairs(body.V, body.F, leaves)
-    mirrored, ends = _in_mirrored_limbs(tree, pairs), np.unique(tree.label[pairs.tip])
-    rings, frames = end_rings(body.V, body.F, body.area, tree, mirrored, pairs), _frames(body, tree, surface, confidence)
-    found = end_joints(frames, rings, fits, body.takes, ends[mirrored[ends]].tolist(), chosen)
-    closer = chosen._replace(evident=chosen.evident._replace(least_apart=chosen.evident.least_apart_if_closer))
-    runs = judged_runs(len(body.x), body.takes, chosen)
-    asked = np.arange(len(body.V))
-    while True:
-        if found:
-            tree = extended_tree(body, tree, found, confidence, noise)
-            body = tree.with_ends(body)
-        mirrored, frames = _in_mirrored_limbs(tree, pairs), _frames(body, tree, surface, confidence)
-        rings = closer_rings(
-            body.V, body.F, body.area, tree, mirrored, _with_neighbours(tree, tree.label[asked]), pairs if found else NO_PAIRS
-        )
-        found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=closer)
-        if not found:
-            return tree
-        asked = np.concatenate([one.cut.own for one in found])
-
-
-def _with_neighbours(tree: FirstTree, parts: Ints) -> Collection[int]:
-    """Parts, those that they hang on, and those that hang on them."""
-    beside = np.isin(tree.parents, parts)
-    return {*parts.tolist(), *tree.parents[parts].tolist(), *np.flatnonzero(beside).tolist()} - {-1}
-
-
-def _frames(body: MovingSurface, tree: FirstTree, surface: Callable[[int], Target], confidence: Floats) -> EndFrames:
-    """All frames."""
-    return EndFrames.of(tree, body.area, np.arange(len(confidence)), confidence, surface)
-
-
-def _in_mirrored_limbs(tree: FirstTree, pairs: LimbPairs) -> Flags:
-    """(part,) whether a part is of a limb that has a mirror image."""
-    return in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
 
 
 def extended_tree(

@@ -101,6 +101,16 @@ def in_mirrored_limbs(parts: RootedParts, pairs: LimbPairs) -> Flags:
     return inside
 
 
+def joints_between_pairs(parts: RootedParts, pairs: LimbPairs) -> Ints:
+    """(joint,) the joints between pairs of limbs, as those of a spine: both ends of each pair lie on one side, and on either
+    side those of one pair at least.
+    """
+    is_beyond = beyond(parts.parents)[:, parts.place[pairs.tip]] > 0  # (joint, pair, 2)
+    is_together = (is_beyond[:, :, 0] == is_beyond[:, :, 1]).all(axis=1)
+    beside = is_beyond[:, :, 0]
+    return np.flatnonzero(is_together & beside.any(axis=1) & ~beside.all(axis=1))
+
+
 def parts_touch(F: Ints, label: Ints, one: int, other: int) -> bool:
     """Whether an edge leads from one part to the other; F (face, corner), label (vertex,) part."""
     edge = label[np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])]

@@ -19,7 +19,9 @@ from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurfa
 from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings, unpaired_joints, unpaired_parts
 from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 
-FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE = "flesh", "still", "sliding", "unevident", "unpaired", "alone"
+FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE, MIDWAY = (
+    "flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway"
+)  # fmt: skip
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
 flesh that the mirror image of its limb lacks, or that no other cut has."""
 

@@ -30,6 +30,7 @@ REASONS = {
     "unevident": "not shown by the frames",
     "unpaired": "not in the mirrored limb",
     "alone": "joint of this cut alone",
+    "midway": "one joint for two",
 }
 """Why parts were dropped, in words for people."""
 TITLE = 60

@@ -1,21 +1,17 @@
 """Joints that the frames show within the last parts of limbs become parts of the tree."""
 
-from functools import cache
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from articulated import Known, swings
+from articulated import Known
 from scipy.spatial.transform import Rotation
 from shipped import TREE
 from smeared import END, Frames, aligned, found_in, moving, turning
 from trunk import LIMBS, MIRRORED, trunk
-from whole_tree import fits_of_rings, joints_at_ends, whole_tree
+from whole_tree import joints_at_ends, whole_tree
 
-from kinetree.tasks.numerics.structure import extended_tree as numerics
 from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
 from kinetree.tasks.numerics.structure.evident_rings import EvidentRingsSettings
-from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends, with_end_joints
+from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
@@ -214,82 +210,3 @@ def test_a_trunk_that_does_not_bend_stays_one() -> None:
     body, tree = trunk(turn)
     shown = Frames(turn, 0.02).prepared(body.size)
     assert joints_at_ends(body, tree, np.ones(body.x.shape[:2]), shown, mirrored=MIRRORED) == []
-
-
-def test_a_trunk_that_bends_at_two_places_is_three() -> None:
-    """Each of its pieces is asked again once it is divided."""
-    body, after = of_bent_trunk((-1.6, 1.1))
-    assert len(after.shown) == 2
-    new = list(after.shown)
-    np.testing.assert_allclose(np.sort(after.rest[new, 2]), [-1.6, 1.1], atol=0.6)
-    z = [body.V[after.label == part, 2].mean() for part in range(len(after.parents))]
-    upwards = np.argsort(z)
-    chain = [part for part in upwards.tolist() if part not in after.place[2:4]]
-    assert {frozenset((k, int(after.parents[k]))) for k in chain if after.parents[k] in chain} == {
-        frozenset(pair) for pair in pairwise(chain)
-    }
-    low = after.parents[after.place[2:4]]
-    assert {*low.tolist()} == {chain[0]}
-    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
-    assert after.end_x.shape == (24, int(after.at_ends.sum()), 3)
-
-
-def test_vertices_beside_both_joints_lie_on_the_frames() -> None:
-    hidden = (-1.6, 1.1)
-    body, after = of_bent_trunk(hidden)
-    true, z, x = Frames(bending(hidden), heights=(*hidden, END)).true, body.V[:, 2], after.with_ends(body).x
-    for part, (low, high) in enumerate(((LIMBS + 0.3, -2.3), (-0.9, 0.4), (1.8, END - 0.7))):
-        own = (z > low) & (z < high)
-        want = np.einsum("txy,vy->tvx", true.R[:, part], body.V[own]) + true.t[:, None, part]
-        assert np.linalg.norm((x[:, own] - want).mean(axis=1), axis=1).max() < 0.08
-
-
-def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[tuple[int, list[int]]] = []
-    apart: list[float] = []
-    whole, judged = numerics.closer_rings, numerics.end_joints
-    monkeypatch.setattr(numerics, "closer_rings", lambda *of: asked.append((len(of[3].parents), sorted(of[5]))) or whole(*of))
-    monkeypatch.setattr(
-        numerics,
-        "end_joints",
-        lambda *of, **more: apart.append((more or {"settings": of[5]})["settings"].evident.least_apart) or judged(*of, **more),
-    )
-    _, after = of_bent_trunk((-1.6, 1.1))
-    assert [count for count, _ in asked] == [5, 6]
-    assert asked[0][1] == [0, 1, 2, 3, 4]
-    assert apart == [EvidentRingsSettings().least_apart, *2 * [EvidentRingsSettings().least_apart_if_closer]]
-    assert set(after.shown) <= set(asked[1][1])
-    tree = after._replace(parents=np.array([-1, 0, 1, 2, 3, 4]))
-    assert numerics._with_neighbours(tree, np.array([2, 3])) == {1, 2, 3, 4}
-    assert numerics._with_neighbours(tree, np.array([0])) == {0, 1}
-
-
-def test_joint_that_the_first_rings_miss_is_shown_by_closer_ones(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(numerics, "end_rings", lambda *of: [])
-    _, after = of_bent_trunk((0.0,), first_rings=False)
-    (new,) = after.shown
-    np.testing.assert_allclose(after.rest[new], 0.0, atol=0.4)
-
-
-def test_pieces_of_a_trunk_that_bends_at_one_place_stay_one() -> None:
-    assert len(of_bent_trunk((0.0,))[1].shown) == 1
-
-
-def bending(hidden: tuple[float, ...]) -> np.ndarray:
-    """(frame, part, 3, 3) every hidden joint swings by itself; the last part too."""
-    turn = swings(24, len(hidden) + 2, 20.0, axes=1, seed=1)
-    turn[:, -1] = turning()[:, 2]
-    return turn
-
-
-def of_bent_trunk(hidden: tuple[float, ...], first_rings: bool = True) -> tuple[MovingSurface, FirstTree]:
-    """The trunk, and its tree with what the frames show."""
-    turn = bending(hidden)
-    body, tree = trunk(turn, hidden=hidden)
-    smeared, own = body.x.copy(), tree.label == 0
-    smeared[:, own] = np.einsum("txy,vy->tvx", tree.R[:, 0], body.V[own]) + tree.t[:, None, 0]
-    body = body._replace(x=smeared)
-    ones, surface = np.ones(body.x.shape[:2]), cache(Frames(turn, 0.02, heights=(*hidden, END)).prepared(body.size))
-    fits = fits_of_rings(body, tree, ones, surface) if first_rings else []
-    leaves = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    return body, with_end_joints(body, tree, leaves, fits, surface, ones, 0.002)

@@ -9,6 +9,7 @@ from kinetree.tasks.numerics.structure.joint_partners import (
     RootedParts,
     in_mirrored_limbs,
     joint_partners,
+    joints_between_pairs,
     mirrored_limbs,
     symmetry,
 )
@@ -104,3 +105,24 @@ def test_pairs_of_ends_in_the_same_two_limbs_count_their_joints_once() -> None:
     parts = RootedParts.of(body.label, tree)
     assert symmetry(body.F, parts, twice) == symmetry(body.F, parts, pairs) == 2
     np.testing.assert_array_equal(joint_partners(body.F, parts, twice), joint_partners(body.F, parts, pairs))
+
+
+@pytest.mark.parametrize(
+    ("parents", "tips", "expected"),
+    [
+        ((-1, 0, 1, 0, 0, 2, 2), [(3, 4), (5, 6)], [1, 2]),
+        ((-1, 0, 0, 0, 0, 1, 1), [(3, 4), (5, 6)], [1]),
+        ((-1, 0, 0, 1, 1, 2, 2), [(3, 4), (5, 6)], [1, 2]),
+        ((-1, 0, 1, 0, 0, 1, 2), [(3, 4), (5, 6)], [1]),
+        ((-1, 0, 0, 0, 0), [(1, 2), (3, 4)], []),
+        ((-1, 0, 1, 0, 0, 2, 2), [(5, 6)], []),
+        ((-1, 0, 1, 0, 0, 2, 2), [], []),
+    ],
+    ids=["both lie between", "a tail does not", "the root amid", "one arm hangs lower", "all on one", "one pair", "no pair"],
+)
+def test_joints_between_pairs_have_both_limbs_of_each_on_one_side(parents, tips, expected) -> None:
+    """Every part has one vertex."""
+    count = len(parents)
+    parts = RootedParts(np.arange(count), np.array(parents), np.ones(count))
+    pairs = LimbPairs(np.array(tips, np.int64).reshape(-1, 2), np.zeros((len(tips), 2, count)))
+    assert joints_between_pairs(parts, pairs).tolist() == expected

@@ -4,13 +4,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+import shipped
 from bow import FRAMES, HIP, KNEE, LEGS, PELVIS, SHANKS, SPINE, TIPS, TRUNK, bow, motions, pairs, shown
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.structure import extended_tree as numerics
+from kinetree.tasks.numerics.structure import shown_joints as numerics
 from kinetree.tasks.numerics.structure.end_cuts import EndCut
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, _with_common_pieces, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import EndFrames, end_rings, laid_in_runs
+from kinetree.tasks.numerics.structure.extended_tree import extended_tree, moved_ends
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.limb_cuts import LimbCutsSettings, limb_cuts
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs
@@ -139,7 +141,7 @@ def extended(of_pelvis: float, monkeypatch: pytest.MonkeyPatch) -> tuple[MovingS
     rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(4), SHANKS), PAIRS)
     frames = EndFrames.of(tree, body.area, np.arange(FRAMES), ones, surface)
     fits = laid_in_runs(frames, judged_runs(FRAMES, None), rings)
-    return body, numerics.with_end_joints(body, tree, TIPS, fits, surface, ones, 0.01)
+    return body, numerics.with_end_joints(body, tree, TIPS, fits, surface, ones, settings=shipped.TREE)
 
 
 def test_legs_of_a_body_that_bows_are_cut_off_at_the_hips(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,7 +184,7 @@ def test_a_vertex_that_follows_the_part_by_half_goes_half_of_the_way() -> None:
     body, tree = bow()
     tree = tree._replace(W=np.where(tree.W > 0.0, 0.5, 0.0))
     both = legs_of(body, tree)
-    moved = numerics.moved_ends(body, tree, both)
+    moved = moved_ends(body, tree, both)
     shared = np.intersect1d(both[0].cut.own[both[0].cut.share == 1.0], both[1].cut.own[both[1].cut.share == 1.0])
     assert len(shared) > 20
     for f in (3, 9):
@@ -237,7 +239,7 @@ def test_legs_are_cut_off_a_pelvis_that_is_the_root_and_other_parts_are_divided_
     toe = EndCut(2, 0, 22.0 * LEGS[0], 3.0, foot, (body.V[foot] @ LEGS[0]) - 22.0)
     pose = np.tile(np.eye(3), (FRAMES, 2, 1, 1)), np.zeros((FRAMES, 2, 3))
     end = EndJoint(toe, *pose, np.zeros(FRAMES), np.zeros(FRAMES, np.bool_), 0.1)
-    after = numerics.extended_tree(body, turned, [end, *legs], np.ones(body.x.shape[:2]), 0.01)
+    after = extended_tree(body, turned, [end, *legs], np.ones(body.x.shape[:2]), 0.01)
     trunk, shanks, others = after.place[1], after.place[2:4], after.place[4:]
     thighs = after.parents[shanks]
     assert np.flatnonzero(after.parents == 0).tolist() == sorted([trunk, *thighs])
