@@ -9,10 +9,10 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
-from kinetree.schemas.structure.extended_tree import ExtendedTree
+from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
 from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import AgreedTreeParams, ExtendedTreeParams
+from kinetree.schemas.structure.kinematic_tree import AgreedTreeParams
 from kinetree.schemas.structure.rigid_parts import RigidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.structure.agreed_tree import agreed_tree

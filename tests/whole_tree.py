@@ -14,7 +14,7 @@ from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
-from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings
+from kinetree.tasks.numerics.structure.tree_joints import NOISE, Cut, KinematicTreeSettings
 
 
 def whole_tree(
@@ -36,7 +36,7 @@ def whole_tree(
     first = first_tree(body, cut, leaves, confidence, evidence, settings=settings)
     if surface is not None and confidence is not None:
         fits = fits_of_rings(body, first, confidence, surface)
-        first = with_end_joints(body, first, leaves, fits, cache(surface), confidence, settings=settings)
+        first = with_end_joints(body, first, leaves, fits, cache(surface), confidence, NOISE * body.size)
     cuts = [cut_trees(body, other, leaves, confidence, settings) for other in further]
     joints = [(cut.with_bones if first.has_bones else cut.bare) for cut in cuts]
     carried = [cut.motion.carried(cut.rest[1:]) for cut in joints]

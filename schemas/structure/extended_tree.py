@@ -3,12 +3,20 @@
 from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
-from kinetree.schemas.array import Array, Floats, Index
+from kinetree.schemas.array import Array, Floats, Index, Params
 from kinetree.schemas.dims import END_VERTEX, FRAME, XYZ
 from kinetree.schemas.structure.first_tree import JointTree
 
 LAID_TOGETHER = 2
 """Frames on which one task lays parts, at most."""
+
+
+class ExtendedTreeParams(Params):
+    """Where joints are placed."""
+
+    surface_joints: bool = True
+    """Whether joints are moved to where the frames' surfaces have them: all of the way if halves of the frames agree, else a
+    part of it."""
 
 
 class ExtendedTree(JointTree):

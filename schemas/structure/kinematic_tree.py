@@ -10,6 +10,7 @@ from pydantic import Field
 
 from kinetree.schemas.array import Array, Bools, Floats, Index, Ints, Params
 from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, VERTEX, XYZ
+from kinetree.schemas.structure.extended_tree import ExtendedTreeParams
 from kinetree.schemas.structure.first_tree import Drop
 from kinetree.schemas.structure.skeleton import ArticulatedBody
 
@@ -53,14 +54,6 @@ class AgreedTreeParams(JointParams):
 
     end_joints: bool = True
     """Whether joints that an alignment smears, as balls of feet and spines, are looked for on the frames' surfaces."""
-
-
-class ExtendedTreeParams(PruningParams):
-    """Where joints are placed."""
-
-    surface_joints: bool = True
-    """Whether joints are moved to where the frames' surfaces have them: all of the way if halves of the frames agree, else a
-    part of it."""
 
 
 class ShapeParams(Params):

@@ -12,16 +12,15 @@ from kinetree.schemas.registration.alignment import Alignment
 from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
-from kinetree.schemas.structure.extended_tree import ExtendedTree
-from kinetree.schemas.structure.kinematic_tree import ExtendedTreeParams
+from kinetree.schemas.structure.extended_tree import ExtendedTree, ExtendedTreeParams
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import end_rings as rings_numerics
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
 from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
+from kinetree.tasks.numerics.structure.tree_joints import NOISE
 from kinetree.tasks.structure.arguments.aligned_body import aligned_body
 from kinetree.tasks.structure.arguments.joint_tree import fields_of, restored
 from kinetree.tasks.structure.arguments.surfaces import prepared
-from kinetree.tasks.structure.first_tree import tree_settings
 
 READY = 64
 """Most surfaces that are kept prepared at a time: rings are judged in 52 frames of a take."""
@@ -48,7 +47,7 @@ def extended_tree(
             _fits(end_rings),
             lru_cache(maxsize=READY)(prepared(mesh, frames, body.surface.size)),
             np.asarray(body.trust, np.float64),
-            settings=tree_settings(params),
+            NOISE * body.surface.size,
         )
     laid = laid_frames(len(frames)).tolist() if params.surface_joints and not agreed_tree.is_given else []
     return ExtendedTree(

@@ -34,7 +34,7 @@ def _trees(output: Path, connectivity: str) -> tuple[KinematicTree, KinematicTre
 def _way_back(tree: KinematicTree, joints: np.ndarray, back: np.ndarray) -> np.ndarray:
     """(joint,) the mean way to a quarter of the radius behind the joint and to a third of the depth; `back` (joint, xyz)."""
     surface = trimesh.Trimesh(np.array(tree.vertices), np.array(tree.faces), process=False)
-    to_third = []
+    to_third, depths = [], []
     for joint, way in zip(tree.rest[joints], back, strict=True):
         normal = np.cross(way, (0.0, 0.0, 1.0))
         section = trimesh.intersections.mesh_plane(surface, normal, joint) - joint
@@ -44,7 +44,11 @@ def _way_back(tree: KinematicTree, joints: np.ndarray, back: np.ndarray) -> np.n
         at = along[crosses, 0] + share * (along[crosses, 1] - along[crosses, 0])
         behind, before = at[at > 0.0].min(), -at[at < 0.0].max()
         to_third.append(behind - (behind + before) / 3.0)
-    return (0.25 * tree.border_radius[joints] + np.array(to_third)) / 2.0
+        depths.append(behind + before)
+    radius = tree.border_radius[joints]
+    assert (np.array(depths) > radius).all(), "the depth counts"
+    assert (np.array(depths) < 2.5 * radius).all()
+    return (0.25 * radius + np.array(to_third)) / 2.0
 
 
 @pytest.fixture(scope="module")

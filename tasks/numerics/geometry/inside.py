@@ -10,6 +10,8 @@ from kinetree.tasks.numerics.compiled import compiled
 
 _DIRECTIONS = np.array([[0.3571, 0.2113, 0.9099], [0.8711, -0.4313, 0.2347], [-0.1847, 0.9131, -0.3635]])
 """Rays in general position; where a surface has small holes, two of three decide."""
+_ROUNDING = 1e-12
+"""By what a line may miss a triangle, share of its edges: else one through an edge may slip between two triangles."""
 
 
 def inside(P: Floats, V: Floats, F: npt.NDArray[np.integer[Any]]) -> Flags:
@@ -100,7 +102,7 @@ def _hit(p: Floats, d: Floats, a: Floats, b: Floats, c: Floats) -> float:
     u = (s0 * h0 + s1 * h1 + s2 * h2) / det
     q0, q1, q2 = s1 * e2 - s2 * e1, s2 * e0 - s0 * e2, s0 * e1 - s1 * e0
     v = (d[0] * q0 + d[1] * q1 + d[2] * q2) / det
-    if u < 0.0 or v < 0.0 or u + v > 1.0:
+    if u < -_ROUNDING or v < -_ROUNDING or u + v > 1.0 + _ROUNDING:
         return -1.0
     return (g0 * q0 + g1 * q1 + g2 * q2) / det
 

@@ -20,7 +20,7 @@ from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, joints_of, part_tree
-from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, MIDWAY, Dropped, Pruned, pruned_without, shared_out
+from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
 
@@ -88,22 +88,6 @@ def agreed_tree(
         tree = _without_slices(body, tree, pairs, confidence, settings)
         tree = _without_flesh(body, tree, pairs, confidence, settings)
     return AgreedTree(which, tree)
-
-
-def with_one_fewer(
-    body: MovingSurface, tree: FirstTree, joint: int, confidence: Floats, settings: KinematicTreeSettings
-) -> FirstTree:
-    """The tree with the two parts of a joint as one, which moves as the one above did; all others hang as they did.
-
-    joint      : by the part that turns about it, not the root
-    confidence : (frame, vertex) 0 to 1
-    """
-    above, left = int(tree.parents[joint]), _pruned(body, tree)
-    hangs = np.where(tree.parents == joint, above, tree.parents)
-    joined = frozenset(frozenset((part, int(hangs[part]))) for part in range(1, len(hangs)))
-    left = left._replace(parts=left.parts._replace(joined=joined))
-    left = shared_out(body, left, joint, np.full(len(body.V), above), MIDWAY)
-    return _of_cut(tree, _joints(body, tree, left, confidence, settings))
 
 
 def _best(body: MovingSurface, trees: Sequence[FirstTree], pairs: LimbPairs, settings: KinematicTreeSettings) -> int:

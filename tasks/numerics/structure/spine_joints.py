@@ -19,18 +19,19 @@ from kinetree.tasks.numerics.structure.limbs import Limb
 
 
 class SpineJointsSettings(NamedTuple):
-    """How far the spine is behind the middle."""
+    """How deep the spine lies."""
 
     behind: float = 0.25
     """Way back from where motion has a joint, in radii of its border. After anatomy: at a third of the depth a joint lies 0.33
     of half the depth behind the middle, at two fifths 0.2; the radius has the breadth too, so that half the depth is nine
-    tenths of it. Without it 0.23 to 0.42 are missing in three recordings, which share a rig."""
+    tenths of it. See RESULTS for other values."""
     from_back: float = 1 / 3
-    """Depth of the spine from the back, share of the trunk's depth at the joint. After anatomy: the third, since joints of
-    recordings lie at 0.13 to 0.29. See RESULTS."""
-    depth: tuple[float, float] = (1.0, 2.5)
-    """Depth of a trunk in radii of the border, at least and at most; else the line goes through an arm, or the border is not
-    one across the trunk, and motion alone counts. Trunks have 1.4 to 1.9. Not varied."""
+    """Depth of the spine from the back, share of the trunk's depth at the joint. Of the third and the two fifths that anatomy
+    gives the third, since true joints of recordings lie nearer to the back still, at 0.13 to 0.29. See RESULTS for other
+    values."""
+    depth_bounds: tuple[float, float] = (1.0, 2.5)
+    """Depth of a trunk, in radii of the border, at least and at most; it is 1.4 to 1.9. Elsewhere the border does not go
+    across the trunk, or an arm is one surface with it, and motion alone counts. Not varied."""
     certainty: float = 0.5
     """Of the front, at least, see `Anatomy`: half of what both feet say when nothing speaks against them. Not varied."""
 
@@ -62,12 +63,12 @@ def spine_shifts(V: Floats, F: Ints, body: Motion, radius: Floats, settings: Spi
 
 
 def _way_back(behind: float, before: float, radius: float, chosen: SpineJointsSettings) -> float:
-    """How far a joint goes back, mesh unit; less than 0 where it goes towards the front.
+    """How far a joint goes back, mesh unit, never through the surface; less than 0 where it goes towards the front.
 
     behind, before : from the joint to the surface, mesh unit; infinite where the joint is outside
     """
-    by_motion, depth = chosen.behind * radius, behind + before
-    least, most = chosen.depth
+    by_motion, depth = min(chosen.behind * radius, behind), behind + before
+    least, most = chosen.depth_bounds
     if not least * radius <= depth <= most * radius:
         return by_motion
     return (by_motion + behind - chosen.from_back * depth) / 2.0

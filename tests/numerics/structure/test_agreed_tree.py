@@ -8,14 +8,12 @@ import pytest
 from articulated import ALL_STAY, Known, chain, swings
 from shipped import TREE
 from smeared import moving
-from trunk import trunk_with_joint_midway
 
 from kinetree.tasks.numerics.structure import agreed_tree as numerics
-from kinetree.tasks.numerics.structure.agreed_tree import AgreedTree, agreed_tree, with_one_fewer
+from kinetree.tasks.numerics.structure.agreed_tree import AgreedTree, agreed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.pruning import MIDWAY, Dropped
+from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 FRAMES = 24
@@ -257,40 +255,3 @@ def test_first_tree_stays_if_the_frames_do_not_show_what_the_other_has_more(monk
     found = of_pair([one, two, two], cast(FrameEvidence, "the frames"))
     assert found.which == 0
     assert found.tree is one
-
-
-@pytest.fixture(scope="module")
-def merged() -> tuple[MovingSurface, FirstTree, FirstTree]:
-    """The trunk, and its tree before and after the two parts of its joint became one."""
-    turn = swings(FRAMES, 2, 20.0, axes=1, seed=1)
-    body, tree = trunk_with_joint_midway(turn, ())
-    return body, tree, with_one_fewer(body, tree, 1, np.ones(body.x.shape[:2]), TREE)
-
-
-def test_parts_of_a_joint_become_one_and_all_others_hang_as_they_did(merged) -> None:
-    _, before, after = merged
-    assert after.parents.tolist() == [-1, 0, 0, 0, 0, 0]
-    number = np.array([0, 0, *after.place[2:]])
-    np.testing.assert_array_equal(after.label, number[before.label])
-    assert after.place.tolist()[:2] == [0, -1]
-    assert after.graph.dropped == (Dropped(1, MIDWAY),)
-    np.testing.assert_array_equal(after.R[:, after.place[2:]], before.R[:, 2:])
-
-
-def test_what_was_two_parts_moves_as_the_one_above_did(merged) -> None:
-    _, before, after = merged
-    np.testing.assert_array_equal(after.R[:, 0], before.R[:, 0])
-    np.testing.assert_array_equal(after.t[:, 0], before.t[:, 0])
-
-
-def test_all_joints_but_those_of_the_parent_stay_where_a_part_amid_the_tree_goes() -> None:
-    turn = swings(FRAMES, 4, 25.0, seed=2)
-    true = chain(HEIGHTS, turn, along=60)
-    tree = first_tree(moving(true), Cut(true.V, true.label, true.R, true.t, true.residual), TIPS, settings=ALL_STAY)
-    for joint in range(1, len(tree.parents)):
-        after = with_one_fewer(moving(true), tree, joint, np.ones(true.x.shape[:2]), TREE)
-        left = [k for k in range(1, len(tree.parents)) if k != joint]
-        number = {k: int(after.place[np.flatnonzero(tree.place == k)[0]]) for k in range(len(tree.parents)) if k != joint}
-        number[joint] = number[int(tree.parents[joint])]
-        hang = {frozenset((number[k], number[int(tree.parents[k])])) for k in left}
-        assert {frozenset((k, int(after.parents[k]))) for k in range(1, len(after.parents))} == hang

@@ -185,3 +185,8 @@ def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3), (8, -0.3), (9, 0.3), (10, -0.3)):
         other = [value if k == wrong else exponent for k, exponent in enumerate(law)]
         assert fitted(rows, np.exp(rows @ other))[wrong] == 0.0
+
+
+def test_one_cut_knows_no_joint_exactly_though_nothing_drifts() -> None:
+    exact = features(drift=np.zeros(3), residual=np.zeros(3))
+    assert (error_bars(exact, 1).expected > 0.002 * exact.size).all()

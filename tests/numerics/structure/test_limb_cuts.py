@@ -4,7 +4,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-import shipped
 from bow import FRAMES, HIP, KNEE, LEGS, PELVIS, SHANKS, SPINE, TIPS, TRUNK, bow, motions, pairs, shown
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
@@ -141,7 +140,7 @@ def extended(of_pelvis: float, monkeypatch: pytest.MonkeyPatch) -> tuple[MovingS
     rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(4), SHANKS), PAIRS)
     frames = EndFrames.of(tree, body.area, np.arange(FRAMES), ones, surface)
     fits = laid_in_runs(frames, judged_runs(FRAMES, None), rings)
-    return body, numerics.with_end_joints(body, tree, TIPS, fits, surface, ones, settings=shipped.TREE)
+    return body, numerics.with_end_joints(body, tree, TIPS, fits, surface, ones, 0.01)
 
 
 def test_legs_of_a_body_that_bows_are_cut_off_at_the_hips(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,11 +2,11 @@
 
 from functools import cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import pytest
-from articulated import swings
-from shipped import TREE
+from articulated import Known, swings
 from smeared import END, Frames, turning
 from trunk import LIMBS, trunk, trunk_with_joint_midway, two_pairs
 from whole_tree import fits_of_rings
@@ -19,7 +19,8 @@ from kinetree.tasks.numerics.structure.joint_partners import RootedParts, joints
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import MIDWAY, Dropped
-from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
+from kinetree.tasks.numerics.structure.shown_joints import SurfaceEvidence, with_end_joints, without_joint
+from kinetree.tasks.numerics.structure.skinning import skinning
 
 
 def test_a_trunk_that_bends_at_two_places_is_three() -> None:
@@ -98,57 +99,162 @@ def of_bent_trunk(hidden: tuple[float, ...], first_rings: bool = True) -> tuple[
     ones, surface = np.ones(body.x.shape[:2]), cache(Frames(turn, 0.02, heights=(*hidden, END)).prepared(body.size))
     fits = fits_of_rings(body, tree, ones, surface) if first_rings else []
     leaves = np.array([body.V[:, 2].argmin(), body.V[:, 2].argmax()])
-    return body, with_end_joints(body, tree, leaves, fits, surface, ones, settings=TREE)
+    return body, with_end_joints(body, tree, leaves, fits, surface, ones, 0.002)
+
+
+class Midway(NamedTuple):
+    """A trunk whose two parts move as one each, though it bends at other heights than where they meet, at 0.
+
+    body   : as it was aligned
+    before : its tree
+    after  : with what the frames show
+    true   : the body in the frames
+    """
+
+    body: MovingSurface
+    before: FirstTree
+    after: FirstTree
+    true: Known
+
+
+FAR = EndJointsSettings(EvidentRingsSettings(least_apart=1.5, least_apart_if_closer=1.5))
+"""A tube of radius 1 bends over one radius, so that joints 1.1 from the one at 0 count as near it here."""
 
 
 def of_joint_midway(
-    hidden: tuple[float, ...], monkeypatch: pytest.MonkeyPatch, pairs: slice = slice(None)
-) -> tuple[MovingSurface, FirstTree, FirstTree]:
-    """The body as aligned, where the two parts of a trunk whose joint lies at 0 move as one each; its tree, and with what the
-    frames show. Pairs of limbs that are known; rings count that lie farther from joints than others, so that beside the joint
-    at 0 none does.
-    """
+    monkeypatch: pytest.MonkeyPatch,
+    *hidden: float,
+    settings: EndJointsSettings = FAR,
+    pairs: slice = slice(None),
+    astray: tuple[int, float] | None = None,
+) -> Midway:
+    """Pairs of limbs that are known; astray: a frame in which half of the lower part is uncertain, and lies so far off."""
     turn = bending(hidden)
     body, tree = trunk_with_joint_midway(turn, hidden)
     known = LimbPairs(*(a[pairs] for a in two_pairs(body)))
-    far = EndJointsSettings(EvidentRingsSettings(least_apart=1.5, least_apart_if_closer=1.5))
     monkeypatch.setattr(numerics, "limb_pairs", lambda *of: known)
-    monkeypatch.setattr(numerics, "EndJointsSettings", lambda: far)
-    smeared = body.x.copy()
+    monkeypatch.setattr(numerics, "EndJointsSettings", lambda: settings)
+    smeared, confidence = body.x.copy(), np.ones(body.x.shape[:2])
     for part in (0, 1):
         own = tree.label == part
         smeared[:, own] = np.einsum("txy,vy->tvx", tree.R[:, part], body.V[own]) + tree.t[:, None, part]
-    body = body._replace(x=smeared)
-    ones, surface = np.ones(body.x.shape[:2]), cache(Frames(turn, 0.02, heights=(*hidden, END)).prepared(body.size))
-    fits = fits_of_rings(body, tree, ones, surface, (2, 3, 4, 5))
-    return body, tree, with_end_joints(body, tree, np.zeros(0, np.int64), fits, surface, ones, settings=TREE)
+    if astray is not None:
+        frame, far = astray
+        half = (tree.label == 0) & (body.V[:, 0] > 0.0)
+        smeared[frame, half] += far
+        confidence[frame, half] = 0.0
+    body, frames = body._replace(x=smeared), Frames(turn, 0.02, heights=(*hidden, END))
+    surface = cache(frames.prepared(body.size))
+    fits = fits_of_rings(body, tree, confidence, surface, (2, 3, 4, 5))
+    after = with_end_joints(body, tree, np.zeros(0, np.int64), fits, surface, confidence, 0.002)
+    return Midway(body, tree, after, frames.true)
 
 
 def test_a_single_joint_midway_between_two_gives_way_to_both(monkeypatch: pytest.MonkeyPatch) -> None:
-    body, before, after = of_joint_midway((-1.1, 1.1), monkeypatch)
+    body, before, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1)
     assert after.graph.dropped == (Dropped(1, MIDWAY),)
-    np.testing.assert_allclose(np.sort(after.rest[list(after.shown), 2]), [-1.1, 1.1], atol=0.5)
+    np.testing.assert_allclose(np.sort(after.rest[list(after.shown), 2]), [-1.1, 1.1], atol=0.4)
     assert len(after.parents) == len(before.parents) + 1
     between = joints_between_pairs(RootedParts(after.label, after.parents, after.radius), two_pairs(body))
     assert sorted(between.tolist()) == sorted(after.shown)
 
 
-def test_ends_of_a_divided_trunk_move_as_aligned(monkeypatch: pytest.MonkeyPatch) -> None:
-    body, _, after = of_joint_midway((-1.1, 1.1), monkeypatch)
-    low = int(after.parents[after.place[2]])
-    own = after.label == low
-    np.testing.assert_array_equal(after.with_ends(body).x[:, own], body.x[:, own])
-    off = np.einsum("txy,vy->tvx", after.R[:, low], body.V[own]) + after.t[:, None, low] - body.x[:, own]
-    assert np.sqrt((off**2).sum(axis=2).mean()) < 0.05
-    np.testing.assert_allclose(after.W.sum(axis=1), 1.0)
+def test_limbs_keep_their_joints_where_a_trunk_is_divided(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, before, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1)
+    np.testing.assert_array_equal(after.rest[after.place[2:]], before.rest[2:])
+    np.testing.assert_array_equal(after.radius[after.place[2:]], before.radius[2:])
+    low, high = after.parents[after.place[[2, 4]]]
+    assert after.parents[after.place[2:]].tolist() == [low, low, high, high, high]
+
+
+def test_ends_of_a_divided_trunk_move_as_aligned_and_its_middle_as_the_frames_show(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    body, _, after, true = of_joint_midway(monkeypatch, -1.1, 1.1)
+    x, z = after.with_ends(body).x, body.V[:, 2]
+    low, high = after.parents[after.place[[2, 4]]]
+    (middle,) = set(range(len(after.parents))) - {low, high, *after.place[2:].tolist()}
+    for end, inside in ((low, z < -2.2), (high, z > 2.0)):
+        own = (after.label == end) & inside
+        np.testing.assert_allclose(x[:, own], body.x[:, own], atol=0.05)
+        as_part = np.einsum("txy,vy->tvx", after.R[:, end], body.V[own]) + after.t[:, None, end]
+        assert np.sqrt(((as_part - body.x[:, own]) ** 2).sum(axis=2).mean()) < 0.05
+    own = (after.label == middle) & (np.abs(z) < 0.3)
+    want = np.einsum("txy,vy->tvx", true.R[:, 1], body.V[own]) + true.t[:, None, 1]
+    off, aligned = (np.linalg.norm((a[:, own] - want).mean(axis=1), axis=1).max() for a in (x, body.x))
+    assert off < 0.75 * aligned
+
+
+def test_what_is_known_of_a_divided_trunk_fits_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    body, _, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1)
+    np.testing.assert_allclose(after.drift[1:], after.drift_at(after.rest)[1:], rtol=1e-6)
+    W = skinning(
+        body.V, body.F, after.with_ends(body).x, after.label, after.R, after.t, after.parents, np.ones(body.x.shape[:2]), 0.002
+    )
+    np.testing.assert_allclose(after.W, W)
+    assert (after.unexplained > 0.0).all(), "a part that an alignment smears is no evidence without error"
+
+
+def test_uncertain_vertices_do_not_move_the_ends_of_a_divided_trunk(monkeypatch: pytest.MonkeyPatch) -> None:
+    certain, spoilt = (of_joint_midway(monkeypatch, -1.1, 1.1, astray=astray).after for astray in (None, (5, 3.0)))
+    assert spoilt.graph.dropped == certain.graph.dropped
+    low = [int(tree.parents[tree.place[2]]) for tree in (certain, spoilt)]
+    t = [tree.t[5, part] + tree.R[5, part] @ [0.0, 0.0, LIMBS] for tree, part in zip((certain, spoilt), low, strict=True)]
+    assert np.linalg.norm(t[0] - t[1]) < 0.3
 
 
 def test_a_single_joint_that_lies_right_stays(monkeypatch: pytest.MonkeyPatch) -> None:
-    _, before, after = of_joint_midway((0.0,), monkeypatch)
+    _, before, after, _ = of_joint_midway(monkeypatch, 0.0)
     assert (after.parents.tolist(), after.shown, after.graph.dropped) == (before.parents.tolist(), (), ())
     np.testing.assert_array_equal(after.rest, before.rest)
 
 
+def test_a_joint_beside_which_another_shows_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the limits that are used: the frames show one at 1.6, and the one at 0 is right."""
+    _, before, after, _ = of_joint_midway(monkeypatch, 0.0, 1.6, settings=EndJointsSettings())
+    assert (len(after.shown), after.graph.dropped) == (1, ())
+    np.testing.assert_array_equal(after.rest[after.place[1]], before.rest[1])
+
+
 def test_without_two_pairs_of_limbs_no_joint_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    _, before, after = of_joint_midway((-1.1, 1.1), monkeypatch, slice(0, 1))
+    _, before, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1, pairs=slice(0, 1))
     assert (after.parents.tolist(), after.graph.dropped) == (before.parents.tolist(), ())
+
+
+def without(body: MovingSurface, tree: FirstTree, joint: int, confidence: np.ndarray | None = None) -> FirstTree:
+    ones = np.ones(body.x.shape[:2])
+    return without_joint(
+        body, tree, joint, SurfaceEvidence(lambda frame: None, ones if confidence is None else confidence, 0.002)
+    )
+
+
+def test_two_parts_without_their_joint_are_one_that_moves_as_that_above_and_all_else_stays() -> None:
+    body, before = trunk_with_joint_midway(bending((0.0,)), (0.0,))
+    after = without(body, before, 1)
+    assert after.parents.tolist() == [-1, 0, 0, 0, 0, 0]
+    np.testing.assert_array_equal(after.label, np.array([0, 0, 1, 2, 3, 4, 5])[before.label])
+    assert after.place.tolist() == [0, -1, 1, 2, 3, 4, 5]
+    assert after.graph.dropped == (Dropped(1, MIDWAY),)
+    others = [0, 2, 3, 4, 5, 6]
+    for field in ("R", "t", "unexplained", "certain_share"):
+        np.testing.assert_array_equal(getattr(after, field), getattr(before, field)[:, others])
+    np.testing.assert_array_equal(after.rest, before.rest[others])
+    np.testing.assert_array_equal(after.radius, before.radius[others])
+    np.testing.assert_allclose(after.drift[1:], after.drift_at(after.rest)[1:])
+    assert (after.drift[3:] > 0.1).all(), "they hang on a part that moves otherwise"
+
+
+def test_what_moves_otherwise_follows_the_one_part_less() -> None:
+    body, before = trunk_with_joint_midway(bending((0.0,)), (0.0,))
+    after, z = without(body, before, 1), body.V[:, 2]
+    assert after.W[(z > 1.0) & (z < END), 0].mean() < 0.5, "these go with the limbs that hang there"
+    like_it = after.W[:, :3].sum(axis=1)  # the limbs below move as it does
+    assert like_it[z < -0.5].min() > 0.99
+
+
+@pytest.mark.parametrize(("joint", "parents"), [(1, [-1, 0, 1]), (2, [-1, 0, 1]), (3, [-1, 0, 1])])
+def test_a_chain_is_shorter_by_the_part_that_goes(joint: int, parents: list[int]) -> None:
+    body, tree = trunk(bending((0.0,)))
+    after = without(body, tree._replace(parents=np.array([-1, 0, 1, 2])), joint)
+    assert after.parents.tolist() == parents
+    assert after.place.tolist() == [k - (k > joint) if k != joint else -1 for k in range(4)]

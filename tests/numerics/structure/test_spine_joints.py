@@ -72,6 +72,12 @@ def test_what_is_not_as_deep_as_a_trunk_says_nothing(person, radii, counts):
     assert np.allclose(shift, without) is not counts
 
 
+def test_a_joint_does_not_go_through_the_back(person):
+    body = _upright(person)
+    shift = spine_shifts(*_trunk(0.9 * RADIUS, middle=-35.0), body.motion, _radius(body))[_spine(body), 1]
+    np.testing.assert_allclose(shift, 10.0, rtol=1e-6, err_msg="the back is 10 mm behind it, and too near to the front")
+
+
 def test_a_joint_outside_of_the_body_goes_back_by_its_radius(person):
     body = _upright(person)
     for middle in (-200.0, 200.0):
