@@ -7,7 +7,8 @@ from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XY
 
 Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no
-joint, the mirror image of its limb has none there, or no other cut has it and it is not needed."""
+joint, the mirror image of its limb has none there, no other cut has it and it is not needed, or its joint lay midway between
+two that the frames show."""
 
 
 class JointTree(Artifact):

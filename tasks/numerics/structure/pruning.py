@@ -23,7 +23,8 @@ FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE, MIDWAY = (
     "flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway"
 )  # fmt: skip
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
-flesh that the mirror image of its limb lacks, or that no other cut has."""
+flesh that the mirror image of its limb lacks, or that no other cut has, and (`shown_joints`) because its joint lay midway
+between two that the frames show."""
 
 NO_PART = -1
 """`Pruned.origin` of a part that the cut does not have: a hidden bone, or a limb that was cut off another or off the trunk."""
