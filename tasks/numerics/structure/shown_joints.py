@@ -73,7 +73,7 @@ def _with_trunk_divided_anew(
     own = np.flatnonzero(np.isin(tree.label, [joint, tree.parents[joint]]))
     frames, runs = _frames(body, one, evidence), judged_runs(len(body.x), body.takes, EndJointsSettings())
     rings = end_rings(body.V, body.F, body.area, one, _in_mirrored_limbs(one, pairs))
-    rings = [ring for ring in rings if ring.cut.part == one.label[own[0]] and ring.cut.hung]
+    rings = [ring for ring in rings if ring.cut.part == one.label[own[0]]]
     found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=EndJointsSettings())
     after = _with_closer_joints(body, one, found, own, pairs, evidence, stays=True)
     trunk = joints_between_pairs(_rooted(after), pairs)

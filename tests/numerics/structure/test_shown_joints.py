@@ -2,7 +2,7 @@
 
 from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -214,6 +214,36 @@ def test_a_joint_beside_which_another_shows_stays(monkeypatch: pytest.MonkeyPatc
     _, before, after, _ = of_joint_midway(monkeypatch, 0.0, 1.6, settings=EndJointsSettings())
     assert (len(after.shown), after.graph.dropped) == (1, ())
     np.testing.assert_array_equal(after.rest[after.place[1]], before.rest[1])
+
+
+def test_no_joint_gives_way_where_another_one_would_go_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, asked = numerics._with_shown_joints, list[FirstTree]()
+
+    def with_one_fewer_when_divided(body: MovingSurface, tree: FirstTree, *rest: Any) -> FirstTree:
+        asked.append(tree)
+        return whole(body, tree, *rest) if len(asked) == 1 else without(body, tree, len(tree.parents) - 1)
+
+    monkeypatch.setattr(numerics, "_with_shown_joints", with_one_fewer_when_divided)
+    _, before, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1)
+    assert len(asked) == 2
+    assert len(asked[1].parents) == len(before.parents) + 1, "both joints showed"
+    assert (after.parents.tolist(), after.graph.dropped) == (before.parents.tolist(), ())
+
+
+def test_a_joint_that_the_frames_alone_show_is_not_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The cut has none between the pairs of limbs."""
+    turn = bending((0.0,))
+    body, tree = trunk_with_joint_midway(turn, (0.0,))
+    one, ones = without(body, tree, 1), np.ones(body.x.shape[:2])
+    smeared = body.x.copy()
+    own = one.label == 0
+    smeared[:, own] = np.einsum("txy,vy->tvx", one.R[:, 0], body.V[own]) + one.t[:, None, 0]
+    body = body._replace(x=smeared)
+    monkeypatch.setattr(numerics, "limb_pairs", lambda *of: two_pairs(body))
+    surface = cache(Frames(turn, 0.02).prepared(body.size))
+    fits = fits_of_rings(body, one, ones, surface, (1, 2, 3, 4))
+    after = with_end_joints(body, one, np.zeros(0, np.int64), fits, surface, ones, 0.002)
+    assert (len(after.shown), len(after.graph.dropped)) == (1, 1)
 
 
 def test_without_two_pairs_of_limbs_no_joint_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
