@@ -195,6 +195,20 @@ def test_what_is_known_of_a_divided_trunk_fits_together(monkeypatch: pytest.Monk
     assert (after.unexplained > 0.0).all(), "a part that an alignment smears is no evidence without error"
 
 
+def test_an_end_of_the_trunk_whose_limb_was_cut_off_stays_as_the_frames_show_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The alignment does not tell the two apart."""
+    body, _, after, _ = of_joint_midway(monkeypatch, -1.1, 1.1)
+    limb, (low, high) = int(after.place[2]), after.parents[after.place[[2, 4]]]
+    t = after.t.copy()
+    t[:, [low, high]] += 0.3
+    off = after._replace(t=t, shown=tuple(sorted((*after.shown, limb))))
+    off = off._replace(end_x=after.with_ends(body).x[:, off.at_ends])
+    evidence = SurfaceEvidence(Frames(turning()).prepared(body.size), np.ones(body.x.shape[:2]), 0.002)
+    found = numerics._with_ends_of_trunk_as_aligned(body, off, np.array(after.shown), evidence)
+    np.testing.assert_array_equal(found.t[:, low], off.t[:, low])
+    np.testing.assert_allclose(found.t[:, high], after.t[:, high], atol=0.05)
+
+
 def test_uncertain_vertices_do_not_move_the_ends_of_a_divided_trunk(monkeypatch: pytest.MonkeyPatch) -> None:
     certain, spoilt = (of_joint_midway(monkeypatch, -1.1, 1.1, astray=astray).after for astray in (None, (5, 3.0)))
     assert spoilt.graph.dropped == certain.graph.dropped
