@@ -192,7 +192,7 @@ def test_what_is_known_of_a_divided_trunk_fits_together(monkeypatch: pytest.Monk
         body.V, body.F, after.with_ends(body).x, after.label, after.R, after.t, after.parents, np.ones(body.x.shape[:2]), 0.002
     )
     np.testing.assert_allclose(after.W, W)
-    assert (after.unexplained > 0.0).all(), "a part that an alignment smears is no evidence without error"
+    assert after.unexplained.min() > 0.005, "aligned vertices are rigid there, the frames' noise is 0.02"
 
 
 def test_an_end_of_the_trunk_whose_limb_was_cut_off_stays_as_the_frames_show_it(monkeypatch: pytest.MonkeyPatch) -> None:
