@@ -209,4 +209,5 @@ def _in_mirrored_limbs(tree: FirstTree, pairs: LimbPairs) -> Flags:
 
 
 def _rooted(tree: FirstTree) -> RootedParts:
+    """Its parts alone."""
     return RootedParts(tree.label, tree.parents, tree.radius)
