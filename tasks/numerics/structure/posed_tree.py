@@ -10,6 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.articulated_fit import Motion, placed
+from kinetree.tasks.numerics.structure.centre_lines import towards_centre_lines
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share, frame_poses
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus, joint_consensus
@@ -74,7 +75,8 @@ def posed_tree(
     on_surface = SurfaceJoints(rest, *np.full((2, parts), np.nan))
     share = confident_share(first.label, body.area, confidence, len(body.x), parts)
     if laid is not None:
-        on_surface = surface_joints(first, laid, rest, share, held=shared.is_shared | on_tube, takes=body.takes)
+        held, lines = shared.is_shared | on_tube, _lines(body, first, rest)
+        on_surface = surface_joints(first, laid, rest, share, held=held, takes=body.takes, lines=lines)
     rest = on_surface.rest
     start = Motion(rest, first.R, first.t[:, 0].copy())
     poses = frame_poses(body.V, body.x, body.area, first.label, first.W, start, first.parents, confidence, takes=body.takes)
@@ -116,6 +118,12 @@ def with_spine(
     start = tree.motion._replace(rest=tree.motion.rest + shift)
     poses = frame_poses(body.V, body.x, body.area, tree.label, tree.W, start, tree.parents, confidence, takes=body.takes)
     return tree._replace(motion=poses.motion, confidence=poses.confidence, drift=first.drift_at(start.rest))
+
+
+def _lines(body: MovingSurface, first: FirstTree, rest: Floats) -> Floats:
+    """(part, 3, 3) the centre lines on which joints lie; none for the root."""
+    near = towards_centre_lines(body.V, body.area, first.label, first.W, first.parents, rest[1:], first.radius[1:])
+    return np.concatenate([np.zeros((1, 3, 3)), near.lines])
 
 
 def _on_tubes(first: FirstTree, hanging: Sequence[Tube], joints: Floats) -> tuple[Floats, Flags]:

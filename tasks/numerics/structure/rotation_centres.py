@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.centre_lines import about_lines
 
 ROUNDS = 4
 """Rounds of weighting frames anew; the centres no longer move by then."""
@@ -21,6 +22,10 @@ class RotationCentresSettings(NamedTuple):
 
     spread: float = 0.5
     """Standard deviation of a joint about the middle of its border. Not recorded."""
+    across: float = 0.15
+    """The same across the centre line of a long part, see `KinematicTreeSettings`."""
+    along: float = 0.5
+    """The same along that line."""
     frames_alike: float = np.inf
     """Frames that err alike even where neighbours do not, so that errors of more frames average out; infinite: all do."""
     far: float = np.inf
@@ -95,18 +100,23 @@ def rotation_centres(
     residual: Floats,
     confidence: Floats | None = None,
     settings: RotationCentresSettings | None = None,
+    lines: Floats | None = None,
 ) -> Joints:
-    """Rotation centres, c = argmin Σ_t w_t |(R_a − R_b) c − (t_b − t_a)|² + Σ_t w_t (σ / (ρ r))² |c − c₀|², w robust.
+    """Rotation centres, c = argmin Σ_t w_t |(R_a − R_b) c − (t_b − t_a)|² + Σ_t w_t (σ / r)² (c − c₀)ᵀ P (c − c₀), w robust.
 
     The rotation centre is that of 2014, Sec. 6.3 (Ehrig et al. 2006); the prior, whose weight grows with the noise, is ours.
+    P = I / ρ², but larger across the centre line of a long part and smaller along it.
 
     R          : (frame, part, 3, 3), t : (frame, part, xyz), from the reference to each frame
     pair       : (border, 2) the parts a, b
     centre     : (border, xyz) c₀, radius : (border,) r, mesh unit
     residual   : (frame, part) what a part's motion leaves unexplained, mesh unit; the least that σ can be
     confidence : (frame, part) weight of each part in each frame; None weighs all alike
+    lines      : (border, 3, 3) the lines on which joints are expected, see `ExpectedJoints`; None where there are none
     """
     chosen = settings or RotationCentresSettings()
+    on_lines = np.zeros((len(pair), 3, 3)) if lines is None else lines
+    P = about_lines(on_lines, chosen.spread**-2, chosen.across**-2, chosen.along**-2)
     a, b = pair[:, 0], pair[:, 1]
     M, d = R[:, a] - R[:, b], t[:, b] - t[:, a]
     certain = _certain(confidence, pair, len(R))
@@ -114,9 +124,9 @@ def rotation_centres(
     c, w, sigma, r = centre, certain, floor, np.maximum(radius, np.finfo(float).tiny)
     for _ in range(ROUNDS):
         held = 1.0 + (np.linalg.norm(c - centre, axis=1) / (chosen.far * r)) ** 2
-        stiff = held * w.sum(axis=0) * (sigma / (chosen.spread * r)) ** 2
-        A = np.einsum("tj,tjxy,tjxz->jyz", w, M, M) + stiff[:, None, None] * np.eye(3)
-        g = np.einsum("tj,tjxy,tjx->jy", w, M, d) + stiff[:, None] * centre
+        stiff = (held * w.sum(axis=0) * (sigma / r) ** 2)[:, None, None] * P
+        A = np.einsum("tj,tjxy,tjxz->jyz", w, M, M) + stiff
+        g = np.einsum("tj,tjxy,tjx->jy", w, M, d) + np.einsum("jxy,jy->jx", stiff, centre)
         c = np.linalg.solve(A, g[..., None])[..., 0]
         error = np.einsum("tjxy,jy->tjx", M, c) - d
         away = np.linalg.norm(error, axis=2)

@@ -5,7 +5,7 @@ import numpy.typing as npt
 import pytest
 from limbs import rotation, tube
 
-from kinetree.tasks.numerics.structure.centre_lines import centre_line, towards_centre_lines
+from kinetree.tasks.numerics.structure.centre_lines import ExpectedJoints, about_lines, centre_line, towards_centre_lines
 
 EXPECTED = np.array([[0.3, 0.2, -4.0], [-0.2, 0.3, 4.0]])
 
@@ -17,7 +17,7 @@ def body(stretch: float = 1.0) -> npt.NDArray[np.float64]:
     return np.asarray(V * [1.0, 1.0, 12.0 * stretch / np.ptp(V[:, 2])])
 
 
-def expected(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, bow: float = 0.0) -> npt.NDArray[np.float64]:
+def found(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, bow: float = 0.0) -> ExpectedJoints:
     """Where joints are expected of three parts of a tube, that were seen to one side of it; `bow` bends the middle one."""
     V = body(stretch)
     label = np.where(V[:, 2] < -4 * stretch, 0, np.where(V[:, 2] < 4 * stretch, 1, 2))
@@ -26,8 +26,30 @@ def expected(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, b
     return towards_centre_lines(V, np.ones(len(V)), label, np.eye(3)[label], np.array(parents), at, np.full(2, radius))
 
 
+def expected(parents: list[int], *, radius: float = 1.0, stretch: float = 1.0, bow: float = 0.0) -> npt.NDArray[np.float64]:
+    """The places alone."""
+    return found(parents, radius=radius, stretch=stretch, bow=bow).place
+
+
 def test_joints_at_both_ends_of_a_long_part_are_expected_on_its_line() -> None:
     assert expected([-1, 0, 1]) == pytest.approx(EXPECTED * [0.0, 0.0, 1.0], abs=0.02)
+
+
+def test_lines_lead_along_the_part_and_count_as_much_as_the_places_follow_them() -> None:
+    np.testing.assert_allclose(found([-1, 0, 1]).lines, np.tile(np.diag([0.0, 0.0, 1.0]), (2, 1, 1)), atol=0.02)
+    off = np.linalg.norm(EXPECTED[:, :2], axis=1)
+    part = found([-1, 0, 1], radius=float(off.mean()) / 1.4)
+    way = 1.0 - np.linalg.norm(part.place[:, :2], axis=1) / off
+    assert ((way > 0.2) & (way < 0.8)).all()
+    np.testing.assert_allclose(np.trace(part.lines, axis1=1, axis2=2), way, atol=0.05)
+    assert not found([-1, 0, 0]).lines.any()
+
+
+def test_a_stiffness_about_lines_is_as_firm_as_asked_in_every_direction() -> None:
+    z = np.diag([0.0, 0.0, 1.0])
+    np.testing.assert_allclose(about_lines(np.stack([z, 0.5 * z, 0.0 * z]), 4.0, 9.0, 1.0), [
+        np.diag([9.0, 9.0, 1.0]), np.diag([6.5, 6.5, 2.5]), np.diag([4.0, 4.0, 4.0]),
+    ])  # fmt: skip
 
 
 def test_a_part_on_which_nothing_or_much_hangs_says_nothing() -> None:

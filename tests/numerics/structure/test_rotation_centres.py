@@ -71,9 +71,8 @@ def weakly_turning(noise: Floats) -> Floats:
     t = body.t.copy()
     t[:, 1] += noise
     expected = body.joints[1] + [0.4, 0.0, 0.0]
-    found = rotation_centres(
-        body.R, t, np.array([[0, 1]]), expected[None], np.ones(1), body.residual, None, RotationCentresSettings(0.35, 3.0)
-    )
+    prior = RotationCentresSettings(spread=0.35, frames_alike=3.0)
+    found = rotation_centres(body.R, t, np.array([[0, 1]]), expected[None], np.ones(1), body.residual, None, prior)
     return np.asarray(found.rest[0] - body.joints[1])
 
 
@@ -107,3 +106,21 @@ def test_skin_between_parts_that_it_follows_is_explained_by_them() -> None:
     assert blend_error(body.V, body.F, body.x, body.label, met.pair, body.R, body.t) == pytest.approx([0, 0], abs=1e-9)
     wrong = blend_error(body.V, body.F, body.x, body.label, met.pair, body.R[:, [2, 0, 1]], body.t[:, [2, 0, 1]])
     assert wrong.min() > 0.05
+
+
+def test_a_joint_on_a_centre_line_is_held_more_firmly_across_it_than_along_it() -> None:
+    body, pair, z = chain((0.5,), swings(24, 2, degrees=4.0, axes=2)), np.array([[0, 1]]), np.diag([0.0, 0.0, 1.0])[None]
+    residual, way = np.full(body.R.shape[:2], 0.02), np.array([0.3, 0.3, 0.3])
+    expected = body.joints[1:] - way
+
+    def share(lines: Floats | None) -> Floats:
+        prior = RotationCentresSettings(spread=0.35)
+        found = rotation_centres(body.R, body.t, pair, expected, np.ones(1), residual, None, prior, lines)
+        return np.asarray((found.rest - expected)[0] / way)
+
+    free, on_line, in_part = share(None), share(z), share(0.5 * z)
+    assert (on_line[:2] < 0.5 * free[:2]).all()
+    assert on_line[2] > free[2] + 0.1
+    assert (on_line[:2] < in_part[:2]).all()
+    assert (in_part[:2] < free[:2]).all()
+    np.testing.assert_array_equal(share(0.0 * z), free)

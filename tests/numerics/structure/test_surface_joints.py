@@ -33,7 +33,7 @@ def on_surfaces(
     off: Floats = OFF, frames: int = 24, scale: float = 1.0, seen: float | Floats = 1.0,
     mesh_at: Callable[[int], tuple[Floats, Ints]] | None = None, settings: SurfaceJointsSettings | None = None,
     shift: Floats = HERE, hinged: bool = True, held: Flags | None = None, trunk_off: Floats = HERE,
-    shown: tuple[int, ...] = (),
+    shown: tuple[int, ...] = (), lines: Floats | None = None,
 ) -> tuple[Floats, SurfaceJoints]:  # fmt: skip
     """The joints as they were put, and what the surfaces say of them; the last one is put off, and that of the limb with the
     trunk too, and the body is shifted.
@@ -48,7 +48,7 @@ def on_surfaces(
     laid = laid_parts(surface.V + shift, surface.F, surface.area, tree, surfaces)
     if not hinged:
         laid = laid._replace(hinges=laid.hinges._replace(joint=laid.hinges.joint[:0], end=laid.hinges.end[:0]))
-    return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings, held)
+    return rest, surface_joints(tree, laid, rest, np.broadcast_to(seen, (frames, 3)), settings, held, lines=lines)
 
 
 def moved(*args: Any, **kwargs: Any) -> tuple[Floats, Floats]:
@@ -144,18 +144,36 @@ def test_the_way_is_shortened_by_what_halves_disagree(period: int, firm: float) 
     c, a = np.array([0.0, 0.5, 0.2]), np.array([0.0, 0.1, -0.05])
     side = np.where(np.arange(24) // period % 2 == 0, 1.0, -1.0)
     s, v = c / 1.3, (a @ a) / 1.3**2 / 2.0
-    way = _shortened_shift(pull(c + side[:, None] * a, firm), 10.0, SurfaceJointsSettings())
-    np.testing.assert_allclose(way, s * (s @ s) / (s @ s + 12.0 * v), atol=0.01)
+    way = _shortened_shift(pull(c + side[:, None] * a, firm), 0.3 * np.eye(3), 10.0, SurfaceJointsSettings())
+    np.testing.assert_allclose(way, s * (s @ s) / (s @ s + 6.0 * v), atol=0.01)
+
+
+@pytest.mark.parametrize("way", [0.0, 0.4], ids=["across", "along"])
+def test_a_joint_on_a_centre_line_goes_along_it_rather_than_across(way: float) -> None:
+    off, lines = np.array([0.0, 0.4 - way, way]), np.zeros((3, 3, 3))
+    lines[1] = np.diag([0.0, 0.0, 1.0])
+    (_, free), (_, held) = (on_surfaces(0.0 * OFF, trunk_off=off, hinged=False, lines=to) for to in (None, lines))
+    left, left_free = np.linalg.norm(held.rest[1]), np.linalg.norm(free.rest[1])
+    assert left < 0.6 * left_free if way else left > 1.5 * left_free
+    assert not np.allclose(held.rest[1], off, atol=0.02)
+
+
+def test_a_joint_within_a_limb_on_a_centre_line_is_held_across_it() -> None:
+    off, lines = np.array([0.0, 0.4, 0.0]), np.zeros((3, 3, 3))
+    lines[2] = np.diag([0.0, 0.0, 1.0])
+    (_, free), (_, held) = (on_surfaces(off, hinged=False, lines=to) for to in (None, lines))
+    assert held.rest[2, 1] > 1.3 * free.rest[2, 1] > 0.0
 
 
 def test_the_way_is_half_a_radius_long_at_most() -> None:
     c = np.tile([0.0, 3.0, 4.0], (24, 1))
-    np.testing.assert_allclose(_shortened_shift(pull(c), 2.0, SurfaceJointsSettings()), [0.0, 0.6, 0.8], atol=1e-9)
+    way = _shortened_shift(pull(c), 0.3 * np.eye(3), 2.0, SurfaceJointsSettings())
+    np.testing.assert_allclose(way, [0.0, 0.6, 0.8], atol=1e-9)
 
 
 def test_parts_that_do_not_turn_move_no_joint() -> None:
     still = pull(np.zeros((24, 3)))._replace(M=np.zeros((24, 3, 3)))
-    np.testing.assert_array_equal(_shortened_shift(still, 1.0, SurfaceJointsSettings()), 0.0)
+    np.testing.assert_array_equal(_shortened_shift(still, 0.3 * np.eye(3), 1.0, SurfaceJointsSettings()), 0.0)
 
 
 def test_a_joint_of_a_limb_with_the_trunk_stays_where_no_frame_shows_its_parts() -> None:
