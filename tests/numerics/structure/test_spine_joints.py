@@ -18,10 +18,12 @@ def person() -> Walker:
     return walker("human")
 
 
-def _trunk(depth: float = DEPTH, middle: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """A box about every spine, whose middle lies at a y; the person faces −y."""
-    box = trimesh.creation.box((4000.0, depth, 4000.0))
-    return np.array(box.vertices) + (0.0, middle, 0.0), np.array(box.faces)
+def _trunk(
+    depth: float = DEPTH, middle: float = 0.0, breadth: float = 4000.0, aside: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """A box about every spine, whose middle lies at an x and a y; the person faces −y. It is broader than trunks are."""
+    box = trimesh.creation.box((breadth, depth, 4000.0))
+    return np.array(box.vertices) + (aside, middle, 0.0), np.array(box.faces)
 
 
 def _spine(body: Walker) -> list[int]:
@@ -70,6 +72,30 @@ def test_what_is_not_as_deep_as_a_trunk_says_nothing(person, radii, counts):
     shift = spine_shifts(*_trunk(radii * RADIUS, middle=10.0), body.motion, _radius(body))
     without = spine_shifts(*NOWHERE, body.motion, _radius(body))
     assert np.allclose(shift, without) is not counts
+
+
+@pytest.mark.parametrize("aside", [-30.0, 40.0])
+def test_it_goes_half_of_the_way_to_the_middle_from_side_to_side(person, aside):
+    body = _upright(person)
+    plain = spine_shifts(*_trunk(), body.motion, _radius(body))[_spine(body)]
+    shift = spine_shifts(*_trunk(breadth=220.0, aside=aside), body.motion, _radius(body))[_spine(body)]
+    np.testing.assert_allclose(shift - plain, [[aside / 2.0, 0.0, 0.0]] * 2, atol=1e-6)
+
+
+@pytest.mark.parametrize(("radii", "counts"), [(1.48, False), (1.52, True), (2.78, True), (2.82, False)])
+def test_what_is_not_as_broad_as_a_trunk_says_nothing_of_its_middle(person, radii, counts):
+    body = _upright(person)
+    shift = spine_shifts(*_trunk(breadth=radii * RADIUS, aside=20.0), body.motion, _radius(body))
+    plain = spine_shifts(*_trunk(), body.motion, _radius(body))
+    assert np.allclose(shift, plain, atol=1e-6) is not counts
+
+
+def test_the_middle_is_that_of_the_trunk_at_the_depth_where_the_joint_goes(person):
+    body, (V, F) = _upright(person), _trunk(breadth=220.0)
+    V = V + np.array([1.0, 0.0, 0.0]) * V[:, 1:2]
+    there = spine_shifts(V, F, body.motion, _radius(body))[_spine(body)]
+    np.testing.assert_allclose(there[:, 0], there[:, 1] / 2.0, atol=1e-6)
+    assert (there[:, 1] > 10.0).all()
 
 
 def test_a_joint_does_not_go_through_the_back(person):
