@@ -34,8 +34,8 @@ class SpineJointsSettings(NamedTuple):
     """Depth of a trunk, in radii of the border, at least and at most; it is 1.4 to 1.9. Elsewhere the border does not go
     across the trunk, or an arm is one surface with it, and motion alone counts. Not varied."""
     breadth_bounds: tuple[float, float] = (1.5, 2.8)
-    """Breadth of a trunk, the same. Of recorded and generated people it is 1.9 to 2.6. With 3.2 humans 20 to 29 lose: there hips
-    and shoulders count as well."""
+    """Breadth of a trunk, the same. Of recorded and generated people it is 1.9 to 2.6. With 3.2 humans 20 to 29 lose: hips and
+    shoulders are as broad."""
     certainty: float = 0.5
     """Of the front, at least, see `Anatomy`: half of what both feet say when nothing speaks against them. Not varied."""
 
