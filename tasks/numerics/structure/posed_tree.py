@@ -1,4 +1,4 @@
-"""The tree in every frame: its joints go where all cuts have them, to tubes, to the surfaces, and behind a spine's middle.
+"""The tree in every frame: its joints go where all cuts have them, to tubes, to the surfaces, and to where spines lie.
 
 A joint on a tube stays where motion leaves no doubt about it (`CERTAIN`).
 """
@@ -103,7 +103,7 @@ def posed_tree(
 def with_spine(
     body: MovingSurface, first: FirstTree, tree: PosedTree, ends: Ints, confidence: Floats | None, up: Floats
 ) -> PosedTree:
-    """The tree with the joints of a person's spine behind the middle of the trunk, in every frame (`spine_shifts`).
+    """The tree with the joints of a person's spine where spines lie in a trunk, in every frame (`spine_shifts`).
 
     ends       : (end, 2) last parts and the vertices where they end, see `end_effectors`
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
@@ -121,7 +121,7 @@ def with_spine(
 
 
 def _lines(body: MovingSurface, first: FirstTree, rest: Floats) -> Floats:
-    """(part, 3, 3) the centre lines on which joints lie; none for the root."""
+    """(part, 3, 3) Σ w a aᵀ over the centre lines a near each joint as it is placed, see `ExpectedJoints`; 0 for the root."""
     near = towards_centre_lines(body.V, body.area, first.label, first.W, first.parents, rest[1:], first.radius[1:])
     return np.concatenate([np.zeros((1, 3, 3)), near.lines])
 

@@ -22,8 +22,8 @@ class RotationCentresSettings(NamedTuple):
 
     spread: float = 0.5
     """Standard deviation of a joint about the middle of its border. Not recorded."""
-    across: float = 0.15
-    """The same across the centre line of a long part, see `KinematicTreeSettings`."""
+    across: float = 0.12
+    """The same across the centre line of a long part, where lines are given; see `KinematicTreeSettings`."""
     along: float = 0.5
     """The same along that line."""
     frames_alike: float = np.inf
@@ -105,36 +105,72 @@ def rotation_centres(
     """Rotation centres, c = argmin Σ_t w_t |(R_a − R_b) c − (t_b − t_a)|² + Σ_t w_t (σ / r)² (c − c₀)ᵀ P (c − c₀), w robust.
 
     The rotation centre is that of 2014, Sec. 6.3 (Ehrig et al. 2006); the prior, whose weight grows with the noise, is ours.
-    P = I / ρ², but larger across the centre line of a long part and smaller along it.
+    P = I / ρ². Where lines are given P = (1 − tr L) I / ρ² + (tr L I − L) / across² + L / along², and σ is what is left where
+    joints are held in all directions as along a line: where a line is wrong, what it leaves would hold the joint on it.
 
     R          : (frame, part, 3, 3), t : (frame, part, xyz), from the reference to each frame
     pair       : (border, 2) the parts a, b
     centre     : (border, xyz) c₀, radius : (border,) r, mesh unit
     residual   : (frame, part) what a part's motion leaves unexplained, mesh unit; the least that σ can be
     confidence : (frame, part) weight of each part in each frame; None weighs all alike
-    lines      : (border, 3, 3) the lines on which joints are expected, see `ExpectedJoints`; None where there are none
+    lines      : (border, 3, 3) L = Σ w a aᵀ over the lines on which joints are expected, see `ExpectedJoints`; None for none
     """
     chosen = settings or RotationCentresSettings()
-    on_lines = np.zeros((len(pair), 3, 3)) if lines is None else lines
-    P = about_lines(on_lines, chosen.spread**-2, chosen.across**-2, chosen.along**-2)
-    a, b = pair[:, 0], pair[:, 1]
-    M, d = R[:, a] - R[:, b], t[:, b] - t[:, a]
     certain = _certain(confidence, pair, len(R))
-    floor = np.sqrt((residual[:, a] ** 2 + residual[:, b] ** 2).mean(axis=0)) + 1e-4 * radius
-    c, w, sigma, r = centre, certain, floor, np.maximum(radius, np.finfo(float).tiny)
+    motion = _Motion(R[:, pair[:, 0]] - R[:, pair[:, 1]], t[:, pair[:, 1]] - t[:, pair[:, 0]], certain)
+    floor = np.sqrt((residual[:, pair[:, 0]] ** 2 + residual[:, pair[:, 1]] ** 2).mean(axis=0)) + 1e-4 * radius
+    expected = _Expected(centre, np.maximum(radius, np.finfo(float).tiny), floor)
+    if lines is None:
+        c, _ = _centres(motion, expected, np.eye(3) / chosen.spread**2, chosen)
+    else:
+        _, sigma = _centres(motion, expected, np.eye(3) / chosen.along**2, chosen)
+        firm = about_lines(lines, chosen.spread**-2, chosen.across**-2, chosen.along**-2)
+        c, _ = _centres(motion, expected, firm, chosen, sigma)
+    return Joints(c, drift(R, t, pair, c, confidence))
+
+
+class _Motion(NamedTuple):
+    """Where two parts carry a joint c alike M c = d: M (frame, joint, 3, 3), d (frame, joint, xyz), weights (frame, joint)."""
+
+    M: Floats
+    d: Floats
+    certain: Floats
+
+
+class _Expected(NamedTuple):
+    """Where joints are expected (joint, xyz), the radius of their borders (joint,), and the least that σ can be (joint,)."""
+
+    centre: Floats
+    radius: Floats
+    floor: Floats
+
+
+def _centres(
+    motion: _Motion, expected: _Expected, P: Floats, chosen: RotationCentresSettings, error: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """(joint, xyz) rotation centres · (joint,) σ of what both parts' motions leave there, mesh unit.
+
+    P     : (joint, 3, 3) or (3, 3) how firmly joints are held where they are expected, 1 / radius²
+    error : (joint,) σ by which they are held, mesh unit; None takes what is left, round by round
+    """
+    M, d, certain = motion
+    centre, r, floor = expected
+    c, w, sigma = centre, certain, floor if error is None else error
+    left = floor
     for _ in range(ROUNDS):
         held = 1.0 + (np.linalg.norm(c - centre, axis=1) / (chosen.far * r)) ** 2
         stiff = (held * w.sum(axis=0) * (sigma / r) ** 2)[:, None, None] * P
         A = np.einsum("tj,tjxy,tjxz->jyz", w, M, M) + stiff
         g = np.einsum("tj,tjxy,tjx->jy", w, M, d) + np.einsum("jxy,jy->jx", stiff, centre)
         c = np.linalg.solve(A, g[..., None])[..., 0]
-        error = np.einsum("tjxy,jy->tjx", M, c) - d
-        away = np.linalg.norm(error, axis=2)
+        off = np.einsum("tjxy,jy->tjx", M, c) - d
+        away = np.linalg.norm(off, axis=2)
         usual = np.maximum(np.median(away, axis=0), floor)
         w = certain / (1.0 + (away / (chosen.outlier * usual)) ** 2)
         usual = np.maximum(np.sqrt((w * away**2).sum(axis=0) / w.sum(axis=0)), floor)
-        sigma = usual * np.sqrt(_lasting(error, w, chosen.frames_alike))
-    return Joints(c, drift(R, t, pair, c, confidence))
+        left = usual * np.sqrt(_lasting(off, w, chosen.frames_alike))
+        sigma = left if error is None else error
+    return c, left
 
 
 def drift(R: Floats, t: Floats, pair: Ints, centre: Floats, confidence: Floats | None = None) -> Floats:

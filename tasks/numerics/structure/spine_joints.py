@@ -4,8 +4,7 @@ Rings across a trunk show where along it the spine bends, but hardly where in it
 The bodies of vertebrae lie at a third to two fifths of the trunk's depth, from the back. So where the limbs say that a body is
 a person's, and which way it faces, two places say how deep a joint of its spine lies, along the direction that the trunk faces
 there: behind where motion has it, and at that share of the depth. It goes to their mean, since each errs on its own: motion by
-how rigid the flesh is, the share by how rigs and bodies differ. So it does from side to side, where the middle is the other
-place.
+how rigid the flesh is, the share by how rigs and bodies differ. From side to side it goes half of the way to the middle.
 """
 
 from typing import NamedTuple
@@ -58,13 +57,17 @@ def spine_shifts(V: Floats, F: Ints, body: Motion, radius: Floats, settings: Spi
     way = np.array([low, *(body.rest[j] for j in joints), high])
     for k, joint in enumerate(joints, start=1):
         share = k / (len(joints) + 1)
-        left = (1.0 - share) * across[0] + share * across[1]
         along = _unit(way[k + 1] - way[k - 1])
-        ahead = _unit(np.cross(left, along))
+        ahead = _unit(np.cross((1.0 - share) * across[0] + share * across[1], along))
         aside = np.cross(along, ahead)
         place, size = body.rest[joint].copy(), float(radius[joint])
-        place -= _way_back(*_both_ways(place, -ahead, V, F), size, chosen) * ahead
-        place += _way_aside(*_both_ways(place, aside, V, F), size, chosen) * aside
+        behind, before = _both_ways(place, -ahead, V, F)
+        is_within = _between_bounds(behind + before, size, chosen.depth_bounds)
+        place -= _way_back(behind, before, size, is_within, chosen) * ahead
+        if is_within:
+            left, right = _both_ways(place, aside, V, F)
+            if _between_bounds(left + right, size, chosen.breadth_bounds):
+                place += (left - right) / 4.0 * aside
         shift[joint] = place - body.rest[joint]
     return shift
 
@@ -75,22 +78,20 @@ def _both_ways(place: Floats, direction: Floats, V: Floats, F: Ints) -> tuple[fl
     return float(there), float(back)
 
 
-def _way_back(behind: float, before: float, radius: float, chosen: SpineJointsSettings) -> float:
+def _way_back(behind: float, before: float, radius: float, is_within: bool, chosen: SpineJointsSettings) -> float:
     """How far a joint goes back, mesh unit, never through the surface; less than 0 where it goes towards the front.
 
     behind, before : from the joint to the surface, mesh unit; infinite where the joint is outside
+    is_within      : whether both together are as deep as a trunk
     """
-    by_motion, depth = min(chosen.behind * radius, behind), behind + before
-    least, most = chosen.depth_bounds
-    if not least * radius <= depth <= most * radius:
-        return by_motion
-    return (by_motion + behind - chosen.from_back * depth) / 2.0
+    by_motion = min(chosen.behind * radius, behind)
+    return (by_motion + behind - chosen.from_back * (behind + before)) / 2.0 if is_within else by_motion
 
 
-def _way_aside(left: float, right: float, radius: float, chosen: SpineJointsSettings) -> float:
-    """How far a joint goes to the left, mesh unit: half of the way to the middle; left, right as in `_way_back`."""
-    least, most = chosen.breadth_bounds
-    return (left - right) / 4.0 if least * radius <= left + right <= most * radius else 0.0
+def _between_bounds(size: float, radius: float, bounds: tuple[float, float]) -> bool:
+    """Whether a size, mesh unit, lies between bounds in radii of the border."""
+    least, most = bounds
+    return least * radius <= size <= most * radius
 
 
 def spine(parents: Ints, legs: tuple[Limb, Limb], arms: tuple[Limb, Limb]) -> list[int]:

@@ -14,10 +14,11 @@ v) with
 
     s = (A + λ C)⁻¹ Σ_f w_f M_fᵀ Q_f d_f,   A = Σ_f w_f M_fᵀ Q_f M_f,   d_f = −e_f at c₀
 
-λ the largest eigenvalue of A, C = κ I, but larger across the centre line of a long part and smaller along it, v the mean, over
-two ways of halving the frames, of the square of half the distance between what halves give. So it goes where the frames hold
-it firmly, 1 / (1 + κ) of the way at most, and less far where halves disagree. With a wide ρ the surfaces place c almost alone;
-how far halves of the frames then put it from the joint says how well that one is placed.
+λ the largest eigenvalue of A, C = κ I where no line is, 2 I across the centre line of a long part and 0.1 I along it
+(`hold_across`, `hold_along`), v the mean, over two ways of halving the frames, of the square of half the distance between what
+halves give. So it goes where the frames hold it firmly, without a line 1 / (1 + κ) of the way at most, and less far where
+halves disagree. With a wide ρ the surfaces place c almost alone; how far halves of the frames then put it from the joint says
+how well that one is placed.
 """
 
 from collections.abc import Sequence
@@ -36,8 +37,8 @@ from kinetree.tasks.numerics.structure.score_spans import score_spans
 SINGULAR = 1e-9
 """Added to a stiffness against a shift, which is 1 where all points of a part hold it, and to one against a turn, share of its
 trace: keeps them invertible where no match holds a part."""
-NONE: Floats = np.zeros((3, 3))
-"""No stiffness."""
+NO_STIFFNESS: Floats = np.zeros((3, 3))
+"""A joint that is not drawn to where it is."""
 
 
 class SurfaceJointsSettings(NamedTuple):
@@ -48,14 +49,14 @@ class SurfaceJointsSettings(NamedTuple):
 
     spread: float = 0.35
     """ρ: standard deviation of a joint about its place, in radii of its border. 0.15 to 0.4 win alike on those."""
-    across: float = 0.25
-    """The same across the centre line on which a joint lies. Chosen with `hold_across` on the bodies named there; at 0.15 they
-    win alike but for ballet, which loses."""
     free_spread: float = 6.0
     """The same where the surfaces alone place joints. Chosen on generated bodies of even seeds: 3 to 10 tell badly placed
     joints alike, 0.35 tells them no better than without."""
     points: float = 3.0
     """n: as how many points without a common error a part's surface counts. With ten times as many joints get worse."""
+    across: float = 0.25
+    """The same across the centre line on which a joint lies. Chosen with `hold_across` on the bodies named there; at 0.15 they
+    win alike but for ballet, which loses."""
     agree: float = 0.5
     """Distance between the places that two halves of the frames give, share of the way that all go, at most. At 1 joints of
     generated bodies lie nearer by 1 to 3 %, those of recorded ones by nothing, and a wolf's farther."""
@@ -71,7 +72,7 @@ class SurfaceJointsSettings(NamedTuple):
     """The same along it. From 0.02 to 0.1 those win alike, recorded ones the more the larger; at 0.3 they win half of that."""
     doubt: float = 6.0
     """δ: weight of the disagreement of halves against the way. Of the bodies that `hold_across` names people and recorded
-    ones win 1 % more at 6 than at 12, the others nothing; at 3 quadrupeds and random trees lose."""
+    ones win 1 % at 6 against 12, quadrupeds and random trees lose as much or less; at 3 all of this is more."""
     farthest: float = 0.5
     """Length of such a way at most, in radii of the border. The longest of 616 on such bodies has 0.42."""
     outlier: float = 3.0
@@ -128,7 +129,7 @@ def surface_joints(
     seen  : (frame, part) share of its surface that is certain, 0 to 1
     held  : (part,) joints that stay where they are, see `shared_joints`; None holds none
     takes : positions of the frames of each take, in order; None takes all as one
-    lines : (part, 3, 3) the centre lines on which joints lie, see `ExpectedJoints`; None where there are none
+    lines : (part, 3, 3) Σ w a aᵀ over the centre lines a near each joint, see `ExpectedJoints`; None where there are none
     """
     chosen, stays = settings or SurfaceJointsSettings(), np.zeros(len(rest), np.bool_) if held is None else held
     on_lines = np.zeros((len(rest), 3, 3)) if lines is None else lines
@@ -152,7 +153,7 @@ def surface_joints(
                 if not stays[joint] and (moved[joint] == rest[joint]).all():
                     bends = shifts[joint].any()
                     moved[joint] += shifts[joint] if bends else _shortened_shift(pull, hold[joint], radius, chosen)
-                free = _of_halves(pull, np.eye(3) / (chosen.free_spread * radius) ** 2, NONE, chosen)
+                free = _of_halves(pull, np.eye(3) / (chosen.free_spread * radius) ** 2, NO_STIFFNESS, chosen)
                 left = free - (moved[joint] - rest[joint])
                 offset[joint] = np.sqrt(np.square(left).sum(axis=2).mean())
     return SurfaceJoints(moved, offset, hinge_offsets(tree, laid.hinges, moved, share))
@@ -201,16 +202,16 @@ def _joint_stiffness(laid: _PartFits, c: Floats) -> Floats:
 
 def _agreed_shift(pull: _Pull, firm: Floats, chosen: SurfaceJointsSettings) -> Floats:
     """(xyz,) where the joint goes from where it is, mesh unit; nowhere where halves of the frames disagree."""
-    way = _shift(pull, firm, NONE, chosen)
-    one, other = _of_halves(pull, firm, NONE, chosen)
+    way = _shift(pull, firm, NO_STIFFNESS, chosen)
+    one, other = _of_halves(pull, firm, NO_STIFFNESS, chosen)
     agree = np.linalg.norm(one - other, axis=1) < chosen.agree * np.linalg.norm(way)
     return way if agree.all() else np.zeros(3)
 
 
 def _shortened_shift(pull: _Pull, hold: Floats, radius: float, chosen: SurfaceJointsSettings) -> Floats:
     """(xyz,) a part of the way to the rotation centre, the less the more halves disagree; radius of the border, mesh unit."""
-    way = _shift(pull, NONE, hold, chosen)
-    one, other = _of_halves(pull, NONE, hold, chosen)
+    way = _shift(pull, NO_STIFFNESS, hold, chosen)
+    one, other = _of_halves(pull, NO_STIFFNESS, hold, chosen)
     square, disagreement = float(way @ way), float(np.square((one - other) / 2.0).sum(axis=1).mean())
     way = way * square / max(square + chosen.doubt * disagreement, 1e-300)
     return np.asarray(way * min(1.0, chosen.farthest * radius / max(float(np.linalg.norm(way)), 1e-300)))

@@ -36,12 +36,11 @@ class KinematicTreeSettings(NamedTuple):
     """Standard deviation of a joint about where it is expected, in radii of its border. Not recorded; see DESIGN for what
     the expected place was chosen on. Joints move by 2 % of the height at most when it is halved
     or doubled, errors by 0.14 %."""
-    across: float = 0.15
-    """The same across the centre line of a long part. Chosen with `along` on the bodies that `hold_across` of `surface_joints`
-    names, people 215 to 229 and humans, quadrupeds and random trees 5 to 9. Generated bodies win the more the smaller, down to
-    0.1, and recorded ones the same from 0.15 to 0.25."""
+    across: float = 0.12
+    """The same across the centre line of a long part; lines of recorded bodies pass their joints at 0.1 to 0.2. Chosen with
+    `along`; see RESULTS for the bodies and other values."""
     along: float = 0.5
-    """The same along that line. From 0.5 to 0.7 those win alike; joints that the line moves far win more at 0.35."""
+    """The same along that line."""
     frames_alike: float = 3.0
     """Frames that err alike even where neighbours do not: what is wrong in one pose is wrong in the next like it. Not
     recorded. Joints move by 1.3 % of the height at most when it is halved or doubled, errors by 0.06 %."""
@@ -190,7 +189,10 @@ def both_residuals(residual: Floats, parents: Ints) -> Floats:
 def _joints(
     V: Floats, area: Floats, label: Ints, W: Floats, left: Pruned, chosen: KinematicTreeSettings
 ) -> tuple[Floats, Floats]:
-    """Joints in the tree's order, expected amid their border or on centre lines, and their drift."""
+    """Joints in the tree's order, expected amid their border or on centre lines, and their drift.
+
+    Where every vertex was followed lines say where joints are expected, but hold none more firmly: motion is surer.
+    """
     parts, tree, met = left.parts, left.part_tree.tree, left.part_tree.borders
     rest, off = np.empty((len(tree.order), 3)), np.zeros(len(tree.order))
     root = label == 0
@@ -199,10 +201,11 @@ def _joints(
     expected = towards_centre_lines(V, area, label, W, tree.parents, met.centre[rows], met.radius[rows])
     pair = np.stack([tree.order[1:], tree.order[tree.parents[1:]]], axis=1)
     residual = chosen.residual_share * parts.residual
-    prior = RotationCentresSettings(chosen.spread, chosen.across, chosen.along, chosen.frames_alike, chosen.far)
-    joints = rotation_centres(
-        parts.R, parts.t, pair, expected.place, met.radius[rows], residual, parts.confidence, prior, expected.lines
+    prior = RotationCentresSettings(
+        spread=chosen.spread, across=chosen.across, along=chosen.along, frames_alike=chosen.frames_alike, far=chosen.far
     )
+    lines, seen = (None if parts.confidence is None else expected.lines), parts.confidence
+    joints = rotation_centres(parts.R, parts.t, pair, expected.place, met.radius[rows], residual, seen, prior, lines)
     rest[1:], off[1:] = joints.rest, joints.drift
     if chosen.root_amid_limbs:
         rest[0] = root_amid_limbs(rest, tree.parents, rest[0])

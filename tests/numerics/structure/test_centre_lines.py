@@ -50,6 +50,38 @@ def test_a_stiffness_about_lines_is_as_firm_as_asked_in_every_direction() -> Non
     np.testing.assert_allclose(about_lines(np.stack([z, 0.5 * z, 0.0 * z]), 4.0, 9.0, 1.0), [
         np.diag([9.0, 9.0, 1.0]), np.diag([6.5, 6.5, 2.5]), np.diag([4.0, 4.0, 4.0]),
     ])  # fmt: skip
+    Q = rotation((1.0, 2.0, 0.5), 1.1)
+    turned = Q @ np.diag([9.0, 9.0, 1.0]) @ Q.T
+    np.testing.assert_allclose(about_lines(Q @ z @ Q.T, 4.0, 9.0, 1.0), turned, atol=1e-12)
+
+
+def elbow(degrees: float) -> ExpectedJoints:
+    """Three long parts of a tube, the middle one bent against both others by so much."""
+    V = body(2.0)
+    label = np.where(V[:, 2] < -4.0, 0, np.where(V[:, 2] < 4.0, 1, 2))
+    ends = np.array([[0.0, 0.0, -4.0], [0.0, 0.0, 4.0]])
+    Q = rotation((1.0, 0.0, 0.0), np.radians(degrees))
+    for part, end in ((0, ends[0]), (2, ends[1])):
+        V[label == part] = (V[label == part] - end) @ Q.T + end
+    at = ends + [0.3, 0.0, 0.0]
+    W = np.eye(4)[np.where(label == 2, 2, label)]
+    parents, label = np.array([-1, 0, 1, 2]), np.where((label == 2) & (V[:, 2] > 11.0), 3, label)
+    return towards_centre_lines(V, np.ones(len(V)), label, W, parents, np.vstack([at, at[1:]]), np.ones(3))
+
+
+def test_of_two_lines_each_counts_a_half() -> None:
+    found = elbow(20.0)
+    a, b = np.array([0.0, 0.0, 1.0]), rotation((1.0, 0.0, 0.0), np.radians(20.0))[:, 2]
+    for joint in (0, 1):
+        np.testing.assert_allclose(np.trace(found.lines[joint]), 1.0)
+        np.testing.assert_allclose(found.lines[joint], (np.outer(a, a) + np.outer(b, b)) / 2.0, atol=0.03)
+        assert abs(found.place[joint, 0]) < 0.03, "and neither the way to one twice"
+
+
+@pytest.mark.parametrize(("radii", "counts"), [(1.15, 1.0), (1.4, 0.5), (1.65, 0.0)])
+def test_a_line_counts_less_the_farther_it_passes_the_border(radii: float, counts: float) -> None:
+    off = np.linalg.norm(EXPECTED[0, :2])
+    np.testing.assert_allclose(np.trace(found([-1, 0, 1], radius=float(off) / radii).lines[0]), counts, atol=0.08)
 
 
 def test_a_part_on_which_nothing_or_much_hangs_says_nothing() -> None:

@@ -1,12 +1,17 @@
 """The tree of the first cut, as other steps read it."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from articulated import ALL_STAY, chain, neck, swings
 from shipped import TREE
 from smeared import moving
 
+from kinetree.tasks.numerics.structure import tree_joints as structure_tree_joints
+from kinetree.tasks.numerics.structure.centre_lines import ExpectedJoints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree, in_reference, in_tree_order
+from kinetree.tasks.numerics.structure.rotation_centres import Joints, rotation_centres
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 NO_LEAVES = np.zeros(0, int)
@@ -40,6 +45,30 @@ def test_joints_drift_as_much_as_where_they_were_found() -> None:
     np.testing.assert_allclose(tree.drift_at(tree.rest), found.drift, atol=1e-12)
     assert tree.drift_at(tree.rest + 1.0)[1] > tree.drift[1]
     np.testing.assert_array_equal(tree.motion.R, found.motion.R)
+
+
+def test_a_joint_of_a_long_part_is_held_on_its_line_unless_every_vertex_was_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def remember(*args: Any) -> Joints:
+        asked.append(args)
+        return rotation_centres(*args)
+
+    monkeypatch.setattr(structure_tree_joints, "rotation_centres", remember)
+    body = chain((-1.0, 2.0), swings(16, 3))
+    cut = Cut(body.V, body.label, body.R, body.t, body.residual)
+    a = np.array([0.0, 0.0, 1.0])
+    line = ExpectedJoints(np.zeros((2, 3)), np.stack([np.outer(a, a), 0.0 * np.eye(3)]))
+    monkeypatch.setattr(structure_tree_joints, "towards_centre_lines", lambda *_: line)
+    confidence = np.ones(body.x.shape[:2])
+    tree_joints(moving(body), cut, NO_LEAVES, settings=TREE)
+    tree_joints(moving(body), cut, NO_LEAVES, confidence, settings=TREE)
+    given, followed = asked
+    assert given[8] is None
+    np.testing.assert_array_equal(followed[8], line.lines)
+    np.testing.assert_array_equal(followed[3], line.place)
+    assert (followed[7].across, followed[7].along, followed[7].spread) == (TREE.across, TREE.along, TREE.spread)
+    assert TREE.across < TREE.spread <= TREE.along
 
 
 def test_the_tree_of_a_cut_in_another_pose_is_the_same_tree_in_the_reference() -> None:

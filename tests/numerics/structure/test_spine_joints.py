@@ -104,6 +104,33 @@ def test_a_joint_does_not_go_through_the_back(person):
     np.testing.assert_allclose(shift, 10.0, rtol=1e-6, err_msg="the back is 10 mm behind it, and too near to the front")
 
 
+def test_arms_beside_a_joint_that_is_outside_or_on_the_back_say_nothing(person):
+    body = _upright(person)
+    for trunk in (_trunk(middle=200.0), _trunk(0.9 * RADIUS, middle=-35.0)):
+        (V, F), arms = trunk, [trimesh.creation.box((40.0, 400.0, 4000.0)) for _ in range(2)]
+        arms[0].apply_translation((150.0, 0.0, 0.0))
+        arms[1].apply_translation((-100.0, 0.0, 0.0))
+        beside = [np.array(arm.vertices) for arm in arms]
+        faces = [np.array(arm.faces) + len(V) + 8 * k for k, arm in enumerate(arms)]
+        shift = spine_shifts(np.vstack([V, *beside]), np.vstack([F, *faces]), body.motion, _radius(body))
+        np.testing.assert_allclose(shift[:, 0], 0.0, atol=1e-6)
+
+
+def test_in_a_trunk_that_leans_sideways_aside_is_across_it(person):
+    """Along the spine the joint stays: aside is neither where left is nor along x."""
+    body = _upright(person)
+    rest, Q = body.motion.rest.copy(), _about_y(25.0)
+    joints = [j for j in range(len(body.names)) if j not in _legs(body)]
+    pelvis = rest[joints[0]].copy()
+    rest[joints] = (rest[joints] - pelvis) @ Q.T + pelvis
+    V, F = _trunk(breadth=220.0, aside=30.0)
+    moved = body.motion._replace(rest=rest)
+    shift = spine_shifts((V - pelvis) @ Q.T + pelvis, F, moved, _radius(body))
+    chest = body.names.index("chest")
+    assert np.linalg.norm(shift[chest]) > 5.0
+    np.testing.assert_allclose(shift[chest] @ Q[:, 2], 0.0, atol=2.5)
+
+
 def test_a_joint_outside_of_the_body_goes_back_by_its_radius(person):
     body = _upright(person)
     for middle in (-200.0, 200.0):
@@ -113,7 +140,7 @@ def test_a_joint_outside_of_the_body_goes_back_by_its_radius(person):
 
 def test_it_goes_with_the_body_into_other_coordinates(person):
     Q = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
-    V, F = _trunk(middle=10.0)
+    V, F = _trunk(middle=10.0, breadth=220.0, aside=25.0)
     here = spine_shifts(V, F, person.motion, _radius(person))
     there = spine_shifts(0.01 * V @ Q.T, F, turned(person.motion, Q, 0.01), 0.01 * _radius(person))
     np.testing.assert_allclose(there, 0.01 * here @ Q.T, atol=1e-9)
@@ -171,3 +198,15 @@ def _about_x(degrees: float) -> np.ndarray:
     """The rotation about x by which a body that faces −y leans forwards."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def _about_y(degrees: float) -> np.ndarray:
+    """The rotation about y by which a body that faces −y leans to a side."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def _legs(body: Walker) -> set[int]:
+    """Joints of both legs."""
+    hips = [body.names.index(f"hip_{side}") for side in "lr"]
+    return {j for j in range(len(body.names)) for hip in hips if _is_beyond(body.motion.parents, j, hip)}

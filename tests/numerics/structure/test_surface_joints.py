@@ -163,6 +163,8 @@ def test_a_joint_within_a_limb_on_a_centre_line_is_held_across_it() -> None:
     lines[2] = np.diag([0.0, 0.0, 1.0])
     (_, free), (_, held) = (on_surfaces(off, hinged=False, lines=to) for to in (None, lines))
     assert held.rest[2, 1] > 1.3 * free.rest[2, 1] > 0.0
+    (_, free), (_, held) = (on_surfaces(OFF, hinged=False, lines=to) for to in (None, lines))
+    np.testing.assert_allclose(held.rest[2, 2], free.rest[2, 2], atol=0.01, err_msg="and along it as before")
 
 
 def test_the_way_is_half_a_radius_long_at_most() -> None:
