@@ -134,7 +134,7 @@ def kinematic_tree(
     has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
     has_narrowings  : whether both limbs of a pair have a joint beyond a narrowing, see `narrowings`
     has_mirrored_joints : whether a limb has the joints at its end that its mirror image has, see `mirrored_joints`
-    up         : (xyz,) unit vector, by which a person is told, whose spine lies behind the middle, see `spine_joints`; None
+    up         : (xyz,) unit vector, by which a person is told, whose spine is placed in the trunk, see `spine_joints`; None
                  leaves spines where motion has them
     """
     V = body.V
