@@ -70,7 +70,8 @@ class ShapeParams(Params):
     fixed, nor on a body with a single pair of such limbs."""
     spine: bool = True
     """Whether joints of a person's spine lie behind the middle of the trunk, as vertebrae do, and amid it from side to side,
-    where toes, knees and travel tell the front; not where connectivity is fixed. Where a run names the wrong front, switch it off."""
+    where toes, knees and travel tell the front; not where connectivity is fixed. Where a run names the wrong front, switch it
+    off."""
 
 
 class KinematicTreeParams(ShapeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
