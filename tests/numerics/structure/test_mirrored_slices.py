@@ -29,6 +29,8 @@ HIP = 8.0
 """Distance of the joint from the fork; flesh about it is a part from `INNER` to `OUTER`."""
 INNER, OUTER, KNEE = 4.0, 12.0, 20.0
 ONES = np.ones((FRAMES, len(V)))
+EVENLY = TREE._replace(across=TREE.spread, along=TREE.spread)
+"""Joints that are held alike along a thigh and across it: both joints of the flesh stay well apart."""
 
 
 def seen(
@@ -66,7 +68,7 @@ def seen(
     body, parts = MovingSurface(V, F, x, area), MovingParts(label, R, t, left, np.ones((FRAMES, count)))
     found = part_tree(body, parts)
     start = Pruned(parts, found, found, np.arange(count), ())
-    return body, in_tree_order(tree_of_parts(body, start, np.arange(count), label, ONES, TREE), count)
+    return body, in_tree_order(tree_of_parts(body, start, np.arange(count), label, ONES, EVENLY), count)
 
 
 def _swings(degrees: float, side: int, phase: int) -> Floats:
